@@ -1,0 +1,27 @@
+# What every library of ours shares: language level, warnings (never exported), header file set.
+
+function(coapt_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  if(COAPT_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# coapt_library(<target> EXPORT_AS <name>): installed and exported as coapt::<name>.
+function(coapt_library target)
+  cmake_parse_arguments(ARG "" "EXPORT_AS" "" ${ARGN})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${ARG_EXPORT_AS}
+                                             POSITION_INDEPENDENT_CODE ON)
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src)
+  coapt_warnings(${target})
+endfunction()
+
+# coapt_room(<target> HEADERS <files> SOURCES <files>): the files of one folder.
+function(coapt_room target)
+  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES" ${ARGN})
+  list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  target_sources(${target} PRIVATE ${ARG_SOURCES}
+                           PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
+endfunction()
