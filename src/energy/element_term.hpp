@@ -1,0 +1,87 @@
+// A term made of one element law: gathers, calls the kernel, scatters. Written once for all laws.
+#pragma once
+
+#include "energy/project_psd.hpp"
+#include "energy/term.hpp"
+
+#include <concepts>
+#include <utility>
+
+namespace coapt {
+
+// The mathematics of ONE element: no mesh, no assembly, no state.
+//   kNodes            number of nodes
+//   kType, kRole      as in the scene file; internal, load or contact
+//   Rest              plain data of one element, computed once from the reference state
+//   evaluate          energy at x (node after node); derivatives only where asked (null = not wanted)
+template <class K>
+concept ElementKernel = requires(const typename K::Rest& rest, const Eigen::Vector<double, 3 * K::kNodes>& x,
+                                 Eigen::Vector<double, 3 * K::kNodes>* g,
+                                 Eigen::Matrix<double, 3 * K::kNodes, 3 * K::kNodes>* H) {
+  { K::evaluate(rest, x, g, H) } -> std::same_as<double>;
+  { K::kType } -> std::convertible_to<std::string_view>;
+  { K::kRole } -> std::convertible_to<TermRole>;
+};
+
+template <ElementKernel K>
+class ElementTerm final : public EnergyTerm {
+ public:
+  static constexpr int kSize = 3 * K::kNodes;
+  using ElementVector = Eigen::Vector<double, kSize>;
+  using ElementMatrix = Eigen::Matrix<double, kSize, kSize>;
+
+  // nodes: kNodes per element. Pre: nodes.size() == kNodes * rest.size().
+  ElementTerm(std::string name, std::vector<int> nodes, std::vector<typename K::Rest> rest)
+      : EnergyTerm(std::move(name)), stencils_{K::kNodes, std::move(nodes)}, rest_(std::move(rest)) {}
+
+  std::string_view type() const override { return K::kType; }
+  TermRole role() const override { return K::kRole; }
+  const Stencils& stencils() const override { return stencils_; }
+  const std::vector<typename K::Rest>& rest() const { return rest_; }
+
+  double evaluate(const Points& x, Sink& sink) const override {
+    if (sink.wants_hessian()) return evaluate_with_hessian(x, sink);
+    double energy = 0;
+    ElementVector g;
+    ElementVector* wanted = sink.wants_gradient() ? &g : nullptr;
+    const int* nodes = stencils_.nodes.data();
+    for (size_t e = 0; e < rest_.size(); ++e, nodes += K::kNodes) {
+      energy += K::evaluate(rest_[e], gather(x, nodes), wanted, nullptr);
+      if (wanted != nullptr) scatter(g, nodes, sink);
+    }
+    return energy;
+  }
+
+ private:
+  static ElementVector gather(const Points& x, const int* nodes) {
+    ElementVector local;
+    for (int a = 0; a < K::kNodes; ++a) local.template segment<3>(3 * a) = x.col(nodes[a]);
+    return local;
+  }
+
+  static void scatter(const ElementVector& g, const int* nodes, Sink& sink) {
+    for (int a = 0; a < K::kNodes; ++a) sink.add_gradient(nodes[a], g.template segment<3>(3 * a));
+  }
+
+  double evaluate_with_hessian(const Points& x, Sink& sink) const {
+    double energy = 0;
+    ElementVector g;
+    ElementMatrix h;
+    const int* nodes = stencils_.nodes.data();
+    for (size_t e = 0; e < rest_.size(); ++e, nodes += K::kNodes) {
+      energy += K::evaluate(rest_[e], gather(x, nodes), &g, &h);
+      if (sink.projection() == Projection::PositiveSemidefinite) project_psd(h);
+      scatter(g, nodes, sink);
+      const long offset = static_cast<long>(e) * K::kNodes * K::kNodes;
+      for (int a = 0; a < K::kNodes; ++a)
+        for (int b = 0; b < K::kNodes; ++b)
+          sink.add_block(offset, K::kNodes, a, b, h.template block<3, 3>(3 * a, 3 * b));
+    }
+    return energy;
+  }
+
+  Stencils stencils_;
+  std::vector<typename K::Rest> rest_;
+};
+
+}  // namespace coapt

@@ -1,0 +1,50 @@
+// Linear elastic cable that carries tension only, or a constant tension.
+//   W = EA/r psi(l - r) + T l,   l = |x1 - x0|,   psi(e) = e^2/2 for e > s, 0 for e < 0
+// EA axial stiffness [force], r rest length [length], T constant tension [force]: a pure
+// constant-force cable has EA = 0. The kink of the force at e = 0 is rounded over 0 < e < s by
+// psi' = 2 e^2/s - e^3/s^2, which makes psi twice continuously differentiable, keeps the slack cable
+// force-free and the taut one (e > s) exact. s = 0: the sharp kink.
+// Source: Hammer et al. 2011 (chords); the rounding is our own. Never throws.
+#pragma once
+
+#include "energy/kernels/axial.hpp"
+#include "energy/term.hpp"
+
+namespace coapt {
+
+struct Cable {
+  static constexpr int kNodes = 2;
+  static constexpr std::string_view kType = "cable";
+  static constexpr TermRole kRole = TermRole::Internal;
+
+  struct Rest {
+    double stiffness = 0;  // EA / r [force/length]
+    double length = 0;     // r
+    double smoothing = 0;  // s [length]
+    double tension = 0;    // T [force]
+  };
+
+  // The elastic part's energy, force and stiffness at elongation e.
+  static AxialLaw elastic(const Rest& rest, double e) {
+    if (e <= 0) return {};
+    const double s = rest.smoothing, k = rest.stiffness;
+    if (e >= s) return {k * (0.5 * e * e - s * s / 12), k * e, k};
+    const double u = e / s;
+    return {k * s * s * u * u * u * (2.0 / 3 - u / 4), k * s * u * u * (2 - u), k * u * (4 - 3 * u)};
+  }
+
+  static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
+                         Eigen::Matrix<double, 6, 6>* H) {
+    const Vec3 difference = x.tail<3>() - x.head<3>();
+    const double l = difference.norm();
+    AxialLaw law = elastic(rest, l - rest.length);
+    if (l > 0) {  // coincident ends have no direction to pull in
+      law.energy += rest.tension * l;
+      law.force += rest.tension;
+    }
+    expand_axial(law, difference, l, g, H);
+    return law.energy;
+  }
+};
+
+}  // namespace coapt

@@ -1,0 +1,54 @@
+// Potential of a uniform pressure on one facet:
+//   W = -p V,   V = (x0 - o) . ((x1 - o) x (x2 - o)) / 6
+// p pressure along the facet's normal [force/length^2]; V signed volume of the tetrahedron that the
+// facet spans with an origin o [length^3]. Summed over a closed surface the origin drops out and the
+// force is the exact follower pressure; on an open rim it is not (see load_pressure.hpp). Never throws.
+#pragma once
+
+#include "energy/term.hpp"
+
+#include <Eigen/Dense>
+
+namespace coapt {
+
+struct FacetVolume {
+  static constexpr int kNodes = 3;
+  static constexpr std::string_view kType = "load_pressure";
+  static constexpr TermRole kRole = TermRole::Load;
+
+  struct Rest {
+    double pressure = 0;  // along the facet's normal
+    Vec3 origin = Vec3::Zero();
+  };
+
+  static double evaluate(const Rest& rest, const Eigen::Vector<double, 9>& x, Eigen::Vector<double, 9>* g,
+                         Eigen::Matrix<double, 9, 9>* H) {
+    const Vec3 r[3] = {x.segment<3>(0) - rest.origin, x.segment<3>(3) - rest.origin,
+                       x.segment<3>(6) - rest.origin};
+    const double sixth = -rest.pressure / 6;
+    const Vec3 r12 = r[1].cross(r[2]);
+    if (g != nullptr) {
+      g->segment<3>(0) = sixth * r12;
+      g->segment<3>(3) = sixth * r[2].cross(r[0]);
+      g->segment<3>(6) = sixth * r[0].cross(r[1]);
+    }
+    if (H != nullptr) {
+      H->setZero();
+      for (int a = 0; a < 3; ++a) {  // d(r_b x r_c)/dr_b = -[r_c x], d(r_b x r_c)/dr_c = [r_b x]
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        H->block<3, 3>(3 * a, 3 * b) = -sixth * cross_matrix(r[c]);
+        H->block<3, 3>(3 * a, 3 * c) = sixth * cross_matrix(r[b]);
+      }
+    }
+    return sixth * r[0].dot(r12);
+  }
+
+ private:
+  static Eigen::Matrix3d cross_matrix(const Vec3& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+    return m;
+  }
+};
+
+}  // namespace coapt

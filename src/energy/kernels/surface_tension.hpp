@@ -1,0 +1,51 @@
+// Constant isotropic tension of a film, form-found membrane or soap film: W = sigma * current area.
+// sigma [force/length]. Its equilibria without pressure are minimal surfaces; it has no stiffness
+// against sliding of nodes within the surface. Never throws.
+#pragma once
+
+#include "energy/term.hpp"
+
+#include <Eigen/Dense>
+
+namespace coapt {
+
+struct SurfaceTension {
+  static constexpr int kNodes = 3;
+  static constexpr std::string_view kType = "surface_tension";
+  static constexpr TermRole kRole = TermRole::Internal;
+
+  struct Rest {
+    double tension = 0;  // sigma
+  };
+
+  static double evaluate(const Rest& rest, const Eigen::Vector<double, 9>& x, Eigen::Vector<double, 9>* g,
+                         Eigen::Matrix<double, 9, 9>* H) {
+    const Vec3 x0 = x.segment<3>(0), x1 = x.segment<3>(3), x2 = x.segment<3>(6);
+    const Vec3 normal = (x1 - x0).cross(x2 - x0);
+    const double twice_area = normal.norm();
+    const double energy = 0.5 * rest.tension * twice_area;
+    if (g == nullptr) return energy;
+    if (twice_area == 0) {  // a collapsed triangle has no normal to pull along
+      g->setZero();
+      if (H != nullptr) H->setZero();
+      return energy;
+    }
+    const Vec3 n = normal / twice_area;
+    const Vec3 opposite[3] = {x2 - x1, x0 - x2, x1 - x0};
+    for (int a = 0; a < 3; ++a) g->segment<3>(3 * a) = 0.5 * rest.tension * n.cross(opposite[a]);
+    if (H == nullptr) return energy;
+    // With e_a the edge opposite node a and m_a = n x e_a, the second derivative of the area is
+    // 1/2 [ (e_a . e_b) n n^T + (m_a m_b^T - m_b m_a^T) ] / (2 area): bending out of the plane, and
+    // the shear in the plane that leaves a flat film's area unchanged.
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        const Vec3 m_a = n.cross(opposite[a]), m_b = n.cross(opposite[b]);
+        H->block<3, 3>(3 * a, 3 * b) =
+            0.5 * rest.tension / twice_area *
+            (opposite[a].dot(opposite[b]) * n * n.transpose() + m_a * m_b.transpose() - m_b * m_a.transpose());
+      }
+    return energy;
+  }
+};
+
+}  // namespace coapt

@@ -1,0 +1,39 @@
+// Dead loads: nodal forces that keep size and direction, W = -sum_i f_i . (x_i - X_i).
+// load_field (Burlina et al. 2010, eq. 12: sums of constant force fields, gravity among them) and the
+// frozen model of load_pressure are dead loads with different forces.
+#pragma once
+
+#include "energy/term.hpp"
+
+namespace coapt {
+
+class LoadDead final : public EnergyTerm {
+ public:
+  // forces: 3 x node_count [force]; reference: X, 3 x node_count. Nodes with zero force cost nothing.
+  LoadDead(std::string name, std::string type, const Points& forces, const Points& reference);
+
+  std::string_view type() const override { return type_; }
+  TermRole role() const override { return TermRole::Load; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(const Points& x, Sink& sink) const override;
+
+ private:
+  std::string type_;
+  Stencils stencils_;
+  Points forces_;     // of the loaded nodes, in the order of the stencils
+  Points reference_;  // of the loaded nodes
+};
+
+// Nodal forces of a pressure that stays as it is on X: p/3 of each facet's area vector to its corners.
+// p > 0 pushes along the normals. [force], 3 x node_count.
+Points frozen_pressure_forces(const Points& X, const Triangles& triangles, double p);
+
+// Nodal forces of a constant traction (force per rest area) in a fixed direction: traction vector
+// [force/length^2] times nodal area [length^2].
+Points area_forces(const Vector& nodal_areas, const Vec3& traction);
+
+// Nodal forces of given magnitudes that point to the nearest point of the line through a and b (the
+// commissure line of Burlina et al. 2010, section 3.2). A node on the line gets none.
+Points forces_toward_line(const Points& X, const Vector& magnitudes, const Vec3& a, const Vec3& b);
+
+}  // namespace coapt

@@ -1,0 +1,232 @@
+#include "energy/objective.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+double largest_column_norm(const Points& vectors) {
+  return vectors.cols() == 0 ? 0 : std::sqrt(vectors.colwise().squaredNorm().maxCoeff());
+}
+
+}  // namespace
+
+Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<EnergyTerm>> terms)
+    : x_(std::move(start)), fixed_(std::move(fixed)), terms_(std::move(terms)), block_(x_.cols(), -1) {
+  // Loads first: their nodal forces can then be read off before the internal forces join them.
+  std::stable_partition(terms_.begin(), terms_.end(),
+                        [](const auto& term) { return term->role() == TermRole::Load; });
+  for (int node = 0; node < node_count(); ++node)
+    if (!fixed_.col(node).all()) {
+      block_[node] = static_cast<int>(active_.size());
+      active_.push_back(node);
+      free_count_ += 3 - static_cast<int>(fixed_.col(node).count());
+    }
+  nodal_gradient_.resize(3, x_.cols());
+  if (has_circulatory_force()) dead_ = Points::Zero(3, x_.cols());
+}
+
+Vector Objective::unknowns(const Points& x) const {
+  Vector q(unknown_count());
+  for (size_t k = 0; k < active_.size(); ++k) q.segment<3>(3 * k) = x.col(active_[k]);
+  return q;
+}
+
+Points Objective::positions(const Vector& q) const {
+  Points x = x_;
+  for (size_t k = 0; k < active_.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      if (!fixed_(c, active_[k])) x(c, active_[k]) = q[3 * k + c];
+  return x;
+}
+
+void Objective::prescribe(const Points& x) { x_ = fixed_.select(x, x_); }
+
+void Objective::prepare(const Vector& q) {
+  for (size_t k = 0; k < active_.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      if (!fixed_(c, active_[k])) x_(c, active_[k]) = q[3 * k + c];
+  for (const auto& term : terms_)
+    if (term->prepare(x_)) pattern_is_current_ = false;
+}
+
+void Objective::renew_pattern() {
+  if (pattern_is_current_) return;
+  pattern_ = HessianPattern(terms_, block_, static_cast<int>(active_.size()), fixed_);
+  pattern_is_current_ = true;
+  ++pattern_version_;
+}
+
+// The free part of a nodal gradient becomes the unknowns' gradient; the rest is the reactions.
+void Objective::split(const Points& nodal, Vector& free_part) {
+  free_part.resize(unknown_count());
+  double reaction = 0;
+  for (int node = 0; node < node_count(); ++node) {
+    Vec3 free = nodal.col(node), held = Vec3::Zero();
+    for (int c = 0; c < 3; ++c)
+      if (fixed_(c, node)) std::swap(free[c], held[c]);
+    reaction = std::max(reaction, held.squaredNorm());
+    if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
+  }
+  reaction_scale_ = std::sqrt(reaction);
+}
+
+double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h,
+                           Projection projection) {
+  prepare(q);
+  if (h != nullptr) {
+    renew_pattern();
+    if (h->nonZeros() != pattern_.zero_matrix().nonZeros() || h->rows() != unknown_count() ||
+        !std::equal(h->innerIndexPtr(), h->innerIndexPtr() + h->nonZeros(),
+                    pattern_.zero_matrix().innerIndexPtr()))
+      *h = pattern_.zero_matrix();
+    else
+      std::fill_n(h->valuePtr(), h->nonZeros(), 0.0);
+  }
+  double* gradient = g == nullptr ? nullptr : nodal_gradient_.data();
+  if (gradient != nullptr) {
+    nodal_gradient_.setZero();
+    if (dead_.size() != 0) nodal_gradient_ = -dead_;
+  }
+
+  double energy = dead_.size() == 0 ? 0 : -dead_.cwiseProduct(x_).sum();
+  bool loads_are_complete = false;
+  const auto read_off_loads = [&] {
+    if (gradient != nullptr && !loads_are_complete) load_scale_ = largest_column_norm(nodal_gradient_);
+    loads_are_complete = true;
+  };
+  for (size_t k = 0; k < terms_.size(); ++k) {
+    if (terms_[k]->role() != TermRole::Load) read_off_loads();
+    Sink sink = h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection) : Sink(gradient);
+    energy += terms_[k]->evaluate(x_, sink);
+  }
+  read_off_loads();
+  if (h != nullptr) pattern_.mask(*h);
+  if (gradient == nullptr) return energy;
+
+  split(nodal_gradient_, *g);
+  if (counts_.gradient + counts_.hessian == 0) first_scale_ = largest_column_norm(nodal_gradient_);
+  return energy;
+}
+
+double Objective::value(const Vector& q) {
+  const double energy = evaluate(q, nullptr, nullptr, Projection::None);
+  ++counts_.value;
+  return energy;
+}
+
+double Objective::gradient(const Vector& q, Vector& g) {
+  const double energy = evaluate(q, &g, nullptr, Projection::None);
+  ++counts_.gradient;
+  return energy;
+}
+
+double Objective::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h,
+                          Projection projection) {
+  const double energy = evaluate(q, &g, &h, projection);
+  ++counts_.hessian;
+  return energy;
+}
+
+double Objective::reference_force() const {
+  const double force = std::max(load_scale_, reaction_scale_);
+  return force > 0 ? force : first_scale_;
+}
+
+double Objective::relative_residual(const Vector& g) const {
+  if (!g.allFinite()) return kInfinity;
+  double largest = 0;
+  for (Eigen::Index k = 0; k < g.size(); k += 3) largest = std::max(largest, g.segment<3>(k).squaredNorm());
+  if (largest == 0) return 0;
+  return std::sqrt(largest) / reference_force();
+}
+
+bool Objective::has_circulatory_force() const {
+  return std::any_of(terms_.begin(), terms_.end(),
+                     [](const auto& term) { return term->has_circulatory_force(); });
+}
+
+void Objective::renew(const Vector& q) {
+  prepare(q);
+  dead_.setZero();
+  for (const auto& term : terms_) {
+    if (!term->has_circulatory_force()) continue;
+    if (term->renew(x_)) pattern_is_current_ = false;
+    term->add_circulatory_force(x_, dead_);
+  }
+}
+
+Points Objective::exact_gradient(const Vector& q) {
+  prepare(q);
+  Points g = Points::Zero(3, node_count());
+  Sink sink(g.data());
+  for (const auto& term : terms_) {
+    term->evaluate(x_, sink);
+    if (!term->has_circulatory_force()) continue;
+    Points force = Points::Zero(3, node_count());
+    term->add_circulatory_force(x_, force);
+    g -= force;
+  }
+  return g;
+}
+
+double Objective::true_residual(const Vector& q) {
+  Vector g;
+  gradient(q, g);  // sets the reference force
+  if (!has_circulatory_force()) return relative_residual(g);
+  split(exact_gradient(q), g);
+  return relative_residual(g);
+}
+
+std::vector<TermReport> Objective::breakdown(const Vector& q) {
+  prepare(q);
+  std::vector<TermReport> reports;
+  for (const auto& term : terms_) {
+    nodal_gradient_.setZero();
+    Sink sink(nodal_gradient_.data());
+    const double energy = term->evaluate(x_, sink);
+    if (term->has_circulatory_force()) {
+      Points force = Points::Zero(3, node_count());
+      term->add_circulatory_force(x_, force);
+      nodal_gradient_ -= force;
+    }
+    reports.push_back({term->name(), std::string(term->type()), energy,
+                       largest_column_norm(nodal_gradient_), term->counters()});
+  }
+  return reports;
+}
+
+Points Objective::reactions(const Vector& q) {
+  const Points g = exact_gradient(q);
+  return fixed_.select(g, Points::Zero(3, node_count()));
+}
+
+Balance Objective::balance(const Vector& q) {
+  const Points support = reactions(q);
+  Points load = Points::Zero(3, node_count());
+  Sink sink(load.data());
+  for (const auto& term : terms_) {
+    if (term->role() != TermRole::Load) continue;
+    term->evaluate(x_, sink);
+    Points force = Points::Zero(3, node_count());
+    term->add_circulatory_force(x_, force);
+    load -= force;
+  }
+  load = -load;  // the force on the nodes is minus the gradient of the potential
+  const Vec3 centre = x_.cols() == 0 ? Vec3::Zero() : Vec3(x_.rowwise().mean());
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double force_sum = 0, moment_sum = 0;
+  for (int node = 0; node < node_count(); ++node) {
+    const Vec3 arm = x_.col(node) - centre, f = load.col(node) + support.col(node);
+    force += f;
+    moment += arm.cross(f);
+    force_sum += load.col(node).norm() + support.col(node).norm();
+    moment_sum += arm.norm() * (load.col(node).norm() + support.col(node).norm());
+  }
+  return {force_sum > 0 ? force.norm() / force_sum : 0, moment_sum > 0 ? moment.norm() / moment_sum : 0};
+}
+
+}  // namespace coapt

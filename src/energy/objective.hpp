@@ -1,0 +1,110 @@
+// The potential energy of a scene over its free unknowns: the sum of the terms that were named.
+#pragma once
+
+#include "energy/hessian_pattern.hpp"
+#include "energy/term.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+using FixedMask = Eigen::Array<bool, 3, Eigen::Dynamic>;  // 3 x node_count: true = prescribed
+
+struct EvaluationCounts {
+  long value = 0;     // energy alone
+  long gradient = 0;  // energy and gradient
+  long hessian = 0;   // energy, gradient and Hessian
+};
+
+struct TermReport {
+  std::string name, type;
+  double energy = 0;          // [force x length]
+  double greatest_force = 0;  // largest nodal force of this term [force]
+  TermCounters counters;
+};
+
+// Resultant of the reactions against the loads: both are zero at an equilibrium.
+struct Balance {
+  double force = 0;   // |sum of loads and reactions| / sum of their magnitudes
+  double moment = 0;  // the same for moments about the centre of the mesh
+};
+
+// Unknowns q: the three coordinates of every node that is not wholly prescribed, node after node. A
+// prescribed coordinate of such a node (a symmetry plane) stays in q, keeps its value, and has zero
+// gradient and a unit row in the Hessian. One objective serves one thread; several may run side by side.
+class Objective {
+ public:
+  // start: 3 x node_count, the prescribed coordinates among them. terms: at least none; names unique.
+  // Pre: fixed has as many columns as start; every stencil's nodes are in range.
+  Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<EnergyTerm>> terms);
+
+  int node_count() const { return static_cast<int>(x_.cols()); }
+  int unknown_count() const { return 3 * static_cast<int>(active_.size()); }
+  int free_count() const { return free_count_; }  // unknowns that are not prescribed
+  const FixedMask& fixed() const { return fixed_; }
+  const std::vector<std::unique_ptr<EnergyTerm>>& terms() const { return terms_; }
+
+  Vector unknowns(const Points& x) const;
+  Points positions(const Vector& q) const;
+
+  // Moves the prescribed coordinates to those of x; free coordinates of x are ignored.
+  void prescribe(const Points& x);
+
+  // Energy; with gradient; with gradient and Hessian. +infinity where infeasible.
+  // hessian: lower triangle by blocks, unknown_count square; allocated on the first call and written in
+  // place afterwards, as long as pattern_version() stays.
+  double value(const Vector& q);
+  double gradient(const Vector& q, Vector& g);
+  double hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h,
+                 Projection projection = Projection::None);
+  long pattern_version() const { return pattern_version_; }
+
+  // Out-of-balance force relative to the reference force, from the gradient of the last evaluation:
+  // largest nodal norm of g over reference_force().
+  double relative_residual(const Vector& g) const;
+
+  // Largest load or reaction of the last gradient evaluation [force]; before there is any of either,
+  // the largest force at the first evaluation, so that an unloaded scene has a scale too.
+  double reference_force() const;
+
+  // --- Loads without a potential --------------------------------------------------------------------
+  bool has_circulatory_force() const;
+  // Holds the circulatory remainder dead at its value at q; evaluations then belong to that potential.
+  void renew(const Vector& q);
+  // Residual with the exact load at q, never that of the potential. The final judge of convergence.
+  double true_residual(const Vector& q);
+
+  std::vector<TermReport> breakdown(const Vector& q);
+  // Reactions of the supports, 3 x node_count [force], zero at free coordinates; exact loads.
+  Points reactions(const Vector& q);
+  Balance balance(const Vector& q);
+
+  const EvaluationCounts& counts() const { return counts_; }
+
+ private:
+  double evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h, Projection projection);
+  void prepare(const Vector& q);
+  void renew_pattern();
+  void split(const Points& nodal, Vector& free);
+  Points exact_gradient(const Vector& q);
+
+  Points x_;                 // work space: prescribed coordinates stay, free ones follow q
+  FixedMask fixed_;
+  std::vector<std::unique_ptr<EnergyTerm>> terms_;  // loads first, then as given
+  std::vector<int> active_;  // node of each block of unknowns
+  std::vector<int> block_;   // block of each node, -1 = wholly prescribed
+  int free_count_ = 0;
+
+  Points dead_;              // circulatory force held dead; empty when no term has any
+  Points nodal_gradient_;    // work space
+  double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0;
+
+  HessianPattern pattern_;
+  bool pattern_is_current_ = false;
+  long pattern_version_ = 0;
+  EvaluationCounts counts_;
+};
+
+}  // namespace coapt

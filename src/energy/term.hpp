@@ -1,0 +1,75 @@
+// A term: one physical contribution to the potential energy, summed over many elements.
+#pragma once
+
+#include "core/types.hpp"
+#include "energy/sink.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace coapt {
+
+// Which nodes each element of a term couples: known before any evaluation, so that the Hessian's
+// pattern and the place of every block are computed once.
+struct Stencils {
+  int width = 0;           // nodes per element
+  std::vector<int> nodes;  // element e couples nodes[e * width .. (e + 1) * width)
+
+  int count() const { return width == 0 ? 0 : static_cast<int>(nodes.size()) / width; }
+};
+
+enum class TermRole {
+  Internal,  // elastic: membrane, chord
+  Load,      // applied: pressure, gravity; sets the force that residuals are measured against
+  Contact
+};
+
+// What a term did: proof that a scene pays for nothing that it does not use.
+struct TermCounters {
+  long elements = 0;    // elements of the term (contact: active pairs at the last evaluation)
+  long candidates = 0;  // contact: pairs in the candidate list
+  long searches = 0;    // contact: how often the list was renewed
+};
+
+class EnergyTerm {
+ public:
+  explicit EnergyTerm(std::string name) : name_(std::move(name)) {}
+  virtual ~EnergyTerm() = default;
+  EnergyTerm(const EnergyTerm&) = delete;
+  EnergyTerm& operator=(const EnergyTerm&) = delete;
+
+  const std::string& name() const { return name_; }  // unique within a scene
+  virtual std::string_view type() const = 0;         // as in the scene file
+  virtual TermRole role() const = 0;
+  virtual const Stencils& stencils() const = 0;
+
+  // The energy [force x length] at node positions x (3 x node_count); pours the derivatives that the
+  // sink wants into it. A pure function of x: calling it never changes what a later call returns.
+  // Infeasible positions give +infinity.
+  virtual double evaluate(const Points& x, Sink& sink) const = 0;
+
+  // Makes ready for an evaluation at x (contact renews its list of candidates). Returns whether the
+  // stencils changed. Never changes a value: what is not in the list contributes exactly zero.
+  virtual bool prepare(const Points& /*x*/) { return false; }
+
+  // --- Loads without a potential -------------------------------------------------------------------
+  // A circulatory force depends on the positions and is no gradient (pressure on a free edge). Such a
+  // term splits its load in two: evaluate() gives a potential whose force is close to the true one,
+  // add_circulatory_force() the exact remainder.
+  virtual bool has_circulatory_force() const { return false; }
+
+  // Adds the exact force minus the force of the potential to `force` (3 x node_count).
+  virtual void add_circulatory_force(const Points& /*x*/, Points& /*force*/) const {}
+
+  // Chooses the potential anew for positions near x, to make the remainder vary as little as possible.
+  // Returns whether the stencils changed.
+  virtual bool renew(const Points& /*x*/) { return false; }
+
+  virtual TermCounters counters() const { return {stencils().count(), 0, 0}; }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace coapt

@@ -1,0 +1,101 @@
+// What a solver is, what it is given and what it returns.
+#pragma once
+
+#include "core/timing.hpp"
+#include "energy/objective.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace coapt {
+
+enum class Status {
+  Converged,         // the objective's own residual is below the tolerance
+  IterationLimit,
+  TimeLimit,
+  Stalled,           // no further progress is possible at this precision
+  LineSearchFailed,
+  NonFinite,         // the objective could not be evaluated
+  Cancelled          // by the observer
+};
+
+std::string_view status_name(Status status);  // "converged", "iteration_limit", ...
+
+struct StopRule {
+  double tolerance = 1e-6;        // on the relative residual
+  int max_iterations = 100000;    // of the solver, over all rounds and steps
+  double max_seconds = kInfinity; // wall time
+};
+
+// One accepted iterate.
+struct Iteration {
+  int iteration = 0;
+  int round = 0;         // outer renewal or continuation step
+  double energy = 0;     // of the potential that the solver minimises [force x length]
+  double residual = 0;   // relative, of that potential
+  double step = 0;       // largest change of an unknown [length]
+  double seconds = 0;    // wall time since the start
+  long evaluations = 0;  // of the gradient so far
+};
+
+// Sees every accepted iterate; returning false cancels the run, which keeps that iterate.
+using Observer = std::function<bool(const Iteration&, const Vector& q)>;
+
+class Monitor;
+
+// A minimiser. It owns its method and nothing else: stop rules, trace, time and the verdict stand once,
+// in Monitor and solve().
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual std::string_view name() const = 0;
+  virtual bool needs_hessian() const { return false; }
+
+  // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
+  // accepted iterate, finite whatever happens. Never throws for numerical reasons.
+  virtual Status minimize(Objective& objective, Vector& q, Monitor& monitor) = 0;
+};
+
+// Prescribed motion: positions of the prescribed coordinates at load parameter 0 < t <= 1.
+struct MotionPath {
+  int steps = 1;                             // equal steps in t; at least one
+  std::function<Points(double t)> positions; // 3 x node_count; empty: nothing moves
+};
+
+struct Problem {
+  Objective& objective;
+  Vector q0;
+  MotionPath motion;
+};
+
+struct Result {
+  Vector q;                  // the best iterate: finite, last accepted
+  Status status = Status::Stalled;
+  std::string message;       // one sentence for the user
+  double energy = 0;         // potential energy [force x length]
+  double residual = 0;       // relative, exact loads, measured by the objective after the solver returned
+  int iterations = 0;
+  int rounds = 0;            // outer renewals of a load without potential; 0 = none was needed
+  EvaluationCounts evaluations;
+  long factorisations = 0;
+  std::vector<TermReport> terms;
+  std::vector<Iteration> trace;
+  double wall_s = 0, cpu_s = 0;
+  std::map<std::string, double> phase_s;  // wall time by phase
+};
+
+// Runs a solver on a problem: follows the prescribed motion, renews loads without a potential until the
+// exact residual is small, and judges the outcome by the objective's residual alone.
+Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer = {});
+
+using SolverFactory = std::function<std::unique_ptr<Solver>()>;
+using SolverTable = std::map<std::string, SolverFactory>;
+
+// The solvers of this library: "lbfgs", "bfgs". Adapters add themselves (add_ceres_solver, ...).
+SolverTable built_in_solvers();
+
+}  // namespace coapt

@@ -1,0 +1,52 @@
+// What build() makes of a scene: nodes, terms and motion, and all that a report needs to know of them.
+#pragma once
+
+#include "energy/objective.hpp"
+#include "mesh/triangle_mesh.hpp"
+#include "mesh/valve.hpp"
+#include "optim/solver.hpp"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// One cable or tether of the scene, for reports; indexed as in its term.
+struct Line {
+  int a = 0, b = 0;         // nodes
+  double rest_length = 0;   // [mm]; 0 for a constant-force cable
+  std::string term;         // name of the term that it belongs to
+  int element = 0;          // its element in that term
+};
+
+// Plane-stress membrane properties of one triangle, for strain and stress fields.
+struct MembraneProperties {
+  double young = 0;      // [MPa]
+  double poisson = 0;
+  double thickness = 0;  // [mm]
+  double prestress = 0;  // resultant [N/mm]
+};
+
+// Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions).
+// Lengths in mm, forces in N. Positions are kept relative to `origin` (the centre of the nodes), so that
+// a mesh far from zero loses no digits; add it back on output.
+struct Model {
+  Vec3 origin = Vec3::Zero();              // [mm]
+  Points X;                                // reference positions, 3 x node_count [mm]
+  TriangleMesh mesh;                       // its vertices are the first columns of X
+  std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
+  std::vector<Line> lines;
+  std::vector<MembraneProperties> membrane;      // per triangle; empty without a membrane term
+  double applied_pressure = 0;             // largest pressure of the load terms [MPa]
+  double contact_range = 0;                // [mm]; 0 without a contact term
+  std::unique_ptr<Objective> objective;
+  MotionPath motion;
+  Vector q0;
+  std::optional<TriangleMesh> closed_reference;  // relative to origin too
+  std::vector<std::string> warnings;       // whole sentences
+};
+
+}  // namespace coapt
