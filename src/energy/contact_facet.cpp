@@ -174,7 +174,7 @@ class ContactFacet final : public EnergyTerm {
     const double reach = options_.range + skin_;
     const double largest = radius.maxCoeff();
     pairs_.clear();
-    std::vector<std::pair<Tree::IndexType, double> > found;
+    std::vector<std::pair<std::uint32_t, double> > found;
     for (int j = 0; j < triangles_.cols(); ++j) {
       const double search_radius = reach + radius[j] + largest;
       tree.radiusSearch(cloud.points.col(j).data(), search_radius * search_radius, found,
