@@ -144,16 +144,25 @@ class ContactFacet final : public EnergyTerm {
   }
 
   double evaluate(const Points& x, Sink& sink) const override {
+    const Spheres spheres = bounding_spheres(x);
     double energy = 0;
     active_pairs_ = 0;
-    for (size_t pair = 0; pair < pairs_.size(); ++pair)
+    for (size_t pair = 0; pair < pairs_.size(); ++pair) {
+      const auto [j, k] = pairs_[pair];
+      const double reach = options_.range + spheres.radii[j] + spheres.radii[k];
+      if ((spheres.centres.col(j) - spheres.centres.col(k)).squaredNorm() > 1.001 * reach * reach) continue;
       energy += evaluate_pair(x, static_cast<long>(pair), sink);
+    }
     return energy;
   }
 
  private:
   struct Pair {
     int j, k;
+  };
+  struct Spheres {
+    Points centres;
+    Vector radii;
   };
 
   void search(const Points& x) {
