@@ -165,18 +165,25 @@ class ContactFacet final : public EnergyTerm {
     Vector radii;
   };
 
-  void search(const Points& x) {
-    ++searches_;
-    searched_at_ = x;
-    CentroidCloud cloud{Points(3, triangles_.cols())};
-    Vector radius(triangles_.cols());
+  // Around each facet's centroid: a cheap way to see that two facets are out of range.
+  Spheres bounding_spheres(const Points& x) const {
+    Spheres spheres{Points(3, triangles_.cols()), Vector(triangles_.cols())};
     for (int t = 0; t < triangles_.cols(); ++t) {
       const Vec3 a = x.col(triangles_(0, t)), b = x.col(triangles_(1, t)), c = x.col(triangles_(2, t));
       const Vec3 centroid = (a + b + c) / 3;
-      cloud.points.col(t) = centroid;
-      radius[t] = std::sqrt(std::max(
+      spheres.centres.col(t) = centroid;
+      spheres.radii[t] = std::sqrt(std::max(
           {(a - centroid).squaredNorm(), (b - centroid).squaredNorm(), (c - centroid).squaredNorm()}));
     }
+    return spheres;
+  }
+
+  void search(const Points& x) {
+    ++searches_;
+    searched_at_ = x;
+    const Spheres spheres = bounding_spheres(x);
+    const CentroidCloud cloud{spheres.centres};
+    const Vector& radius = spheres.radii;
     using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, CentroidCloud>,
                                                      CentroidCloud, 3>;
     const Tree tree(3, cloud);
