@@ -72,8 +72,10 @@ TEST(CstStVK, PassesTheSuiteWithPrestress) {
 }
 TEST(CstStVK, AgreesWithAutomaticDifferentiation) {
   for (const double prestress : {0.0, 0.6})
-    for (const auto& f : {deformation(1.3, 0, 1.15), deformation(1.05, 0.4, 1.1), deformation(0.85, 0.1, 0.9)})
-      EXPECT_EQ(compare_with_autodiff(membrane_case("membrane", f, prestress), membrane_oracle(prestress)), "");
+    for (const auto& f :
+         {deformation(1.3, 0, 1.15), deformation(1.05, 0.4, 1.1), deformation(0.85, 0.1, 0.9)})
+      EXPECT_EQ(compare_with_autodiff(membrane_case("membrane", f, prestress), membrane_oracle(prestress)),
+                "");
 }
 
 Segments chain() {
@@ -89,8 +91,9 @@ Points chain_at_rest(double length) {  // all segments at or below `length`
 }
 
 template <typename Kernel>
-TermCase line_case(const std::string& label, const std::function<typename Kernel::Rest(const Frame&)>& rest_of,
-                   double rest_length, double stretch) {
+TermCase line_case(const std::string& label,
+                   const std::function<typename Kernel::Rest(const Frame&)>& rest_of, double rest_length,
+                   double stretch) {
   TermCase c;
   c.label = label;
   c.rest = 0.7 * chain_at_rest(rest_length);

@@ -5,10 +5,10 @@
 #include "core/types.hpp"
 
 #include <Eigen/Dense>
-#include <unsupported/Eigen/AutoDiff>
 
 #include <array>
 #include <cmath>
+#include <unsupported/Eigen/AutoDiff>
 #include <vector>
 
 namespace coapt {

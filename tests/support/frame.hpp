@@ -16,9 +16,9 @@ namespace coapt {
 struct Frame {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Vec3 translation = Vec3::Zero();
-  double length = 1;       // units of length
-  double force = 1;        // units of force
-  std::vector<int> order;  // new number of each node; empty: as it was
+  double length = 1;           // units of length
+  double force = 1;            // units of force
+  std::vector<int> order;      // new number of each node; empty: as it was
   bool turns_corners = false;  // the corners of triangle t are turned cyclically by t
 
   int node(int old) const { return order.empty() ? old : order[old]; }

@@ -50,7 +50,8 @@ TriangleMesh disc_mesh(int rings) {
       for (int k = 0; k < r; ++k) {
         const int outer = sector * r + k, inner = sector * (r - 1) + k;
         mesh.triangles.col(t++) << node(r - 1, inner), node(r, outer), node(r, outer + 1);
-        if (k + 1 < r) mesh.triangles.col(t++) << node(r - 1, inner), node(r, outer + 1), node(r - 1, inner + 1);
+        if (k + 1 < r)
+          mesh.triangles.col(t++) << node(r - 1, inner), node(r, outer + 1), node(r - 1, inner + 1);
       }
   return mesh;
 }

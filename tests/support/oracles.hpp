@@ -81,7 +81,8 @@ struct CubicTethers {
     T energy = T(0.0);
     for (Eigen::Index e = 0; e < segments.cols(); ++e) {
       const T excess = T(norm(AutoVec<T>(x[segments(1, e)] - x[segments(0, e)])) - T(length));
-      if (number(excess) > 0) energy = T(energy + times(strength / (scale * scale * scale), power(excess, 3)));
+      if (number(excess) > 0)
+        energy = T(energy + times(strength / (scale * scale * scale), power(excess, 3)));
     }
     return energy;
   }
@@ -223,8 +224,7 @@ struct FacetRepulsion {
   AutoVec<T> at(const std::vector<AutoVec<T>>& x, int facet, const Vec3& barycentric) const {
     AutoVec<T> point = {T(0.0), T(0.0), T(0.0)};
     for (int a = 0; a < 3; ++a)
-      for (int c = 0; c < 3; ++c)
-        point[c] = T(point[c] + times(barycentric[a], x[triangles(a, facet)][c]));
+      for (int c = 0; c < 3; ++c) point[c] = T(point[c] + times(barycentric[a], x[triangles(a, facet)][c]));
     return point;
   }
 

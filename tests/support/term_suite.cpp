@@ -96,8 +96,8 @@ void examine_differences(EnergyTerm& term, const TermCase& c, const TermValues& 
   findings.require(worst_gradient <= 1e-7, "central difference of the energy against the gradient above 1e-7",
                    worst_gradient);
   if (c.has_hessian)
-    findings.require(worst_hessian <= 1e-7, "central difference of the gradient against the Hessian above 1e-7",
-                     worst_hessian);
+    findings.require(worst_hessian <= 1e-7,
+                     "central difference of the gradient against the Hessian above 1e-7", worst_hessian);
 }
 
 // The assembled Hessian, its mask included, against the dense one.
@@ -105,8 +105,8 @@ void examine_assembly(const TermCase& c, const TermValues& at, Findings& finding
   for (const bool some_are_fixed : {false, true}) {
     FixedMask fixed = FixedMask::Constant(3, c.state.cols(), false);
     if (some_are_fixed) {
-      fixed.col(0).setConstant(true);                  // a node without unknowns
-      fixed(1, fixed.cols() - 1) = true;               // a symmetry plane
+      fixed.col(0).setConstant(true);     // a node without unknowns
+      fixed(1, fixed.cols() - 1) = true;  // a symmetry plane
     }
     std::vector<std::unique_ptr<EnergyTerm>> terms;
     terms.push_back(c.make({}));
@@ -165,8 +165,9 @@ void examine_frame(const TermCase& c, const TermValues& at, const Frame& frame, 
                    (seen.gradient - forces).norm() / forces.norm());
   if (what != "units") return;
   const double stiffness = frame.force / frame.length;
-  findings.require((seen.hessian - stiffness * at.hessian).norm() <= tolerance * stiffness * at.hessian.norm(),
-                   "Hessian depends on units", (seen.hessian - stiffness * at.hessian).norm());
+  findings.require(
+      (seen.hessian - stiffness * at.hessian).norm() <= tolerance * stiffness * at.hessian.norm(),
+      "Hessian depends on units", (seen.hessian - stiffness * at.hessian).norm());
 }
 
 bool are_equal(const TermValues& a, const TermValues& b) {
@@ -244,20 +245,23 @@ std::string examine_state(const TermCase& c) {
     const TermValues rest = evaluate_term(*term, c.rest);
     findings.require(std::abs(rest.energy) <= 1e-13 * std::abs(at.energy), "energy at rest is not zero",
                      rest.energy);
-    findings.require(rest.gradient.norm() <= 1e-13 * scale, "force at rest is not zero", rest.gradient.norm());
+    findings.require(rest.gradient.norm() <= 1e-13 * scale, "force at rest is not zero",
+                     rest.gradient.norm());
   }
   // One history goes straight to the state, the other wanders: small and large moves, there and back.
   const auto traveller = c.make({});
   const Eigen::Index nodes = c.state.cols();
   for (double step : {0.01, 0.5, 20.0, 0.003, 1000.0, 1.0}) {
-    const Points elsewhere = c.state + step * c.reach * unit_direction(nodes, static_cast<unsigned>(1000 * step));
+    const Points elsewhere =
+        c.state + step * c.reach * unit_direction(nodes, static_cast<unsigned>(1000 * step));
     evaluate_term(*traveller, elsewhere);
     energy_of(*traveller, elsewhere + 0.01 * (c.state - c.rest));
   }
   const TermValues arrived = evaluate_term(*traveller, c.state);
   findings.require(are_equal(arrived, at), "values depend on the history", arrived.energy - at.energy);
   findings.require(are_equal(evaluate_term(*traveller, c.state), at), "values change when asked twice", 0);
-  findings.require(energy_of(*traveller, c.state) == at.energy, "energy alone differs from that with derivatives",
+  findings.require(energy_of(*traveller, c.state) == at.energy,
+                   "energy alone differs from that with derivatives",
                    energy_of(*traveller, c.state) - at.energy);
   findings.require(gradient_of(*traveller, c.state) == at.gradient,
                    "gradient alone differs from that with the Hessian", 0);

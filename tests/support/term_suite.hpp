@@ -26,13 +26,13 @@ struct TermCase {
   std::string label;
   // Builds the term as seen from a frame: with frame.points(X), frame.triangles(T), moduli in its units.
   std::function<std::unique_ptr<EnergyTerm>(const Frame&)> make;
-  Points rest;   // X, 3 x node_count
-  Points state;  // where derivatives are tested: the term is active there
+  Points rest;       // X, 3 x node_count
+  Points state;      // where derivatives are tested: the term is active there
   double reach = 1;  // largest step of the ladders [length]: within it no cut-off or kink is crossed
-  bool is_zero_at_rest = true;         // energy and force vanish at X
-  bool ignores_rigid_motion = true;    // of the current positions alone
-  bool has_hessian = true;             // false: the second derivative has a kink or is zero at the state
-  double far_away = 100;               // distance for the test of translation [length]
+  bool is_zero_at_rest = true;       // energy and force vanish at X
+  bool ignores_rigid_motion = true;  // of the current positions alone
+  bool has_hessian = true;           // false: the second derivative has a kink or is zero at the state
+  double far_away = 100;             // distance for the test of translation [length]
 };
 
 // Energy, gradient (3 x node_count) and full dense Hessian, assembled without Objective.
