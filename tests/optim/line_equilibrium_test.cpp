@@ -21,8 +21,8 @@ double root(const Function& f, double low, double high) {
 }
 
 std::unique_ptr<EnergyTerm> tether(double length, double strength, double scale) {
-  return std::make_unique<ElementTerm<TetherCubic>>("tether", std::vector<int>{0, 1},
-                                                    std::vector<TetherCubic::Rest>{{strength, length, scale}});
+  return std::make_unique<ElementTerm<TetherCubic>>(
+      "tether", std::vector<int>{0, 1}, std::vector<TetherCubic::Rest>{{strength, length, scale}});
 }
 
 std::unique_ptr<LoadDead> weight_on(const Points& X, int node, const Vec3& force) {
@@ -87,7 +87,7 @@ TEST(Lines, WithCoincidentEndsGiveNoNaN) {
 
 // A chain of n links between two points at distance 1 on the level.
 struct Chain {
-  Points X;         // rest: a parabola a little above the answer, links then stretched to their length
+  Points X;  // rest: a parabola a little above the answer, links then stretched to their length
   Segments links;
   FixedMask fixed;
 
@@ -107,11 +107,11 @@ double hung_sag(int n) {
   Points weights = Points::Zero(3, n + 1);
   for (int k = 0; k < n; ++k)
     for (int end : {k, k + 1}) weights(2, end) -= 0.5 / n;
-  const Equilibrium found = find_equilibrium(
-      chain.X, chain.fixed,
-      terms_of(cable_term(chain.links, 1e6, Vector::Constant(n, 1.2 / n)),
-               std::make_unique<LoadDead>("weight", "load_field", weights, chain.X)),
-      1e-9, "bfgs");
+  const Equilibrium found =
+      find_equilibrium(chain.X, chain.fixed,
+                       terms_of(cable_term(chain.links, 1e6, Vector::Constant(n, 1.2 / n)),
+                                std::make_unique<LoadDead>("weight", "load_field", weights, chain.X)),
+                       1e-9, "bfgs");
   EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
   return -found.x.row(2).minCoeff();
 }
@@ -168,10 +168,9 @@ TEST(Wire, C5DeflectsUnderACentralLoadFromASingularStart) {
   X << -0.5, 0, 0.5, 0, 0, 0, 0, 0, 0;
   Segments bars(2, 2);
   bars << 0, 1, 1, 2;
-  const Equilibrium found =
-      find_equilibrium(X, fixed_nodes(3, {0, 2}),
-                       terms_of(cable_term(bars, 100, Vector::Constant(2, 0.5)),
-                                weight_on(X, 1, Vec3(0, 0, -0.1))), 1e-11);
+  const Equilibrium found = find_equilibrium(
+      X, fixed_nodes(3, {0, 2}),
+      terms_of(cable_term(bars, 100, Vector::Constant(2, 0.5)), weight_on(X, 1, Vec3(0, 0, -0.1))), 1e-11);
   ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
   // 2 EA (l - r)/r sin(a) = P with l = sqrt(r^2 + d^2), sin(a) = d/l
   const double deflection = root(
