@@ -48,8 +48,8 @@ struct Equilibrium {
 };
 
 // Solves from `start` with a solver of the built-in table; prescribed coordinates are those of `start`.
-Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms terms, double tolerance = 1e-9,
-                             const std::string& solver = "lbfgs");
+Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms terms,
+                             double tolerance = 1e-9, const std::string& solver = "lbfgs");
 
 // Order of convergence from errors on two meshes, the second `ratio` times finer.
 double observed_order(double coarse_error, double fine_error, double ratio = 2);
