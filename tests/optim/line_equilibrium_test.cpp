@@ -21,8 +21,8 @@ double root(const Function& f, double low, double high) {
 }
 
 std::unique_ptr<EnergyTerm> tether(double length, double strength, double scale) {
-  return std::make_unique<ElementTerm<TetherCubic>>("tether", std::vector<int>{0, 1},
-                                                    std::vector<TetherCubic::Rest>{{strength, length, scale}});
+  return std::make_unique<ElementTerm<TetherCubic>>(
+      "tether", std::vector<int>{0, 1}, std::vector<TetherCubic::Rest>{{strength, length, scale}});
 }
 
 std::unique_ptr<LoadDead> weight_on(const Points& X, int node, const Vec3& force) {
@@ -50,17 +50,16 @@ TEST(Tether, C1CarriesAWeightAtTheClosedFormLength) {
 
 TEST(Tether, C1sContributesExactlyNothingWhenSlack) {
   for (const double d : {0.999999, 0.5, 0.0}) {
-    for (const double length : {1.0}) {
-      Eigen::Vector<double, 6> x, g;
-      x << 0.3, 0.2, 0.1, 0.3 + d * 0.6, 0.2, 0.1 + d * 0.8;
-      Eigen::Matrix<double, 6, 6> H;
-      EXPECT_EQ(TetherCubic::evaluate({2, length, 0.5}, x, &g, &H), 0);
-      EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(Cable::evaluate({2, length, 0, 0}, x, &g, &H), 0);
-      EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
-    }
+    const double length = 1;
+    Eigen::Vector<double, 6> x, g;
+    x << 0.3, 0.2, 0.1, 0.3 + d * 0.6, 0.2, 0.1 + d * 0.8;
+    Eigen::Matrix<double, 6, 6> H;
+    EXPECT_EQ(TetherCubic::evaluate({2, length, 0.5}, x, &g, &H), 0);
+    EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(Cable::evaluate({2, length, 0, 0}, x, &g, &H), 0);
+    EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
   }
 }
 
@@ -87,7 +86,7 @@ TEST(Lines, WithCoincidentEndsGiveNoNaN) {
 
 // A chain of n links between two points at distance 1 on the level.
 struct Chain {
-  Points X;         // rest: a parabola a little above the answer, links then stretched to their length
+  Points X;  // rest: a parabola a little above the answer, links then stretched to their length
   Segments links;
   FixedMask fixed;
 
@@ -111,7 +110,7 @@ double hung_sag(int n) {
       chain.X, chain.fixed,
       terms_of(cable_term(chain.links, 1e6, Vector::Constant(n, 1.2 / n)),
                std::make_unique<LoadDead>("weight", "load_field", weights, chain.X)),
-      1e-9, "bfgs");
+      1e-7, "bfgs");  // EA epsilon / link length: forces of stiff links are known to some 1e-9
   EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
   return -found.x.row(2).minCoeff();
 }
@@ -147,12 +146,12 @@ TEST(Chain, C3bOfRigidLinksMatchesTheDiscreteSolution) {
   const Chain chain(n, n * length);
   Points weights = Points::Zero(3, n + 1);
   weights.row(2).segment(1, n - 1).setConstant(-1);
-  const double stiffness = 1e8;  // EA/r of each link: its elongation T/k is 1e-7
+  const double stiffness = 1e9;  // EA/r of each link: its elongation T/k is 1e-8
   Terms terms = terms_of(cable_term(chain.links, stiffness * length, Vector::Constant(n, length)),
                          std::make_unique<LoadDead>("weight", "load_field", weights, chain.X));
   Objective objective(chain.X, chain.fixed, std::move(terms));
   StopRule stop;
-  stop.tolerance = 1e-8;
+  stop.tolerance = 1e-7;  // k epsilon is 2e-7 of a force of 12
   const Result result =
       solve(*built_in_solvers().at("bfgs")(), {objective, objective.unknowns(chain.X), {}}, stop);
   ASSERT_EQ(result.status, Status::Converged) << result.message;
@@ -160,7 +159,7 @@ TEST(Chain, C3bOfRigidLinksMatchesTheDiscreteSolution) {
   EXPECT_NEAR(-x.row(2).minCoeff() / sag, 1, 1e-6);
   EXPECT_NEAR(std::abs(support(0, 0)) / H, 1, 1e-6);
   EXPECT_NEAR(support.col(n).norm() / std::hypot(H, 9.5), 1, 1e-6);
-  EXPECT_LT(objective.balance(result.q).force, 1e-8);
+  EXPECT_LT(objective.balance(result.q).force, 1e-6);
 }
 
 TEST(Wire, C5DeflectsUnderACentralLoadFromASingularStart) {
@@ -168,10 +167,9 @@ TEST(Wire, C5DeflectsUnderACentralLoadFromASingularStart) {
   X << -0.5, 0, 0.5, 0, 0, 0, 0, 0, 0;
   Segments bars(2, 2);
   bars << 0, 1, 1, 2;
-  const Equilibrium found =
-      find_equilibrium(X, fixed_nodes(3, {0, 2}),
-                       terms_of(cable_term(bars, 100, Vector::Constant(2, 0.5)),
-                                weight_on(X, 1, Vec3(0, 0, -0.1))), 1e-11);
+  const Equilibrium found = find_equilibrium(
+      X, fixed_nodes(3, {0, 2}),
+      terms_of(cable_term(bars, 100, Vector::Constant(2, 0.5)), weight_on(X, 1, Vec3(0, 0, -0.1))), 1e-11);
   ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
   // 2 EA (l - r)/r sin(a) = P with l = sqrt(r^2 + d^2), sin(a) = d/l
   const double deflection = root(
