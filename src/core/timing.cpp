@@ -1,9 +1,8 @@
 #include "core/timing.hpp"
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <ctime>
+#include <sys/resource.h>
 
 namespace coapt {
 

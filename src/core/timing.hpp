@@ -6,9 +6,9 @@
 
 namespace coapt {
 
-double wall_seconds();     // monotonic clock [s]
-double cpu_seconds();      // CPU time of the process [s]
-double peak_memory_mb();   // largest resident size of the process so far [MB]
+double wall_seconds();    // monotonic clock [s]
+double cpu_seconds();     // CPU time of the process [s]
+double peak_memory_mb();  // largest resident size of the process so far [MB]
 
 // Wall time by phase [s], summed over all visits.
 class PhaseTimes {

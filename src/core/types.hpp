@@ -8,10 +8,10 @@
 
 namespace coapt {
 
-using Vector = Eigen::VectorXd;         // unknowns or gradient entries
-using Points = Eigen::Matrix3Xd;        // node positions, 3 x node_count [length]
-using Triangles = Eigen::Matrix3Xi;     // corner nodes, 3 x triangle_count, 0-based
-using Segments = Eigen::Matrix2Xi;      // end nodes, 2 x segment_count, 0-based
+using Vector = Eigen::VectorXd;      // unknowns or gradient entries
+using Points = Eigen::Matrix3Xd;     // node positions, 3 x node_count [length]
+using Triangles = Eigen::Matrix3Xi;  // corner nodes, 3 x triangle_count, 0-based
+using Segments = Eigen::Matrix2Xi;   // end nodes, 2 x segment_count, 0-based
 using Vec3 = Eigen::Vector3d;
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -16,18 +16,18 @@
 namespace coapt {
 
 struct ContactFacetOptions {
-  double range = 0;         // delta [length]
-  double exponent = 2;      // n >= 2 for a continuous stiffness at d = delta is 3; 2 gives a kink in it
-  double strength = 0;      // C [force/length^3]
-  int quadrature = 3;       // points per (sub)triangle: 1, 3 or 6 (exact to degree 1, 2, 4)
-  int subdivision = 1;      // the rule is applied to subdivision^2 congruent parts of each facet
+  double range = 0;     // delta [length]
+  int exponent = 3;     // n; the stiffness is continuous at d = delta from n = 3 on, 2 is the source's
+  double strength = 0;  // C [force/length^3]
+  int quadrature = 3;   // points per (sub)triangle: 1, 3 or 6 (exact to degree 1, 2, 4)
+  int subdivision = 1;  // the rule is applied to subdivision^2 congruent parts of each facet
 };
 
 // The greatest pressure that two parallel sheets can carry, 2 pi C delta n^n/(n+1)^(n+1) [force/length^2].
-double contact_facet_capacity(double strength, double range, double exponent);
+double contact_facet_capacity(double strength, double range, int exponent);
 
 // The strength whose capacity is margin times the applied pressure.
-double contact_facet_strength(double pressure, double range, double exponent, double margin);
+double contact_facet_strength(double pressure, double range, int exponent, double margin);
 
 // X: 3 x node_count rest positions; triangles: the facets. Needs nanoflann; a build without it throws
 // InputError. Throws InputError when an option is out of range, naming it.

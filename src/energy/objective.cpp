@@ -124,8 +124,7 @@ double Objective::gradient(const Vector& q, Vector& g) {
   return energy;
 }
 
-double Objective::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h,
-                          Projection projection) {
+double Objective::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h, Projection projection) {
   const double energy = evaluate(q, &g, &h, projection);
   ++counts_.hessian;
   return energy;
@@ -193,8 +192,8 @@ std::vector<TermReport> Objective::breakdown(const Vector& q) {
       term->add_circulatory_force(x_, force);
       nodal_gradient_ -= force;
     }
-    reports.push_back({term->name(), std::string(term->type()), energy,
-                       largest_column_norm(nodal_gradient_), term->counters()});
+    reports.push_back({term->name(), std::string(term->type()), energy, largest_column_norm(nodal_gradient_),
+                       term->counters()});
   }
   return reports;
 }

@@ -90,15 +90,15 @@ class Objective {
   void split(const Points& nodal, Vector& free);
   Points exact_gradient(const Vector& q);
 
-  Points x_;                 // work space: prescribed coordinates stay, free ones follow q
+  Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
   std::vector<std::unique_ptr<EnergyTerm>> terms_;  // loads first, then as given
-  std::vector<int> active_;  // node of each block of unknowns
-  std::vector<int> block_;   // block of each node, -1 = wholly prescribed
+  std::vector<int> active_;                         // node of each block of unknowns
+  std::vector<int> block_;                          // block of each node, -1 = wholly prescribed
   int free_count_ = 0;
 
-  Points dead_;              // circulatory force held dead; empty when no term has any
-  Points nodal_gradient_;    // work space
+  Points dead_;            // circulatory force held dead; empty when no term has any
+  Points nodal_gradient_;  // work space
   double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0;
 
   HessianPattern pattern_;

@@ -7,8 +7,8 @@ namespace coapt {
 
 // How element Hessians enter the assembled one.
 enum class Projection {
-  None,                // exact; may be indefinite
-  PositiveSemidefinite // each element's negative eigenvalues set to zero (Teran et al. 2005)
+  None,                 // exact; may be indefinite
+  PositiveSemidefinite  // each element's negative eigenvalues set to zero (Teran et al. 2005)
 };
 
 // Place of one 3x3 block in the values of a column-compressed matrix. Row r, column c of the block

@@ -29,6 +29,7 @@ class Monitor {
 
   // --- for solve() -------------------------------------------------------------------------------------
   void begin_round(int round, double tolerance);
+  int round() const { return round_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
   double seconds() const { return wall_seconds() - start_; }

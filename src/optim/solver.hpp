@@ -14,21 +14,21 @@
 namespace coapt {
 
 enum class Status {
-  Converged,         // the objective's own residual is below the tolerance
+  Converged,  // the objective's own residual is below the tolerance
   IterationLimit,
   TimeLimit,
-  Stalled,           // no further progress is possible at this precision
+  Stalled,  // no further progress is possible at this precision
   LineSearchFailed,
-  NonFinite,         // the objective could not be evaluated
-  Cancelled          // by the observer
+  NonFinite,  // the objective could not be evaluated
+  Cancelled   // by the observer
 };
 
 std::string_view status_name(Status status);  // "converged", "iteration_limit", ...
 
 struct StopRule {
-  double tolerance = 1e-6;        // on the relative residual
-  int max_iterations = 100000;    // of the solver, over all rounds and steps
-  double max_seconds = kInfinity; // wall time
+  double tolerance = 1e-6;         // on the relative residual
+  int max_iterations = 100000;     // of the solver, over all rounds and steps
+  double max_seconds = kInfinity;  // wall time
 };
 
 // One accepted iterate.
@@ -62,8 +62,8 @@ class Solver {
 
 // Prescribed motion: positions of the prescribed coordinates at load parameter 0 < t <= 1.
 struct MotionPath {
-  int steps = 1;                             // equal steps in t; at least one
-  std::function<Points(double t)> positions; // 3 x node_count; empty: nothing moves
+  int steps = 1;                              // equal steps in t; at least one
+  std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
 };
 
 struct Problem {
@@ -73,13 +73,13 @@ struct Problem {
 };
 
 struct Result {
-  Vector q;                  // the best iterate: finite, last accepted
+  Vector q;  // the best iterate: finite, last accepted
   Status status = Status::Stalled;
-  std::string message;       // one sentence for the user
-  double energy = 0;         // potential energy [force x length]
-  double residual = 0;       // relative, exact loads, measured by the objective after the solver returned
+  std::string message;  // one sentence for the user
+  double energy = 0;    // potential energy [force x length]
+  double residual = 0;  // relative, exact loads, measured by the objective after the solver returned
   int iterations = 0;
-  int rounds = 0;            // outer renewals of a load without potential; 0 = none was needed
+  int rounds = 0;  // outer renewals of a load without potential; 0 = none was needed
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;

@@ -40,9 +40,9 @@ struct SurfaceTension {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) {
         const Vec3 m_a = n.cross(opposite[a]), m_b = n.cross(opposite[b]);
-        H->block<3, 3>(3 * a, 3 * b) =
-            0.5 * rest.tension / twice_area *
-            (opposite[a].dot(opposite[b]) * n * n.transpose() + m_a * m_b.transpose() - m_b * m_a.transpose());
+        H->block<3, 3>(3 * a, 3 * b) = 0.5 * rest.tension / twice_area *
+                                       (opposite[a].dot(opposite[b]) * n * n.transpose() +
+                                        m_a * m_b.transpose() - m_b * m_a.transpose());
       }
     return energy;
   }

@@ -1,0 +1,138 @@
+#include "energy/load_pressure.hpp"
+
+#include "core/error.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/facet_volume.hpp"
+#include "energy/load_dead.hpp"
+#include "energy/rim_fan.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace coapt {
+namespace {
+
+std::vector<int> corner_list(const Triangles& triangles) {
+  return {triangles.data(), triangles.data() + triangles.size()};
+}
+
+bool is_wholly_fixed(const std::vector<int>& nodes, const FixedMask& fixed) {
+  return std::all_of(nodes.begin(), nodes.end(), [&](int node) { return fixed.col(node).all(); });
+}
+
+std::vector<std::vector<int>> moving_rims(const Triangles& triangles, const FixedMask& fixed) {
+  std::vector<std::vector<int>> loops = boundary_loops(triangles);
+  std::erase_if(loops, [&](const auto& loop) { return is_wholly_fixed(loop, fixed); });
+  return loops;
+}
+
+// An origin for which the potential is right although rims slide: seen from it, every moving rim edge
+// spans a triangle within a coordinate plane that the edge cannot leave. Nothing when there is none.
+std::optional<Vec3> sliding_origin(const Points& X, const std::vector<std::vector<int>>& rims,
+                                   const FixedMask& fixed) {
+  Vec3 origin = X.cols() == 0 ? Vec3::Zero() : Vec3(X.rowwise().mean());
+  std::array<bool, 3> is_set = {false, false, false};
+  const double tolerance = 1e-9 * bounding_box_diagonal(X);
+  for (const auto& rim : rims)
+    for (size_t k = 0; k < rim.size(); ++k) {
+      const int a = rim[k], b = rim[(k + 1) % rim.size()];
+      if (fixed.col(a).all() && fixed.col(b).all()) continue;
+      bool is_held = false;
+      for (int c = 0; c < 3 && !is_held; ++c) {
+        if (!fixed(c, a) || !fixed(c, b) || std::abs(X(c, a) - X(c, b)) > tolerance) continue;
+        if (is_set[c] && std::abs(origin[c] - X(c, a)) > tolerance) continue;
+        origin[c] = X(c, a);
+        is_held = is_set[c] = true;
+      }
+      if (!is_held) return std::nullopt;
+    }
+  return origin;
+}
+
+std::unique_ptr<EnergyTerm> volume_term(std::string name, const Triangles& triangles, double p,
+                                        const Vec3& origin) {
+  return std::make_unique<ElementTerm<FacetVolume>>(
+      std::move(name), corner_list(triangles),
+      std::vector<FacetVolume::Rest>(static_cast<size_t>(triangles.cols()), {p, origin}));
+}
+
+// The surface closed by fans over its moving rims carries the potential; the fans' own force, which no
+// membrane is there to feel, is the circulatory remainder, and is taken off exactly.
+class LoadPressureFollower final : public EnergyTerm {
+ public:
+  LoadPressureFollower(std::string name, const Points& X, const Triangles& triangles, double p,
+                       std::vector<std::vector<int>> rims)
+      : EnergyTerm(std::move(name)),
+        triangles_(triangles),
+        rims_(std::move(rims)),
+        rest_{p, Vec3(X.rowwise().mean())} {
+    set_fans(X);
+  }
+
+  std::string_view type() const override { return FacetVolume::kType; }
+  TermRole role() const override { return TermRole::Load; }
+  const Stencils& stencils() const override { return closed_->stencils(); }
+  double evaluate(const Points& x, Sink& sink) const override { return closed_->evaluate(x, sink); }
+  bool has_circulatory_force() const override { return true; }
+  TermCounters counters() const override { return {triangles_.cols(), 0, 0}; }
+
+  void add_circulatory_force(const Points& x, Points& force) const override {
+    Points potential_gradient = Points::Zero(3, x.cols());
+    Sink sink(potential_gradient.data());
+    closed_->evaluate(x, sink);
+    force += follower_pressure_forces(x, triangles_, rest_.pressure) + potential_gradient;
+  }
+
+  bool renew(const Points& x) override {
+    set_fans(x);
+    return true;
+  }
+
+ private:
+  void set_fans(const Points& x) {
+    std::vector<int> corners = corner_list(triangles_);
+    for (const auto& rim : rims_) {
+      if (rim.size() < 3) continue;
+      const std::vector<int> fan = corner_list(close_rim(x, rim));
+      corners.insert(corners.end(), fan.begin(), fan.end());
+    }
+    const size_t count = corners.size() / 3;
+    closed_.emplace(name(), std::move(corners), std::vector<FacetVolume::Rest>(count, rest_));
+  }
+
+  Triangles triangles_;
+  std::vector<std::vector<int>> rims_;
+  FacetVolume::Rest rest_;
+  std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans
+};
+
+}  // namespace
+
+Points follower_pressure_forces(const Points& x, const Triangles& triangles, double p) {
+  return frozen_pressure_forces(x, triangles, p);
+}
+
+std::unique_ptr<EnergyTerm> make_volume_pressure(std::string name, const Points& X,
+                                                 const Triangles& triangles, double p,
+                                                 const FixedMask& fixed) {
+  const std::optional<Vec3> origin = sliding_origin(X, moving_rims(triangles, fixed), fixed);
+  if (!origin)
+    throw InputError("term \"" + name +
+                     "\": the pressure model \"volume\" needs a closed surface or a rim that is fixed (or "
+                     "slides within coordinate planes that meet in a point); this surface has a rim that "
+                     "moves freely, where pressure has no potential: use \"model\": \"follower\"");
+  return volume_term(std::move(name), triangles, p, *origin);
+}
+
+std::unique_ptr<EnergyTerm> make_follower_pressure(std::string name, const Points& X,
+                                                   const Triangles& triangles, double p,
+                                                   const FixedMask& fixed) {
+  std::vector<std::vector<int>> rims = moving_rims(triangles, fixed);
+  if (const std::optional<Vec3> origin = sliding_origin(X, rims, fixed))
+    return volume_term(std::move(name), triangles, p, *origin);
+  return std::make_unique<LoadPressureFollower>(std::move(name), X, triangles, p, std::move(rims));
+}
+
+}  // namespace coapt

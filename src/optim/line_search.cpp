@@ -1,0 +1,93 @@
+#include "optim/line_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kSufficientDecrease = 1e-4;
+constexpr double kCurvature = 0.9;
+constexpr double kRoundOff = 1e-12;  // relative noise of an energy sum
+constexpr int kMaxEvaluations = 40;
+
+void evaluate(Monitor& monitor, const LinePoint& from, const Vector& direction, double step, LinePoint& at) {
+  at.step = step;
+  at.q = from.q + step * direction;
+  at.energy = monitor.gradient(at.q, at.g);
+  at.slope = at.g.dot(direction);
+  if (!std::isfinite(at.energy) || !at.g.allFinite()) at.energy = kInfinity;
+}
+
+// Minimiser of the cubic through two points with their slopes (Nocedal & Wright 2006, eq. 3.59), kept
+// away from the ends so that the bracket shrinks.
+double cubic_minimiser(const LinePoint& a, const LinePoint& b) {
+  const double width = b.step - a.step;
+  const double d1 = a.slope + b.slope - 3 * (a.energy - b.energy) / (a.step - b.step);
+  const double radicand = d1 * d1 - a.slope * b.slope;
+  double step = 0.5 * (a.step + b.step);
+  if (std::isfinite(radicand) && radicand >= 0) {
+    const double d2 = std::copysign(std::sqrt(radicand), width);
+    const double candidate = b.step - width * (b.slope + d2 - d1) / (b.slope - a.slope + 2 * d2);
+    if (std::isfinite(candidate)) step = candidate;
+  }
+  const double low = std::min(a.step, b.step), high = std::max(a.step, b.step);
+  const double margin = 0.1 * (high - low);
+  return std::clamp(step, low + margin, high - margin);
+}
+
+}  // namespace
+
+bool search_line(Monitor& monitor, const LinePoint& from, const Vector& direction, double first,
+                 LinePoint& to) {
+  const double noise = kRoundOff * std::abs(from.energy);
+  // Below the noise an energy tells nothing: the slope must then have shrunk instead.
+  const auto descends = [&](const LinePoint& p) {
+    if (p.energy <= from.energy + kSufficientDecrease * p.step * from.slope) return true;
+    return p.energy <= from.energy + noise && p.slope <= (2 * kSufficientDecrease - 1) * from.slope &&
+           p.slope >= kCurvature * from.slope;
+  };
+  const auto is_flat_enough = [&](const LinePoint& p) {
+    return std::abs(p.slope) <= -kCurvature * from.slope;
+  };
+
+  LinePoint low = from;  // best end of the bracket
+  LinePoint high;        // other end, once there is one
+  bool has_high = false;
+  double step = first;
+  for (int k = 0; k < kMaxEvaluations; ++k) {
+    if (monitor.is_out_of_time()) break;
+    evaluate(monitor, from, direction, step, to);
+    if (to.energy == kInfinity) {  // infeasible: come back quickly
+      high = to;
+      has_high = true;
+      step = low.step + 0.1 * (step - low.step);
+      continue;
+    }
+    if (descends(to) && is_flat_enough(to)) return true;
+    const bool is_noise = std::abs(to.energy - low.energy) <= noise;
+    const bool is_worse = is_noise ? to.slope > 0 : !descends(to) || to.energy >= low.energy;
+    if (is_worse) {
+      high = to;
+      has_high = true;
+    } else {
+      if (to.slope * ((has_high ? high.step : kInfinity) - low.step) > 0) {
+        high = low;
+        has_high = true;
+      }
+      low = to;
+    }
+    if (!has_high) {
+      step *= 4;
+    } else if (high.energy == kInfinity) {
+      step = 0.5 * (low.step + high.step);
+    } else {
+      step = cubic_minimiser(low, high);
+    }
+    if (has_high && std::abs(high.step - low.step) <= 1e-14 * std::max(low.step, high.step)) break;
+  }
+  to = low;  // lower than the start, if not flat enough; or the start itself
+  return low.step > 0 && low.energy <= from.energy + noise;
+}
+
+}  // namespace coapt

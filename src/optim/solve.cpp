@@ -1,0 +1,154 @@
+#include "optim/bfgs.hpp"
+#include "optim/lbfgs.hpp"
+#include "optim/monitor.hpp"
+#include "optim/solver.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+constexpr int kMaxRounds = 60;  // renewals of a load without potential
+constexpr int kMaxRoundsWithoutGain = 6;
+constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+// Renews the load that has no potential until the exact residual is small. Each round minimises the
+// potential around the last equilibrium; the remainder contracts geometrically where it settles.
+Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+              int& rounds, std::string& note) {
+  if (!objective.has_circulatory_force()) {
+    monitor.begin_round(monitor.round(), tolerance);
+    return solver.minimize(objective, q, monitor);
+  }
+  Vector best = q;
+  double best_residual = kInfinity, last_residual = kInfinity, contraction = kNaN;
+  int without_gain = 0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    objective.renew(q);
+    const double residual = objective.true_residual(q);
+    if (residual < best_residual) {
+      without_gain = residual < 0.9 * best_residual ? 0 : without_gain + 1;
+      best_residual = residual;
+      best = q;
+    } else {
+      ++without_gain;
+    }
+    if (round > 0) contraction = residual / last_residual;
+    last_residual = residual;
+    if (residual <= tolerance) return Status::Converged;
+    if (without_gain >= kMaxRoundsWithoutGain) break;
+    ++rounds;
+    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.03 * std::min(residual, 1.0)));
+    const Status status = solver.minimize(objective, q, monitor);
+    if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
+        status == Status::NonFinite)
+      return status;
+  }
+  q = best;
+  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
+         number(contraction) + " a round)";
+  return Status::Stalled;
+}
+
+std::string sentence(const Result& result, double tolerance, const std::string& note) {
+  const std::string at = " at residual " + number(result.residual);
+  switch (result.status) {
+    case Status::Converged:
+      return "converged" + at + " (tolerance " + number(tolerance) + ")";
+    case Status::IterationLimit:
+      return "stopped at the iteration limit" + at;
+    case Status::TimeLimit:
+      return "stopped at the time limit" + at;
+    case Status::Cancelled:
+      return "cancelled" + at + "; the last accepted state was kept";
+    case Status::NonFinite:
+      return "the energy or its gradient is not finite; the last finite state was kept";
+    case Status::LineSearchFailed:
+    case Status::Stalled:
+      return "stalled" + at + " (tolerance " + number(tolerance) + ")" + (note.empty() ? "" : ": " + note);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string_view status_name(Status status) {
+  switch (status) {
+    case Status::Converged:
+      return "converged";
+    case Status::IterationLimit:
+      return "iteration_limit";
+    case Status::TimeLimit:
+      return "time_limit";
+    case Status::Stalled:
+      return "stalled";
+    case Status::LineSearchFailed:
+      return "line_search_failed";
+    case Status::NonFinite:
+      return "non_finite";
+    case Status::Cancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer) {
+  Objective& objective = problem.objective;
+  const double cpu_start = cpu_seconds();
+  const EvaluationCounts counts_before = objective.counts();
+  Monitor monitor(objective, stop, observer);
+
+  Result result;
+  result.q = problem.q0;
+  Status status = Status::Converged;
+  std::string note;
+  const int steps = problem.motion.positions ? std::max(1, problem.motion.steps) : 1;
+  for (int step = 1; step <= steps; ++step) {
+    if (problem.motion.positions)
+      objective.prescribe(problem.motion.positions(static_cast<double>(step) / steps));
+    const bool is_last = step == steps;
+    status =
+        settle(solver, objective, result.q, monitor,
+               is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance), result.rounds, note);
+    if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
+        status == Status::NonFinite)
+      break;
+  }
+  // A run that was cut short is still judged, and saved, at the end of the path.
+  if (problem.motion.positions) objective.prescribe(problem.motion.positions(1));
+
+  // The verdict is the objective's, whatever the solver thinks.
+  result.residual = objective.true_residual(result.q);
+  result.energy = objective.value(result.q);
+  if (result.residual <= stop.tolerance && status != Status::Cancelled)
+    status = Status::Converged;
+  else if (status == Status::Converged || status == Status::LineSearchFailed)
+    status = Status::Stalled;
+  result.status = status;
+  result.message = sentence(result, stop.tolerance, note);
+
+  result.iterations = monitor.iterations();
+  result.evaluations = {objective.counts().value - counts_before.value,
+                        objective.counts().gradient - counts_before.gradient,
+                        objective.counts().hessian - counts_before.hessian};
+  result.factorisations = monitor.factorisations();
+  result.terms = objective.breakdown(result.q);
+  result.trace = monitor.take_trace();
+  result.phase_s = monitor.phases().seconds();
+  result.wall_s = monitor.seconds();
+  result.cpu_s = cpu_seconds() - cpu_start;
+  return result;
+}
+
+SolverTable built_in_solvers() {
+  return {{"lbfgs", [] { return make_lbfgs(); }}, {"bfgs", [] { return make_bfgs(); }}};
+}
+
+}  // namespace coapt
