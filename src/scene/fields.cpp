@@ -3,6 +3,8 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/tether_cubic.hpp"
+#include "mesh/triangle_distance.hpp"
+#include "mesh/triangle_tree.hpp"
 
 #include <Eigen/Geometry>
 
@@ -71,7 +73,55 @@ void add_line_forces(const Model& model, Fields& fields) {
     }
 }
 
+// The vertices around each vertex.
+std::vector<std::vector<int>> vertex_neighbours(const Triangles& triangles, Eigen::Index vertex_count) {
+  std::vector<std::vector<int>> neighbours(static_cast<size_t>(vertex_count));
+  for (const Edge& edge : edges(triangles)) {
+    neighbours[edge.a].push_back(edge.b);
+    neighbours[edge.b].push_back(edge.a);
+  }
+  return neighbours;
+}
+
+// Distance from vertex v to the nearest triangle in the box without a marked corner.
+double nearest_unmarked(const TriangleTree& tree, const Points& x, const Triangles& triangles, int v,
+                        double half_size, const std::vector<int>& mark) {
+  const Vec3 p = x.col(v);
+  const Vec3 half = Vec3::Constant(half_size);
+  double nearest = kInfinity;
+  for (const int t : tree.overlapping({p - half, p + half})) {
+    const Eigen::Vector3i corners = triangles.col(t);
+    if (mark[corners[0]] == v || mark[corners[1]] == v || mark[corners[2]] == v) continue;
+    nearest = std::min(nearest,
+                       point_triangle_distance(p, x.col(corners[0]), x.col(corners[1]), x.col(corners[2])));
+  }
+  return nearest;
+}
+
 }  // namespace
+
+Vector vertex_gaps(const Points& x, const Triangles& triangles, double reach) {
+  Vector gaps = Vector::Constant(x.cols(), kNaN);
+  if (triangles.cols() == 0 || !x.allFinite()) return gaps;
+  const auto neighbours = vertex_neighbours(triangles, x.cols());
+  const TriangleTree tree(x, triangles);
+  std::vector<int> mark(static_cast<size_t>(x.cols()), -1);  // == v: within two rings of v
+  for (int v = 0; v < x.cols(); ++v) {
+    mark[v] = v;
+    for (const int ring1 : neighbours[v]) {
+      mark[ring1] = v;
+      for (const int ring2 : neighbours[ring1]) mark[ring2] = v;
+    }
+    // The box grows until what it found is certainly the nearest.
+    for (double size = reach / 8; size <= reach; size *= 2) {
+      const double nearest = nearest_unmarked(tree, x, triangles, v, size, mark);
+      if (nearest > size) continue;
+      gaps[v] = nearest;
+      break;
+    }
+  }
+  return gaps;
+}
 
 double contact_distance(const Model& model) {
   if (model.contact_range > 0) return model.contact_range;
@@ -85,8 +135,9 @@ Fields compute_fields(const Model& model, const Points& x) {
   add_strain_and_stress(model, fields);
   add_line_forces(model, fields);
   const Points surface = x.leftCols(model.mesh.vertex_count());
-  fields.gap = vertex_gaps(surface, model.mesh.triangles);
   fields.contact_distance = contact_distance(model);
+  const double reach = std::max(2 * fields.contact_distance, 5 * mean_edge_length(x, model.mesh.triangles));
+  fields.gap = vertex_gaps(surface, model.mesh.triangles, reach);
   fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
   for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
     fields.is_contact[static_cast<size_t>(v)] = fields.gap[v] <= fields.contact_distance;

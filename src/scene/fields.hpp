@@ -12,7 +12,7 @@ struct Fields {
   Eigen::Matrix2Xd principal_strain;  // engineering strain (stretch - 1), largest first, per triangle
   Eigen::Matrix2Xd principal_stress;  // second Piola-Kirchhoff [MPa], largest first, per triangle; no
                                       // columns for a model without membrane properties
-  Vector gap;                         // per mesh vertex, see below [mm]; NaN where there is no other facet
+  Vector gap;                         // per mesh vertex, see vertex_gaps [mm]
   std::vector<char> is_contact;       // per mesh vertex: gap <= contact_distance
   double contact_distance = 0;        // [mm]
   Vector reference_distance;          // per mesh vertex [mm]; empty without a reference
@@ -24,8 +24,9 @@ struct Fields {
 Fields compute_fields(const Model& model, const Points& x);
 
 // Distance from each vertex to the nearest facet that is not its own neighbourhood: facets with a corner
-// within two rings (two edges) of the vertex are left out. NaN for a vertex without any other facet. [length]
-Vector vertex_gaps(const Points& x, const Triangles& triangles);
+// within two rings (two edges) of the vertex are left out. NaN where no such facet lies within `reach`.
+// [length] Pre: reach > 0.
+Vector vertex_gaps(const Points& x, const Triangles& triangles, double reach);
 
 // The distance below which a vertex counts as in contact: the range of the contact term, or, in a model
 // without one, half the mean edge length of the reference mesh [mm].

@@ -11,22 +11,22 @@ namespace coapt {
 
 // Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
 struct Metrics {
-  long intersections = 0;                        // pairs of facets that pass through each other
-  std::optional<double> orifice_area_mm2;        // of the annulus opening, left uncovered
-  std::optional<double> annulus_area_mm2;        // projected on the annulus plane
-  std::optional<double> orifice_area_percent;    // of the annulus area
-  std::optional<double> coaptation_area_mm2;     // half the area of the leaflets that touch another
-  std::optional<double> coaptation_height_mm;    // greatest local extent of contact along the annulus normal
-  std::optional<double> tenting_height_mm;       // greatest depth of the coaptation line below the annulus plane
+  long intersections = 0;                      // pairs of facets that pass through each other
+  std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
+  std::optional<double> annulus_area_mm2;      // projected on the annulus plane
+  std::optional<double> orifice_area_percent;  // of the annulus area
+  std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another
+  std::optional<double> coaptation_height_mm;  // greatest local extent of contact along the annulus normal
+  std::optional<double> tenting_height_mm;  // greatest depth of the coaptation line below the annulus plane
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
-  std::optional<double> max_principal_strain;    // stretch - 1
+  std::optional<double> max_principal_strain;  // stretch - 1
   std::optional<double> max_chord_force_n;
-  std::optional<double> force_balance;           // |sum of loads and reactions| / sum of magnitudes
+  std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;
   long contact_vertices = 0;
   std::optional<double> smallest_gap_mm;
-  std::optional<long> slack_chords;              // lines that carry no tension
+  std::optional<long> slack_chords;  // lines that carry no tension
   double max_displacement_mm = 0;
 };
 

@@ -16,8 +16,8 @@ struct VertexDistance {
 };
 
 struct ReferenceDistance {
-  DistanceFigures to_reference;    // from the solved surface to the reference
-  DistanceFigures from_reference;  // from the reference to the solved surface
+  DistanceFigures to_reference;               // from the solved surface to the reference
+  DistanceFigures from_reference;             // from the reference to the solved surface
   std::optional<VertexDistance> same_vertex;  // when both have the same triangles
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/components.hpp"
 #include "core/error.hpp"
+#include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/vtp_writer.hpp"
 
@@ -50,12 +51,14 @@ Json metrics_json(const Metrics& metrics) {
 }
 
 Json figures_json(const DistanceFigures& figures) {
-  return {{"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
+  return {
+      {"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
 }
 
 Json reference_json(const ReferenceDistance& distance) {
   const DistanceFigures &to = distance.to_reference, &from = distance.from_reference;
-  Json json = figures_json({(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)});
+  Json json =
+      figures_json({(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)});
   json["to_reference"] = figures_json(to);
   json["from_reference"] = figures_json(from);
   if (distance.same_vertex)
@@ -82,20 +85,6 @@ Json counters_json(const Model& model, const Result& result) {
           {"pressure_facets", pressure},
           {"contact_candidates", candidates},
           {"contact_searches", searches}};
-}
-
-// The file is whole under its name or not there at all.
-void write_text(const fs::path& path, const std::string& text) {
-  const fs::path temporary = path.string() + ".part";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) throw InputError(path.string() + ": cannot be written");
-  }
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) throw InputError(path.string() + ": cannot be written: " + error.message());
 }
 
 std::string trace_csv(const Result& result) {
@@ -208,9 +197,8 @@ std::string result_json(const Model& model, const Report& report) {
       {"metrics", metrics_json(report.metrics)}};
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   json["counters"] = counters_json(model, result);
-  json["solver"] = {{"type", report.solver},
-                    {"tolerance", number(report.tolerance)},
-                    {"route", report.pressure_route}};
+  json["solver"] = {
+      {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
   json["warnings"] = report.warnings;
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -226,8 +214,7 @@ void prepare_result_folder(const fs::path& folder) {
   {
     std::ofstream out(probe);
     if (!out)
-      throw InputError(folder.string() +
-                       ": no file can be written into this folder; choose another with -o");
+      throw InputError(folder.string() + ": no file can be written into this folder; choose another with -o");
   }
   fs::remove(probe, error);
 }
@@ -238,10 +225,10 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
   TriangleMesh closed = model.mesh;
   closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
   write_mesh(folder / "closed.obj", closed);
-  write_text(folder / "trace.csv", trace_csv(report.result));
-  write_text(folder / "metrics.csv", metrics_csv(report));
+  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
+  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
   // Last: where it is, the others are.
-  write_text(folder / "result.json", result_json(model, report));
+  formats::write_whole(folder / "result.json", result_json(model, report));
 }
 
 }  // namespace coapt

@@ -12,9 +12,9 @@ namespace coapt {
 
 // Everything about one solved scene.
 struct Report {
-  std::string scene_file;   // file name without folder; may be empty
-  std::string solver;       // name
-  double tolerance = 0;     // on the residual
+  std::string scene_file;  // file name without folder; may be empty
+  std::string solver;      // name
+  double tolerance = 0;    // on the residual
   std::string pressure_route;
   Result result;
   Fields fields;
