@@ -77,11 +77,11 @@ std::vector<QuadraturePoint> quadrature_rule(int points, int subdivision) {
 }
 
 // For each facet the facets that share a vertex with it or are joined to it by an edge, ascending.
-std::vector<std::vector<int> > topological_neighbours(const Triangles& triangles, int node_count) {
-  std::vector<std::vector<int> > around(node_count);
+std::vector<std::vector<int>> topological_neighbours(const Triangles& triangles, int node_count) {
+  std::vector<std::vector<int>> around(node_count);
   for (int t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) around[triangles(k, t)].push_back(t);
-  std::vector<std::vector<int> > neighbours(triangles.cols());
+  std::vector<std::vector<int>> neighbours(triangles.cols());
   for (int t = 0; t < triangles.cols(); ++t) {
     std::vector<int>& all = neighbours[t];
     for (int k = 0; k < 3; ++k)
@@ -174,7 +174,7 @@ class ContactFacet final : public EnergyTerm {
     const double reach = options_.range + skin_;
     const double largest = radius.maxCoeff();
     pairs_.clear();
-    std::vector<std::pair<std::uint32_t, double> > found;
+    std::vector<std::pair<std::uint32_t, double>> found;
     for (int j = 0; j < triangles_.cols(); ++j) {
       const double search_radius = reach + radius[j] + largest;
       tree.radiusSearch(cloud.points.col(j).data(), search_radius * search_radius, found,
@@ -252,7 +252,7 @@ class ContactFacet final : public EnergyTerm {
   ContactFacetOptions options_;
   Triangles triangles_;
   std::vector<QuadraturePoint> rule_;
-  std::vector<std::vector<int> > excluded_;
+  std::vector<std::vector<int>> excluded_;
   Vector areas_;  // at rest
   double skin_;
   Stencils stencils_;        // the candidates' nodes

@@ -52,7 +52,8 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
   };
 
   LinePoint low = from;  // best end of the bracket
-  LinePoint high;        // other end, once there is one
+  low.step = 0;
+  LinePoint high;  // other end, once there is one
   bool has_high = false;
   double step = first;
   for (int k = 0; k < kMaxEvaluations; ++k) {
