@@ -1,5 +1,6 @@
 #include "scene/metrics.hpp"
 
+#include "core/error.hpp"
 #include "mesh/intersections.hpp"
 #include "mesh/projected_area.hpp"
 
@@ -23,7 +24,7 @@ AnnulusFrame annulus_frame(const Model& model, const Fields& fields, const std::
   AnnulusFrame frame;
   frame.loop = fields.x(Eigen::all, annulus);
   const Plane plane = best_fit_plane(frame.loop);
-  frame.centre = plane.point;
+  frame.centre = plane.centre;
   frame.up = plane.normal;
   // The open leaflets hang into the ventricle.
   const Vec3 open_centre = model.X(Eigen::all, annulus).rowwise().mean();
@@ -99,9 +100,9 @@ void measure_annulus(const Model& model, const Fields& fields, const std::vector
   const AnnulusFrame frame = annulus_frame(model, fields, annulus);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count());
   const UncoveredArea area = uncovered_area(surface, model.mesh.triangles, frame.loop, frame.up);
-  metrics.orifice_area_mm2 = area.uncovered;
-  metrics.annulus_area_mm2 = area.opening;
-  if (area.opening > 0) metrics.orifice_area_percent = 100 * area.uncovered / area.opening;
+  metrics.orifice_area_mm2 = area.area;
+  metrics.annulus_area_mm2 = area.polygon_area;
+  if (area.polygon_area > 0) metrics.orifice_area_percent = 100 * area.area / area.polygon_area;
   metrics.coaptation_height_mm = coaptation_height(frame, model, fields);
   metrics.tenting_height_mm = tenting_height(frame, model, fields);
 }
@@ -130,7 +131,10 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields) {
 
   const auto annulus = model.sets.find("annulus");
   const bool has_annulus = annulus != model.sets.end() && annulus->second.size() >= 3;
-  if (has_annulus) measure_annulus(model, fields, annulus->second, metrics);
+  if (has_annulus) try {
+      measure_annulus(model, fields, annulus->second, metrics);
+    } catch (const InputError&) {  // an annulus on one line encloses nothing: its metrics stay undefined
+    }
   if (has_annulus || model.contact_range > 0) {
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);
     metrics.coaptation_area_mm2 = contact_area(model, fields) / 2;
