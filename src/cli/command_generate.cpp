@@ -23,7 +23,8 @@ void add_common_options(CLI::App& command, Arguments& arguments) {
   command.add_option("--contact", arguments.contact, "Contact term of the scene")
       ->check(CLI::IsMember({"none", "facet"}))
       ->capture_default_str();
-  command.add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")
+  command
+      .add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")
       ->check(CLI::IsMember({"follower", "frozen", "volume", "field"}));
 }
 
@@ -64,7 +65,8 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   command->add_option("--triangles", arguments->triangles, "Wanted number of triangles")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
+  command
+      ->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
       ->capture_default_str();
   add_common_options(*command, *arguments);
   command->callback([arguments] { generate(*arguments); });
@@ -72,7 +74,8 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
 
 void add_import_command(CLI::App& app, int& /*exit_code*/) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("import", "Write a scene from a valve JSON with its meshes beside it");
+  CLI::App* command =
+      app.add_subcommand("import", "Write a scene from a valve JSON with its meshes beside it");
   command->add_option("VALVE", arguments->what, "Valve JSON")->required();
   add_common_options(*command, *arguments);
   command->callback([arguments] {

@@ -16,9 +16,9 @@ namespace {
 
 struct Shape {
   std::string name;
-  std::string title;              // first line of the scene, with the known answer
-  std::string boundary, terms;    // JSON; $MODEL stands for the pressure model
-  std::string default_model;      // empty: the shape has no pressure
+  std::string title;                    // first line of the scene, with the known answer
+  std::string boundary, terms;          // JSON; $MODEL stands for the pressure model
+  std::string default_model;            // empty: the shape has no pressure
   TriangleMesh (*mesh)(int triangles);  // null: the catenary
 };
 
@@ -36,7 +36,8 @@ std::vector<Shape> shapes() {
     { "type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },
     { "type": "load_pressure", "value": "0.1 kPa", "model": "$MODEL" })",
        "follower", [](int triangles) { return disc(10, triangles); }},
-      {"square", "Prestressed square under a small pressure; exact for p -> 0: centre deflection 0.0737 p L^2/T",
+      {"square",
+       "Prestressed square under a small pressure; exact for p -> 0: centre deflection 0.0737 p L^2/T",
        R"([{ "nodes": "boundary", "fix": true }])",
        R"([
     { "type": "cst_stvk", "young": 0, "prestress": "1 N/m", "thickness": "0.1 mm" },
@@ -60,9 +61,11 @@ std::vector<Shape> shapes() {
     { "type": "cable", "edges": "boundary", "tension": "10 kN" })",
        "",
        [](int triangles) {
-         return tent({.side = kTentSide, .corner_height = 5000, .edge_radius = 10000, .triangles = triangles});
+         return tent(
+             {.side = kTentSide, .corner_height = 5000, .edge_radius = 10000, .triangles = triangles});
        }},
-      {"catenary", "Chain of stiff links under its weight, length/span = 1.2; exact for a smooth chain: sag 29.23 mm",
+      {"catenary",
+       "Chain of stiff links under its weight, length/span = 1.2; exact for a smooth chain: sag 29.23 mm",
        "[]",
        R"([
     { "type": "cable", "network": "chain.json", "young": "1 GPa" },
@@ -129,7 +132,8 @@ void check_options(const Shape& shape, const ShapeOptions& options) {
   if (!options.pressure.empty() && shape.default_model.empty())
     defects.push_back("--pressure: the " + shape.name + " carries no pressure");
   if (options.pressure == "field")
-    defects.push_back("--pressure field: only a valve has a commissure line; choose follower, volume or frozen");
+    defects.push_back(
+        "--pressure field: only a valve has a commissure line; choose follower, volume or frozen");
   if (options.contact == "facet" && shape.mesh == nullptr)
     defects.push_back("--contact facet: the " + shape.name + " has no facets");
   if (!defects.empty()) throw InputError(defects);

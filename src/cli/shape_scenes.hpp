@@ -8,9 +8,9 @@
 namespace coapt::cli {
 
 struct ShapeOptions {
-  int triangles = 2500;     // of the catenary: links; wanted, the shape takes the nearest count
-  std::string contact = "none";   // none or facet
-  std::string pressure;           // follower, volume or frozen; empty: what suits the shape
+  int triangles = 2500;          // of the catenary: links; wanted, the shape takes the nearest count
+  std::string contact = "none";  // none or facet
+  std::string pressure;          // follower, volume or frozen; empty: what suits the shape
 };
 
 // "disc", "square", "sphere", "tent", "catenary", "airbag", "strip".

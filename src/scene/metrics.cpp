@@ -4,6 +4,8 @@
 #include "mesh/intersections.hpp"
 #include "mesh/projected_area.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
