@@ -39,8 +39,8 @@ void print_summary(const RunReport& run) {
   const Report& report = run.report;
   const Result& result = report.result;
   const Metrics& m = report.metrics;
-  std::printf("%s: %s\n", std::string(status_name(result.status)).c_str(), result.message.c_str());
-  std::printf("  %-22s %.2e (wanted: %.0e)\n", "residual", result.residual, report.tolerance);
+  std::printf("%s\n", result.message.c_str());
+  std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
   std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
   std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh",
               run.model.mesh.vertex_count(), run.model.mesh.triangle_count(), run.model.lines.size());
@@ -53,7 +53,7 @@ void print_summary(const RunReport& run) {
   print_value("coaptation height", m.coaptation_height_mm, "mm", "%.2f");
   print_value("tenting height", m.tenting_height_mm, "mm", "%.2f");
   if (run.model.mesh.triangle_count() > 0)
-    std::printf("  %-22s %.1f mm2 (open: %.1f mm2)\n", "area", m.leaflet_area_closed_mm2,
+    std::printf("  %-22s %.6g mm2 (open: %.6g mm2)\n", "area", m.leaflet_area_closed_mm2,
                 m.leaflet_area_open_mm2);
   print_value("greatest strain", m.max_principal_strain, "", "%.4f");
   print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");

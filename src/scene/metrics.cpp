@@ -46,7 +46,8 @@ Cell cell_of(const AnnulusFrame& frame, const Vec3& p, double width) {
 
 double height_of(const AnnulusFrame& frame, const Vec3& p) { return (p - frame.centre).dot(frame.up); }
 
-// Greatest extent of contact along the annulus normal within a column two mean edges wide.
+// Extent of contact along the annulus normal in columns two mean edges wide: the 90th percentile, since a
+// single column may hold a fold.
 double coaptation_height(const AnnulusFrame& frame, const Model& model, const Fields& fields) {
   const double width = 2 * mean_edge_length(fields.x, model.mesh.triangles);
   std::map<Cell, std::pair<double, double>> columns;
@@ -58,9 +59,12 @@ double coaptation_height(const AnnulusFrame& frame, const Model& model, const Fi
     it->second.first = std::min(it->second.first, height);
     it->second.second = std::max(it->second.second, height);
   }
-  double greatest = 0;
-  for (const auto& [cell, range] : columns) greatest = std::max(greatest, range.second - range.first);
-  return greatest;
+  if (columns.empty()) return 0;
+  std::vector<double> extents;
+  for (const auto& [cell, range] : columns) extents.push_back(range.second - range.first);
+  const auto ninth = extents.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(extents.size()));
+  std::nth_element(extents.begin(), ninth, extents.end());
+  return *ninth;
 }
 
 // Depth below the annulus plane of the lowest place that is seen from above. The surface is sampled into
@@ -68,7 +72,7 @@ double coaptation_height(const AnnulusFrame& frame, const Model& model, const Fi
 // than a column, does not count.
 double tenting_height(const AnnulusFrame& frame, const Model& model, const Fields& fields) {
   const double diameter = bounding_box_diagonal(frame.loop);
-  const double width = std::max(fields.contact_distance, diameter / 150);
+  const double width = std::max(2 * fields.contact_distance, diameter / 50);
   std::map<Cell, double> top;
   const Triangles& triangles = model.mesh.triangles;
   for (int t = 0; t < triangles.cols(); ++t) {
@@ -164,7 +168,8 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"orifice_area_percent", "%", "orifice area over annulus area", false, m.orifice_area_percent},
       {"coaptation_area_mm2", "mm2", "half the area of the leaflets that is in contact", false,
        m.coaptation_area_mm2},
-      {"coaptation_height_mm", "mm", "greatest local extent of contact along the annulus normal", false,
+      {"coaptation_height_mm", "mm",
+       "extent of contact along the annulus normal: 90th percentile over the coaptation line", false,
        m.coaptation_height_mm},
       {"tenting_height_mm", "mm",
        "greatest depth of the leaflets, seen from the atrium, below the annulus plane", false,

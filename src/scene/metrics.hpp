@@ -16,7 +16,7 @@ struct Metrics {
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
   std::optional<double> orifice_area_percent;  // of the annulus area
   std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another
-  std::optional<double> coaptation_height_mm;  // greatest local extent of contact along the annulus normal
+  std::optional<double> coaptation_height_mm;  // extent of contact along the annulus normal, 90th percentile
   std::optional<double> tenting_height_mm;  // greatest depth of the coaptation line below the annulus plane
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
