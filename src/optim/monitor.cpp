@@ -46,6 +46,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.seconds = seconds();
   now.evaluations = objective_.counts().gradient + objective_.counts().hessian;
   last_ = q;
+  objective_.advance(q);
   trace_.push_back(now);
 
   if (observer_ && !observer_(now, q)) {

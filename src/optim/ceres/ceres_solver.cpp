@@ -1,0 +1,86 @@
+#include "optim/ceres/ceres_solver.hpp"
+
+#include "optim/hosted_run.hpp"
+
+#include <ceres/ceres.h>
+
+#include <cmath>
+#include <limits>
+
+namespace coapt {
+namespace {
+
+using ConstVectorMap = Eigen::Map<const Vector>;
+
+class HostedFunction final : public ceres::FirstOrderFunction {
+ public:
+  HostedFunction(HostedRun& run, int size) : run_(run), size_(size) {}
+  int NumParameters() const override { return size_; }
+
+  // False = "cannot be evaluated here": the line search then shortens its step.
+  bool Evaluate(const double* q, double* cost, double* gradient) const override {
+    *cost = run_.evaluate(ConstVectorMap(q, size_), g_);
+    if (!std::isfinite(*cost)) return false;
+    if (gradient != nullptr) Eigen::Map<Vector>(gradient, size_) = g_;
+    return true;
+  }
+
+ private:
+  HostedRun& run_;
+  int size_;
+  mutable Vector g_;
+};
+
+class IterateReport final : public ceres::IterationCallback {
+ public:
+  IterateReport(HostedRun& run, const Vector& q) : run_(run), q_(q) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return run_.accept(q_) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+  }
+
+ private:
+  HostedRun& run_;
+  const Vector& q_;  // Ceres writes every accepted iterate here
+};
+
+class SolverCeres final : public Solver {
+ public:
+  std::string_view name() const override { return "ceres"; }
+
+  Status minimize(Objective&, Vector& q, Monitor& monitor) override {
+    HostedRun run(monitor, q);
+    while (run.begin_attempt()) {
+      q = run.q();
+      IterateReport report(run, q);
+      ceres::GradientProblemSolver::Options options = silent_options();
+      options.callbacks.push_back(&report);
+      ceres::GradientProblemSolver::Summary summary;
+      const ceres::GradientProblem problem(new HostedFunction(run, static_cast<int>(q.size())));
+      ceres::Solve(options, problem, q.data(), &summary);
+    }
+    q = run.q();
+    return run.status().value_or(Status::LineSearchFailed);
+  }
+
+ private:
+  static ceres::GradientProblemSolver::Options silent_options() {
+    ceres::GradientProblemSolver::Options options;
+    options.line_search_direction_type = ceres::LBFGS;
+    options.line_search_type = ceres::WOLFE;
+    options.function_tolerance = 0;  // relative to an energy whose zero is arbitrary
+    options.gradient_tolerance = 0;  // absolute: knows nothing of our units
+    options.parameter_tolerance = 0;
+    options.max_num_iterations = std::numeric_limits<int>::max();
+    options.logging_type = ceres::SILENT;
+    options.update_state_every_iteration = true;
+    return options;
+  }
+};
+
+}  // namespace
+
+void add_ceres_solver(SolverTable& table) {
+  table["ceres"] = [] { return std::make_unique<SolverCeres>(); };
+}
+
+}  // namespace coapt

@@ -1,0 +1,60 @@
+#include "optim/nlopt/nlopt_solver.hpp"
+
+#include "optim/hosted_run.hpp"
+
+#include <nlopt.hpp>
+
+#include <stdexcept>
+#include <vector>
+
+namespace coapt {
+namespace {
+
+class SolverNlopt final : public Solver {
+ public:
+  std::string_view name() const override { return "nlopt"; }
+
+  Status minimize(Objective&, Vector& q, Monitor& monitor) override {
+    HostedRun run(monitor, q);
+    while (run.begin_attempt()) {
+      attempt(nlopt::LD_TNEWTON_PRECOND_RESTART, run);
+      if (!run.status()) attempt(nlopt::LD_LBFGS, run);
+    }
+    q = run.q();
+    return run.status().value_or(Status::LineSearchFailed);
+  }
+
+ private:
+  static void attempt(nlopt::algorithm algorithm, HostedRun& run) {
+    const Vector start = run.q();
+    std::vector<double> q(start.data(), start.data() + start.size());
+    nlopt::opt optimiser(algorithm, static_cast<unsigned>(q.size()));
+    optimiser.set_min_objective(&evaluate, &run);
+    try {
+      double energy = 0;
+      optimiser.optimize(q, energy);
+    } catch (const nlopt::forced_stop&) {  // the monitor's word; run.status() has it
+    } catch (const nlopt::roundoff_limited&) {
+    } catch (const std::runtime_error&) {  // NLopt's bare FAILURE: its line search is at its end
+    }
+  }
+
+  static double evaluate(const std::vector<double>& q, std::vector<double>& gradient, void* context) {
+    HostedRun& run = *static_cast<HostedRun*>(context);
+    const auto size = static_cast<Eigen::Index>(q.size());
+    Vector g;
+    const double energy = run.evaluate(Eigen::Map<const Vector>(q.data(), size), g);
+    if (!gradient.empty()) Eigen::Map<Vector>(gradient.data(), size) = g;
+    if (energy < kInfinity) run.accept_if_better();
+    if (run.status()) throw nlopt::forced_stop();
+    return energy;
+  }
+};
+
+}  // namespace
+
+void add_nlopt_solver(SolverTable& table) {
+  table["nlopt"] = [] { return std::make_unique<SolverNlopt>(); };
+}
+
+}  // namespace coapt

@@ -1,0 +1,40 @@
+// Simple meshes that tests build themselves, so that no test depends on the code of another room.
+#pragma once
+
+#include "mesh/triangle_mesh.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace coapt {
+
+// Which diagonal cuts the quadrilaterals of a grid.
+enum class Diagonal { Same, Alternating };
+
+// Rectangle [0, width] x [0, height] in the plane z = 0, cut into 2 nx ny triangles. Node i + (nx+1) j is
+// that of column i and row j. Normals point to +z.
+TriangleMesh grid_mesh(int nx, int ny, double width = 1, double height = 1,
+                       Diagonal diagonal = Diagonal::Alternating);
+
+// The node of a grid mesh in column i and row j.
+inline int grid_node(int nx, int i, int j) { return i + (nx + 1) * j; }
+
+// Unit disc in the plane z = 0: a centre (node 0) and `rings` rings of 6 k nodes, 6 rings^2 triangles.
+// The rim is the last 6 * rings nodes. Normals point to +z.
+TriangleMesh disc_mesh(int rings);
+
+// Unit sphere: an icosahedron, each triangle cut into four `subdivisions` times (20 * 4^n triangles),
+// nodes on the sphere. Normals point outwards.
+TriangleMesh sphere_mesh(int subdivisions);
+
+// Moves each node that `may_move` admits by up to `amount` in x and y, from a fixed seed.
+void perturb_in_plane(TriangleMesh& mesh, double amount, unsigned seed,
+                      const std::function<bool(const Vec3&)>& may_move);
+
+// Adds to each coordinate a random number in [-amount, amount], from a fixed seed.
+Points shaken(const Points& x, double amount, unsigned seed);
+
+// The nodes of all triangles, corner after corner: the stencils of a triangle term.
+std::vector<int> triangle_nodes(const Triangles& triangles);
+
+}  // namespace coapt

@@ -1,0 +1,238 @@
+// The energies written anew from their definitions, on any scalar: oracles for automatic differentiation.
+// They are slow, plain, and share no formula with the kernels (invariants instead of components, nodes
+// instead of shape gradients).
+#pragma once
+
+#include "support/autodiff.hpp"
+
+#include <array>
+#include <vector>
+
+namespace coapt::oracle {
+
+inline AutoVec<double> plain(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+template <typename T>
+T squared(const T& a) {
+  return T(a * a);
+}
+
+template <typename T>
+T power(const T& a, int n) {
+  T result = T(1.0);
+  for (int k = 0; k < n; ++k) result = T(result * a);
+  return result;
+}
+
+// St. Venant-Kirchhoff with prestress from the lengths of the three sides alone: the Green strain along a
+// side of rest length L and current length l is (l^2/L^2 - 1)/2 and three of them give the whole tensor.
+struct StVenantKirchhoff {
+  Triangles triangles;
+  Points X;
+  double young, poisson, thickness, prestress;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) energy = T(energy + element(triangles.col(t), x));
+    return energy;
+  }
+
+ private:
+  template <typename T>
+  T element(const Eigen::Vector3i& c, const std::vector<AutoVec<T>>& x) const {
+    // Planar coordinates of the rest triangle by the law of cosines.
+    const double a = (X.col(c[1]) - X.col(c[0])).norm(), b = (X.col(c[2]) - X.col(c[0])).norm();
+    const double cosine = (X.col(c[1]) - X.col(c[0])).dot(X.col(c[2]) - X.col(c[0])) / (a * b);
+    const double px = b * cosine, py = b * std::sqrt(1 - cosine * cosine);
+    const double area = 0.5 * a * py;
+    // Side s with rest vector (sx, sy): (l^2 - L^2)/2 = E11 sx^2 + E22 sy^2 + 2 E12 sx sy.
+    const double side[3][2] = {{a, 0}, {px, py}, {px - a, py}};
+    const AutoVec<T> current[3] = {x[c[1]] - x[c[0]], x[c[2]] - x[c[0]], x[c[2]] - x[c[1]]};
+    Eigen::Matrix3d system;
+    std::array<T, 3> stretch;
+    for (int s = 0; s < 3; ++s) {
+      system.row(s) << side[s][0] * side[s][0], side[s][1] * side[s][1], 2 * side[s][0] * side[s][1];
+      const double rest_squared = side[s][0] * side[s][0] + side[s][1] * side[s][1];
+      stretch[s] = times(0.5, T(dot(current[s], current[s]) - T(rest_squared)));
+    }
+    const Eigen::Matrix3d solve = system.inverse();
+    std::array<T, 3> E;  // E11, E22, E12
+    for (int k = 0; k < 3; ++k) {
+      E[k] = T(0.0);
+      for (int s = 0; s < 3; ++s) E[k] = T(E[k] + times(solve(k, s), stretch[s]));
+    }
+    // Energy per area h E/(2(1-nu^2)) (tr(E)^2 - 2 (1-nu) det(E)) + s tr(E).
+    const T trace = T(E[0] + E[1]);
+    const T product = E[0] * E[1], shear = squared(E[2]);
+    const T determinant = T(product - shear);
+    const T elastic = times(0.5 * thickness * young / (1 - poisson * poisson),
+                            T(squared(trace) - times(2 * (1 - poisson), determinant)));
+    return times(area, T(elastic + times(prestress, trace)));
+  }
+};
+
+struct CubicTethers {
+  Segments segments;
+  double strength, length, scale;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index e = 0; e < segments.cols(); ++e) {
+      const T excess = T(norm(AutoVec<T>(x[segments(1, e)] - x[segments(0, e)])) - T(length));
+      if (number(excess) > 0)
+        energy = T(energy + times(strength / (scale * scale * scale), power(excess, 3)));
+    }
+    return energy;
+  }
+};
+
+// Elastic part as the integral of the rounded force 2 e^2/s - e^3/s^2, then e.
+struct Cables {
+  Segments segments;
+  double axial_stiffness, length, smoothing, tension;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index k = 0; k < segments.cols(); ++k) {
+      const T l = norm(AutoVec<T>(x[segments(1, k)] - x[segments(0, k)]));
+      energy = T(energy + times(axial_stiffness / length, elastic(T(l - T(length)))));
+      energy = T(energy + times(tension, l));
+    }
+    return energy;
+  }
+
+ private:
+  template <typename T>
+  T elastic(const T& e) const {
+    const double s = smoothing;
+    if (number(e) <= 0) return T(0.0);
+    if (number(e) < s) return T(times(2 / (3 * s), power(e, 3)) - times(1 / (4 * s * s), power(e, 4)));
+    const double at_s = s * s * (2.0 / 3 - 0.25);
+    return T(T(at_s) + times(0.5, T(squared(e) - T(s * s))));
+  }
+};
+
+// Area by Heron's formula of the squared sides: 16 A^2 = 4 a^2 b^2 - (a^2 + b^2 - c^2)^2.
+struct SoapFilm {
+  Triangles triangles;
+  double tension;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    using std::sqrt;
+    T energy = T(0.0);
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      const auto side = [&](int p, int q) {
+        const AutoVec<T> d = x[triangles(q, t)] - x[triangles(p, t)];
+        return dot(d, d);
+      };
+      const T a2 = side(0, 1), b2 = side(1, 2), c2 = side(2, 0);
+      const T product = a2 * b2;
+      const T sixteen = T(times(4, product) - squared(T(T(a2 + b2) - c2)));
+      energy = T(energy + times(tension / 4, T(sqrt(sixteen))));
+    }
+    return energy;
+  }
+};
+
+// -p times the volume under the surface by the divergence theorem with the field (0, 0, z):
+// integral of z n_z over each facet, its mean height times its shadow on the plane z = 0. Right for closed
+// surfaces only, where it equals every other choice.
+struct ClosedPressure {
+  Triangles triangles;
+  double pressure;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T volume = T(0.0);
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      const AutoVec<T>&a = x[triangles(0, t)], &b = x[triangles(1, t)], &c = x[triangles(2, t)];
+      const AutoVec<T> normal = cross(AutoVec<T>(b - a), AutoVec<T>(c - a));
+      const T height = T(T(a[2] + b[2]) + c[2]);
+      const T share = height * normal[2];
+      volume = T(volume + times(1.0 / 6, share));
+    }
+    return times(-pressure, volume);
+  }
+};
+
+// One facet against an origin: the determinant of its three corner vectors.
+struct Tetrahedra {
+  Triangles triangles;
+  double pressure;
+  Vec3 origin;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      AutoVec<T> r[3];
+      for (int a = 0; a < 3; ++a)
+        for (int k = 0; k < 3; ++k) r[a][k] = T(x[triangles(a, t)][k] - T(origin[k]));
+      for (int k = 0; k < 3; ++k) {  // rule of Sarrus
+        const T up = r[0][k] * r[1][(k + 1) % 3], down = r[0][k] * r[1][(k + 2) % 3];
+        const T plus = up * r[2][(k + 2) % 3], minus = down * r[2][(k + 1) % 3];
+        energy = T(energy - times(pressure / 6, T(plus - minus)));
+      }
+    }
+    return energy;
+  }
+};
+
+struct DeadForces {
+  Points forces, X;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index k = 0; k < X.cols(); ++k)
+      for (int c = 0; c < 3; ++c)
+        energy = T(energy - times(forces(c, k), T(x[static_cast<size_t>(k)][c] - T(X(c, k)))));
+    return energy;
+  }
+};
+
+// Every facet pair without a common vertex or joining edge, every pair of quadrature points.
+struct FacetRepulsion {
+  Points X;
+  Triangles triangles;
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<std::pair<Vec3, double>> rule;  // barycentric coordinates and share of the area
+  double range, strength;
+  int exponent;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (const auto& [j, k] : pairs)
+      for (const auto& [p, p_share] : rule)
+        for (const auto& [q, q_share] : rule) {
+          const AutoVec<T> from = at(x, j, p), to = at(x, k, q);
+          const T d = norm(AutoVec<T>(from - to));
+          if (number(d) >= range) continue;
+          const double weight = strength * rest_area(j) * p_share * rest_area(k) * q_share;
+          energy = T(energy + times(weight, power(T(T(1.0) - times(1 / range, d)), exponent)));
+        }
+    return energy;
+  }
+
+ private:
+  template <typename T>
+  AutoVec<T> at(const std::vector<AutoVec<T>>& x, int facet, const Vec3& barycentric) const {
+    AutoVec<T> point = {T(0.0), T(0.0), T(0.0)};
+    for (int a = 0; a < 3; ++a)
+      for (int c = 0; c < 3; ++c) point[c] = T(point[c] + times(barycentric[a], x[triangles(a, facet)][c]));
+    return point;
+  }
+
+  double rest_area(int facet) const {
+    const Vec3 a = X.col(triangles(0, facet)), b = X.col(triangles(1, facet)), c = X.col(triangles(2, facet));
+    const double ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm(), s = 0.5 * (ab + bc + ca);
+    return std::sqrt(s * (s - ab) * (s - bc) * (s - ca));
+  }
+};
+
+}  // namespace coapt::oracle
