@@ -13,7 +13,8 @@ Valve small_valve() {
   valve.name = "one \"leaflet\"";
   valve.leaflets.vertices.resize(3, 3);
   valve.leaflets.vertices << 0, 1.0 / 3, 0, 0, 0, 0.1, 0, 1e-17, 7;
-  valve.leaflets.triangles = Eigen::Vector3i(0, 1, 2);
+  valve.leaflets.triangles.resize(3, 1);
+  valve.leaflets.triangles << 0, 1, 2;
   valve.closed_reference = valve.leaflets;
   valve.closed_reference->vertices *= 1.1;
   valve.annulus = {2, 0};
