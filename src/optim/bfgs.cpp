@@ -59,7 +59,6 @@ class SolverBfgs final : public Solver {
     at.energy = monitor.gradient(at.q, at.g);
     while (true) {
       if (const auto status = monitor.accept(at.q, at.energy, at.g)) return *status;
-      q = at.q;
       const Vector direction = descent_direction(inverse, at, monitor);
       if (!search_line(monitor, at, direction, first_step(inverse, at.q, direction), next)) {
         if (monitor.is_out_of_time()) return Status::TimeLimit;
@@ -72,6 +71,7 @@ class SolverBfgs final : public Solver {
         inverse.update(next.q - at.q, next.g - at.g);
       }
       std::swap(at, next);
+      q = at.q;
     }
   }
 

@@ -5,7 +5,6 @@
 namespace coapt {
 namespace {
 
-constexpr double kRoundOff = 1e-12;      // relative noise of an energy sum
 constexpr double kWorthAnAttempt = 0.5;  // an attempt has to halve the gradient to earn another
 constexpr int kMaxRefused = 200;         // a library that cannot find back to finite energies is stopped
 
@@ -52,7 +51,7 @@ bool HostedRun::accept(const Vector& q) {
 bool HostedRun::accept_if_better() {
   if (status_) return false;
   const double change = last_.energy - accepted_.energy;
-  const double noise = kRoundOff * std::abs(accepted_.energy);
+  const double noise = monitor_.energy_noise(accepted_.energy);
   if (change < -noise || (change <= noise && last_.g.norm() < accepted_.g.norm())) report(last_);
   return !status_;
 }

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kCurvature = 0.9;
-constexpr double kRoundOff = 1e-12;  // relative noise of an energy sum
 constexpr int kMaxEvaluations = 40;
 
 void evaluate(Monitor& monitor, const LinePoint& from, const Vector& direction, double step, LinePoint& at) {
@@ -40,7 +39,7 @@ double cubic_minimiser(const LinePoint& a, const LinePoint& b) {
 
 bool search_line(Monitor& monitor, const LinePoint& from, const Vector& direction, double first,
                  LinePoint& to) {
-  const double noise = kRoundOff * std::abs(from.energy);
+  const double noise = monitor.energy_noise(from.energy);
   // Below the noise an energy tells nothing: the slope must then have shrunk instead.
   const auto descends = [&](const LinePoint& p) {
     if (p.energy <= from.energy + kSufficientDecrease * p.step * from.slope) return true;

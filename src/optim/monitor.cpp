@@ -1,6 +1,26 @@
 #include "optim/monitor.hpp"
 
+#include <cmath>
+#include <exception>
+
 namespace coapt {
+namespace {
+
+constexpr double kEnergyNoise = 1e-12;  // relative to the energy
+constexpr double kWorkNoise = 1e-14;    // relative to force times extent
+constexpr int kPatience = 1000;         // iterates without gain
+
+template <typename Evaluate>
+double guarded(Vector& g, Eigen::Index size, const Evaluate& evaluate) {
+  try {
+    return evaluate();
+  } catch (const std::exception&) {
+    g.setConstant(size, kNaN);
+    return kInfinity;
+  }
+}
+
+}  // namespace
 
 Monitor::Monitor(Objective& objective, const StopRule& stop, const Observer& observer)
     : objective_(objective),
@@ -11,25 +31,32 @@ Monitor::Monitor(Objective& objective, const StopRule& stop, const Observer& obs
 
 double Monitor::value(const Vector& q) {
   PhaseTimer timer(phases_, "value");
-  return objective_.value(q);
+  Vector none;
+  return guarded(none, 0, [&] { return objective_.value(q); });
 }
 
 double Monitor::gradient(const Vector& q, Vector& g) {
   PhaseTimer timer(phases_, "gradient");
-  return objective_.gradient(q, g);
+  return guarded(g, q.size(), [&] { return objective_.gradient(q, g); });
 }
 
 double Monitor::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h, Projection projection) {
   PhaseTimer timer(phases_, "hessian");
-  return objective_.hessian(q, g, h, projection);
+  return guarded(g, q.size(), [&] { return objective_.hessian(q, g, h, projection); });
 }
 
 bool Monitor::is_out_of_time() const { return seconds() >= stop_.max_seconds; }
+
+double Monitor::energy_noise(double energy) const {
+  return kEnergyNoise * std::abs(energy) + kWorkNoise * objective_.reference_force() * extent_;
+}
 
 void Monitor::begin_round(int round, double tolerance) {
   round_ = round;
   tolerance_ = tolerance;
   is_first_of_round_ = true;
+  best_energy_ = best_residual_ = kInfinity;
+  last_gain_ = iterations_;
 }
 
 std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g) {
@@ -47,6 +74,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.evaluations = objective_.counts().gradient + objective_.counts().hessian;
   last_ = q;
   objective_.advance(q);
+  extent_ = q.size() == 0 ? 0 : q.maxCoeff() - q.minCoeff();
   trace_.push_back(now);
 
   if (observer_ && !observer_(now, q)) {
@@ -56,6 +84,11 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   if (now.residual <= tolerance_) return Status::Converged;
   if (is_out_of_time()) return Status::TimeLimit;
   if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;
+  if (energy < best_energy_ - energy_noise(energy) || now.residual < 0.9 * best_residual_)
+    last_gain_ = iterations_;
+  best_energy_ = std::min(best_energy_, energy);
+  best_residual_ = std::min(best_residual_, now.residual);
+  if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
   return std::nullopt;
 }
 

@@ -12,12 +12,19 @@ class Monitor {
   Monitor(Objective& objective, const StopRule& stop, const Observer& observer);
 
   // --- for solvers -----------------------------------------------------------------------------------
-  // Evaluations of the objective, timed by phase "gradient", "value", "hessian".
+  // Evaluations of the objective, timed by phase "gradient", "value", "hessian". An exception from a term
+  // counts as a state that cannot be evaluated: +infinity, and a gradient that is not a number.
   double value(const Vector& q);
   double gradient(const Vector& q, Vector& g);
   double hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h, Projection projection);
 
-  // Call once per accepted iterate, the start included. Returns why to stop, or nothing to go on.
+  // The change of an energy near `energy` that may be nothing but round-off. A sum of terms that almost
+  // cancel is noisier than its own size tells: the largest force times the extent of the unknowns is the
+  // work against which positions are rounded.
+  double energy_noise(double energy) const;
+
+  // Call once per accepted iterate, the start included. Returns why to stop, or nothing to go on: among
+  // the reasons that many iterates in a row have lowered neither the energy nor the residual.
   std::optional<Status> accept(const Vector& q, double energy, const Vector& g);
 
   // For methods that hide their iterates: call it at every evaluation; true = stop now.
@@ -45,9 +52,12 @@ class Monitor {
   int round_ = 0;
   int iterations_ = 0;
   bool is_first_of_round_ = true;
+  double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round
+  int last_gain_ = 0;                                           // iteration of the last improvement
   bool cancelled_ = false;
   long factorisations_ = 0;
   Vector last_;
+  double extent_ = 0;  // of the unknowns [length]
   std::vector<Iteration> trace_;
   PhaseTimes phases_;
 };

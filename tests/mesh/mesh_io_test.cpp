@@ -59,10 +59,11 @@ TEST_P(MeshRoundTrip, GivesTheSameNumbersBitByBit) {
     ASSERT_EQ(file.mesh.vertex_count(), mesh.vertex_count());
     for (int t = 0; t < mesh.triangle_count(); ++t)
       for (int c = 0; c < 3; ++c) {
-        const Vec3 wanted = mesh.vertices.col(mesh.triangles(c, t));
-        const Vec3 seen = file.mesh.vertices.col(file.mesh.triangles(c, t));
-        const Eigen::Vector3f rounded = wanted.cast<float>();
-        EXPECT_EQ(seen, exact ? wanted : Vec3(rounded.cast<double>()));
+        for (int k = 0; k < 3; ++k) {
+          const double wanted = mesh.vertices(k, mesh.triangles(c, t));
+          const double seen = file.mesh.vertices(k, file.mesh.triangles(c, t));
+          EXPECT_EQ(seen, exact ? wanted : static_cast<double>(static_cast<float>(wanted)));
+        }
       }
   } else {
     EXPECT_EQ(file.mesh.vertices, mesh.vertices);

@@ -50,17 +50,16 @@ TEST(Tether, C1CarriesAWeightAtTheClosedFormLength) {
 
 TEST(Tether, C1sContributesExactlyNothingWhenSlack) {
   for (const double d : {0.999999, 0.5, 0.0}) {
-    for (const double length : {1.0}) {
-      Eigen::Vector<double, 6> x, g;
-      x << 0.3, 0.2, 0.1, 0.3 + d * 0.6, 0.2, 0.1 + d * 0.8;
-      Eigen::Matrix<double, 6, 6> H;
-      EXPECT_EQ(TetherCubic::evaluate({2, length, 0.5}, x, &g, &H), 0);
-      EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(Cable::evaluate({2, length, 0, 0}, x, &g, &H), 0);
-      EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
-    }
+    const double length = 1;
+    Eigen::Vector<double, 6> x, g;
+    x << 0.3, 0.2, 0.1, 0.3 + d * 0.6, 0.2, 0.1 + d * 0.8;
+    Eigen::Matrix<double, 6, 6> H;
+    EXPECT_EQ(TetherCubic::evaluate({2, length, 0.5}, x, &g, &H), 0);
+    EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(Cable::evaluate({2, length, 0, 0}, x, &g, &H), 0);
+    EXPECT_EQ(g.cwiseAbs().maxCoeff(), 0);
+    EXPECT_EQ(H.cwiseAbs().maxCoeff(), 0);
   }
 }
 
@@ -107,11 +106,11 @@ double hung_sag(int n) {
   Points weights = Points::Zero(3, n + 1);
   for (int k = 0; k < n; ++k)
     for (int end : {k, k + 1}) weights(2, end) -= 0.5 / n;
-  const Equilibrium found =
-      find_equilibrium(chain.X, chain.fixed,
-                       terms_of(cable_term(chain.links, 1e6, Vector::Constant(n, 1.2 / n)),
-                                std::make_unique<LoadDead>("weight", "load_field", weights, chain.X)),
-                       1e-9, "bfgs");
+  const Equilibrium found = find_equilibrium(
+      chain.X, chain.fixed,
+      terms_of(cable_term(chain.links, 1e6, Vector::Constant(n, 1.2 / n)),
+               std::make_unique<LoadDead>("weight", "load_field", weights, chain.X)),
+      1e-7, "bfgs");  // EA epsilon / link length: forces of stiff links are known to some 1e-9
   EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
   return -found.x.row(2).minCoeff();
 }
@@ -147,12 +146,12 @@ TEST(Chain, C3bOfRigidLinksMatchesTheDiscreteSolution) {
   const Chain chain(n, n * length);
   Points weights = Points::Zero(3, n + 1);
   weights.row(2).segment(1, n - 1).setConstant(-1);
-  const double stiffness = 1e8;  // EA/r of each link: its elongation T/k is 1e-7
+  const double stiffness = 1e9;  // EA/r of each link: its elongation T/k is 1e-8
   Terms terms = terms_of(cable_term(chain.links, stiffness * length, Vector::Constant(n, length)),
                          std::make_unique<LoadDead>("weight", "load_field", weights, chain.X));
   Objective objective(chain.X, chain.fixed, std::move(terms));
   StopRule stop;
-  stop.tolerance = 1e-8;
+  stop.tolerance = 1e-7;  // k epsilon is 2e-7 of a force of 12
   const Result result =
       solve(*built_in_solvers().at("bfgs")(), {objective, objective.unknowns(chain.X), {}}, stop);
   ASSERT_EQ(result.status, Status::Converged) << result.message;
@@ -160,7 +159,7 @@ TEST(Chain, C3bOfRigidLinksMatchesTheDiscreteSolution) {
   EXPECT_NEAR(-x.row(2).minCoeff() / sag, 1, 1e-6);
   EXPECT_NEAR(std::abs(support(0, 0)) / H, 1, 1e-6);
   EXPECT_NEAR(support.col(n).norm() / std::hypot(H, 9.5), 1, 1e-6);
-  EXPECT_LT(objective.balance(result.q).force, 1e-8);
+  EXPECT_LT(objective.balance(result.q).force, 1e-6);
 }
 
 TEST(Wire, C5DeflectsUnderACentralLoadFromASingularStart) {
