@@ -172,8 +172,7 @@ TEST(Fields, GiveTheTensionOfTautAndSlackLines) {
   std::vector<std::unique_ptr<EnergyTerm>> terms;
   terms.push_back(std::make_unique<ElementTerm<Cable>>(
       "chords", std::vector<int>{0, 1, 1, 2}, std::vector<Cable::Rest>{{50, 1, 0, 0}, {50, 2, 0, 0}}));
-  model.objective =
-      std::make_unique<Objective>(model.X, FixedMask::Constant(3, 3, false), std::move(terms));
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, 3, false), std::move(terms));
   Points x = model.X;
   x(0, 1) = 1.1;  // the first line grows by 0.1, the second shrinks
   const Metrics metrics = measure_at(model, x);
