@@ -13,7 +13,7 @@ struct ImportOptions {
   std::string young = "1 MPa";  // of the leaflets, as written into the scene
   double poisson = 0.45;
   std::string chord_young = "40 MPa";       // Hammer et al. 2011
-  std::string pressure;                     // empty: the valve's, else 120 mmHg
+  std::string pressure = "";                // empty: the valve's, else 120 mmHg
   std::string pressure_model = "follower";  // follower, volume, frozen, or field (toward the commissure line)
   std::string contact = "none";             // none or facet
   double default_thickness = 0.65;          // where the valve states none [mm]

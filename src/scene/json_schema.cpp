@@ -142,11 +142,12 @@ std::string json_schema() {
                                  {"pattern", "^\\s*" + number + "\\s*[A-Za-z%\\u00b5\\u03bc/].*$"}};
   definitions["numberText"] = {{"type", "string"}, {"pattern", "^\\s*" + number + "\\s*%?\\s*$"}};
   definitions["nodes"] = nodes_schema();
-  OrderedJson& terms = definitions["term"]["oneOf"];
+  OrderedJson terms = OrderedJson::array();
   for (const TermType& type : term_types()) {
     terms.push_back(reference("term_" + type.name));
     definitions["term_" + type.name] = term_schema(type);
   }
+  definitions["term"]["oneOf"] = terms;
   return schema.dump(2) + "\n";
 }
 

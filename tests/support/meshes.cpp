@@ -56,6 +56,30 @@ TriangleMesh disc_mesh(int rings) {
   return mesh;
 }
 
+TriangleMesh smooth_disc_mesh(int n) {
+  const int corners = (n + 1) * (n + 1);
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, corners + n * n);
+  mesh.triangles.resize(3, 4 * n * n);
+  const auto place = [&](int node, double i, double j) {
+    const double u = 2 * i / n - 1, v = 2 * j / n - 1;
+    mesh.vertices.col(node) = Vec3(u * std::sqrt(1 - 0.5 * v * v), v * std::sqrt(1 - 0.5 * u * u), 0);
+  };
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) place(grid_node(n, i, j), i, j);
+  int t = 0;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int middle = corners + i + n * j, a = grid_node(n, i, j), d = grid_node(n, i, j + 1);
+      place(middle, i + 0.5, j + 0.5);
+      mesh.triangles.col(t++) << a, a + 1, middle;
+      mesh.triangles.col(t++) << a + 1, d + 1, middle;
+      mesh.triangles.col(t++) << d + 1, d, middle;
+      mesh.triangles.col(t++) << d, a, middle;
+    }
+  return mesh;
+}
+
 namespace {
 
 TriangleMesh icosahedron() {

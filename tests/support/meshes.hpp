@@ -23,6 +23,12 @@ inline int grid_node(int nx, int i, int j) { return i + (nx + 1) * j; }
 // The rim is the last 6 * rings nodes. Normals point to +z.
 TriangleMesh disc_mesh(int rings);
 
+// Unit disc again, as the image of an n x n grid of the square under the smooth map
+// (u sqrt(1 - v^2/2), v sqrt(1 - u^2/2)); each cell is cut into four triangles around its middle, 4 n^2 in
+// all. n even: node n/2 (n + 2) is the centre. A smooth map shows the clean order of a method, which the
+// kinks between the sectors of disc_mesh disturb.
+TriangleMesh smooth_disc_mesh(int n);
+
 // Unit sphere: an icosahedron, each triangle cut into four `subdivisions` times (20 * 4^n triangles),
 // nodes on the sphere. Normals point outwards.
 TriangleMesh sphere_mesh(int subdivisions);

@@ -1,0 +1,223 @@
+// Rows B1 to B4 of the verification table: membranes under load against closed forms and an independent
+// solution of the axisymmetric equations.
+#include "energy/load_dead.hpp"
+#include "energy/load_pressure.hpp"
+#include "support/equilibrium.hpp"
+#include "support/meshes.hpp"
+#include "support/sanitized.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+// --- B1: square of side 1, tension 1, dead load p: w0 = 0.0736713 p -----------------------------------
+
+double square_deflection(int n) {
+  const double p = 1e-4;
+  const TriangleMesh mesh = grid_mesh(n, n);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  for (int k = 0; k <= n; ++k)
+    for (const int node : {grid_node(n, k, 0), grid_node(n, k, n), grid_node(n, 0, k), grid_node(n, n, k)})
+      fixed.col(node).setConstant(true);
+  const Points load = frozen_pressure_forces(mesh.vertices, mesh.triangles, p);
+  // The reference force is the edge tension 1/n, 1e6 times the load of a node.
+  const Equilibrium found =
+      find_equilibrium(mesh.vertices, fixed,
+                       terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 1}),
+                                std::make_unique<LoadDead>("load", "load_pressure", load, mesh.vertices)),
+                       1e-12);
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  return found.x(2, grid_node(n, n / 2, n / 2)) / p;
+}
+
+// Series solution of Poisson's equation on the unit square.
+double poisson_deflection() {
+  double sum = 0;
+  for (int m = 1; m < 400; m += 2)
+    for (int n = 1; n < 400; n += 2)
+      sum += std::sin(m * std::numbers::pi / 2) * std::sin(n * std::numbers::pi / 2) /
+             (m * n * static_cast<double>(m * m + n * n));
+  return 16 / std::pow(std::numbers::pi, 4) * sum;
+}
+
+TEST(Square, B1SagsUnderASmallLoadLikePoissonsEquation) {
+  const double exact = poisson_deflection();
+  EXPECT_NEAR(exact, 0.0736713533, 1e-8);
+  const double coarse = square_deflection(16) / exact - 1, middle = square_deflection(32) / exact - 1;
+  EXPECT_GT(observed_order(coarse, middle), 1.9);
+  if (is_sanitized()) return;
+  const double fine = square_deflection(64) / exact - 1;
+  EXPECT_LT(std::abs(fine), 1e-3);
+  EXPECT_GT(observed_order(middle, fine), 1.9);
+}
+
+// --- B2: clamped disc, exact geometry -------------------------------------------------------------------
+
+double disc_deflection(int n, double q, bool is_follower) {
+  const TriangleMesh mesh = smooth_disc_mesh(n);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  Points start = mesh.vertices;  // slightly bulged: the flat disc has no stiffness
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double r2 = mesh.vertices.col(v).squaredNorm();
+    if (r2 > 1 - 1e-9)
+      fixed.col(v).setConstant(true);
+    else
+      start(2, v) = 0.5 * std::cbrt(q) * (1 - r2);
+  }
+  std::unique_ptr<EnergyTerm> load;
+  if (is_follower)
+    load = make_follower_pressure("p", mesh.vertices, mesh.triangles, q, fixed);
+  else
+    load = std::make_unique<LoadDead>(
+        "p", "load_pressure", frozen_pressure_forces(mesh.vertices, mesh.triangles, q), mesh.vertices);
+  const Equilibrium found = find_equilibrium(
+      start, fixed, terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0}), std::move(load)),
+      1e-9);
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  return found.x(2, grid_node(n, n / 2, n / 2));
+}
+
+struct DiscCase {
+  double q;
+  bool is_follower;
+  double deflection;  // by shooting, relative tolerance 1e-11
+};
+
+class Disc : public testing::TestWithParam<DiscCase> {};
+
+TEST_P(Disc, B2MatchesTheExactAxisymmetricSolution) {
+  const auto [q, is_follower, exact] = GetParam();
+  const double coarse = disc_deflection(4, q, is_follower), middle = disc_deflection(8, q, is_follower),
+               fine = disc_deflection(16, q, is_follower);
+  EXPECT_GT(observed_order(middle - exact, fine - exact), 1.9);
+  if (is_sanitized()) return;
+  EXPECT_LT(std::abs(disc_deflection(22, q, is_follower) / exact - 1), 2e-3);  // 1,936 triangles
+  const double finest = disc_deflection(32, q, is_follower);
+  const auto extrapolated = [](double h2, double h, double factor) { return h + (h - h2) / (factor - 1); };
+  const double a = extrapolated(coarse, middle, 4), b = extrapolated(middle, fine, 4),
+               c = extrapolated(fine, finest, 4);  // free of h^2
+  const double answer = extrapolated(extrapolated(a, b, 16), extrapolated(b, c, 16), 64);
+  std::printf("B2 %s q=%.0e: errors %.2e %.2e %.2e, extrapolated %.2e\n", is_follower ? "follower" : "dead",
+              q, middle / exact - 1, fine / exact - 1, finest / exact - 1, answer / exact - 1);
+  EXPECT_GT(observed_order(fine - exact, finest - exact), 1.9);
+  EXPECT_LT(std::abs(answer / exact - 1), 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Loads, Disc,
+                         testing::Values(DiscCase{1e-3, true, 0.0654043749}, DiscCase{1e-2, true, 0.14138457},
+                                         DiscCase{1e-1, true, 0.309515382},
+                                         DiscCase{1e-3, false, 0.0653380478},
+                                         DiscCase{1e-2, false, 0.140728587},
+                                         DiscCase{1e-1, false, 0.303176046}),
+                         [](const auto& instance) {
+                           return std::string(instance.param.is_follower ? "Follower" : "Dead") +
+                                  std::to_string(std::lround(-std::log10(instance.param.q)));
+                         });
+
+// --- B3: sphere under internal pressure -----------------------------------------------------------------
+
+// The reference is a relation between pressure, stretch and energy. An inscribed polyhedron is smaller than
+// its sphere, so at a given pressure its stretch, and more so its energy, come out low; what the row asks is
+// the pressure and the energy at the stretch that is there.
+double sphere_pressure(double stretch) { return (stretch - 1 / stretch) / 0.7; }
+
+double sphere_energy(double stretch) {
+  const double strain = 0.5 * (stretch * stretch - 1);
+  return strain * strain / 0.7;
+}
+
+struct Sphere {
+  double stretch, energy_per_area;
+};
+
+Sphere inflated_sphere(int subdivisions, double stretch) {
+  const double p = sphere_pressure(stretch);  // Eh = R = 1, nu = 0.3
+  const TriangleMesh mesh = sphere_mesh(subdivisions);
+  const FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  auto membrane = membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0});
+  const Equilibrium found = find_equilibrium(
+      1.05 * mesh.vertices, fixed,
+      terms_of(std::move(membrane), make_follower_pressure("p", mesh.vertices, mesh.triangles, p, fixed)),
+      1e-9);
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  const double rest = surface_area(mesh.vertices, mesh.triangles);
+  double energy = 0;
+  for (const TermReport& term : found.result.terms)
+    if (term.name == "membrane") energy = term.energy;
+  return {std::sqrt(surface_area(found.x, mesh.triangles) / rest), energy / rest};
+}
+
+TEST(Sphere, B3InflatesToTheClosedFormStretch) {
+  for (const double stretch : {1.02, 1.1, 1.3}) {
+    const Sphere coarse = inflated_sphere(1, stretch), middle = inflated_sphere(2, stretch);
+    EXPECT_GT(observed_order(coarse.stretch - stretch, middle.stretch - stretch), 1.9) << stretch;
+    if (is_sanitized()) continue;
+    const Sphere fine = inflated_sphere(3, stretch);  // 1,280 faces
+    const double at_given_pressure = fine.energy_per_area / sphere_energy(stretch) - 1;
+    std::printf("B3 %.2f: errors of stretch %.2e %.2e %.2e, of energy at the given pressure %.2e\n", stretch,
+                coarse.stretch / stretch - 1, middle.stretch / stretch - 1, fine.stretch / stretch - 1,
+                at_given_pressure);
+    EXPECT_LT(std::abs(fine.stretch / stretch - 1), 5e-3) << stretch;
+    EXPECT_LT(std::abs(sphere_pressure(fine.stretch) / sphere_pressure(stretch) - 1), 5e-3) << stretch;
+    EXPECT_LT(std::abs(fine.energy_per_area / sphere_energy(fine.stretch) - 1), 5e-3) << stretch;
+    EXPECT_LT(std::abs(at_given_pressure), 1e-2) << stretch;
+    EXPECT_GT(observed_order(middle.stretch - stretch, fine.stretch - stretch), 1.9) << stretch;
+    EXPECT_GT(observed_order(middle.energy_per_area - sphere_energy(stretch),
+                             fine.energy_per_area - sphere_energy(stretch)),
+              1.9)
+        << stretch;
+  }
+}
+
+// --- B4: long strip as a cylinder -------------------------------------------------------------------------
+
+struct Strip {
+  double rest_width, p, sag;
+};
+
+// Free edges y = 0 and y = height move within their planes: pressure needs the exact follower model there.
+double strip_sag(int n, const Strip& strip) {
+  const int rows = 2;
+  const double height = rows * strip.rest_width / n;
+  const TriangleMesh mesh = grid_mesh(n, rows, strip.rest_width, height);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  fixed.row(1).setConstant(true);
+  Points start = mesh.vertices;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const double s = static_cast<double>(i) / n;
+      start(0, grid_node(n, i, j)) = s;
+      start(2, grid_node(n, i, j)) = 4 * strip.sag * 0.9 * s * (1 - s);
+      if (i == 0 || i == n) fixed.col(grid_node(n, i, j)).setConstant(true);
+    }
+  const Equilibrium found =
+      find_equilibrium(start, fixed,
+                       terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0}),
+                                make_follower_pressure("p", start, mesh.triangles, strip.p, fixed)),
+                       1e-9);
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  double sag = 0;
+  for (int j = 0; j <= rows; ++j) sag += found.x(2, grid_node(n, n / 2, j)) / (rows + 1);
+  return sag;
+}
+
+TEST(Strip, B4BulgesIntoTheClosedFormCylinder) {
+  for (const Strip& strip :
+       {Strip{1.0, 1e-3, 0.0349517345}, Strip{1.0, 1e-2, 0.0753898085}, Strip{1.2, 1e-2, 0.286536511}}) {
+    const double coarse = strip_sag(16, strip), middle = strip_sag(32, strip);
+    EXPECT_GT(observed_order(coarse - strip.sag, middle - strip.sag), 1.9);
+    if (is_sanitized()) continue;
+    const double fine = strip_sag(64, strip);
+    std::printf("B4 %.1f %.0e: errors %.2e %.2e %.2e\n", strip.rest_width, strip.p, coarse / strip.sag - 1,
+                middle / strip.sag - 1, fine / strip.sag - 1);
+    EXPECT_LT(std::abs(fine / strip.sag - 1), 1e-3);
+    EXPECT_GT(observed_order(middle - strip.sag, fine - strip.sag), 1.9);
+  }
+}
+
+}  // namespace
+}  // namespace coapt
