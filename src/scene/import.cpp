@@ -6,6 +6,7 @@
 #include "scene/valve_json.hpp"
 
 #include <charconv>
+#include <cmath>
 
 namespace coapt {
 namespace {
@@ -48,7 +49,8 @@ std::string pressure_text(const Valve& valve, const ImportOptions& options) {
   if (valve.pressure <= 0) return kUsualPressure;
   const double mmhg = std::round(valve.pressure / quantity_value("1 mmHg", kPressure));
   const std::string text = digits(mmhg) + " mmHg";
-  if (mmhg > 0 && quantity_value(text, kPressure) == valve.pressure) return text;
+  constexpr double kSame = 1e-6;  // sources differ in the seventh digit of 1 mmHg
+  if (mmhg > 0 && std::abs(quantity_value(text, kPressure) / valve.pressure - 1) < kSame) return text;
   return digits(valve.pressure) + " MPa";
 }
 

@@ -53,7 +53,7 @@ TEST(Import, FixesTheAnnulusOfAValveWithoutMotion) {
   EXPECT_NE(warnings[0].find("thickness"), std::string::npos);
   const std::string text = text_of(folder.path() / "scene.json");
   EXPECT_NE(text.find(R"({ "nodes": "annulus", "fix": true })"), std::string::npos) << text;
-  EXPECT_NE(text.find(R"("toward_line": "annulus")"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("toward_line": "annulus", "pressure": "120 mmHg")"), std::string::npos) << text;
   const Model model = build(load_scene(folder.path() / "scene.json"));
   EXPECT_GT(model.origin.norm(), 100);  // scanner coordinates
   EXPECT_TRUE(model.motion.positions == nullptr);
