@@ -125,6 +125,12 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   // A run that was cut short is still judged, and saved, at the end of the path.
   if (problem.motion.positions) objective.prescribe(problem.motion.positions(1));
 
+  if (objective.has_circulatory_force())
+    result.route = solver.follows_path()
+                       ? "exact force, with its work along the path as merit"
+                       : "potential of the surface closed by a fan, remainder held dead and renewed in " +
+                             std::to_string(result.rounds) + " rounds";
+
   // The verdict is the objective's, whatever the solver thinks.
   result.residual = objective.true_residual(result.q);
   // The potential around the final state, so that the energy depends on that state alone and not on the

@@ -82,7 +82,8 @@ struct Result {
   double energy = 0;    // potential energy [force x length]
   double residual = 0;  // relative, exact loads, measured by the objective after the solver returned
   int iterations = 0;
-  int rounds = 0;  // outer renewals of a load without potential; 0 = none was needed
+  std::string route;  // how a load without potential was treated, for the user; empty = there was none
+  int rounds = 0;     // outer renewals of such a load
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;

@@ -1,7 +1,7 @@
 #include "scene/import.hpp"
 
 #include "core/error.hpp"
-#include "scene/read_json.hpp"
+#include "scene/detail/read_json.hpp"
 #include "scene/units.hpp"
 #include "scene/valve_json.hpp"
 

@@ -1,6 +1,6 @@
 #include "core/error.hpp"
-#include "scene/read_json.hpp"
-#include "scene/read_parameters.hpp"
+#include "scene/detail/read_json.hpp"
+#include "scene/detail/read_parameters.hpp"
 #include "scene/scene.hpp"
 #include "scene/units.hpp"
 

@@ -2,8 +2,8 @@
 
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
+#include "scene/detail/read_json.hpp"
 #include "scene/node_selection.hpp"
-#include "scene/read_json.hpp"
 #include "scene/suggestion.hpp"
 
 #include <algorithm>

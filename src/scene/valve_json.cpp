@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
-#include "scene/read_json.hpp"
+#include "scene/detail/read_json.hpp"
 #include "scene/units.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "mesh/mesh_io.hpp"
-#include "scene/read_json.hpp"
+#include "scene/detail/read_json.hpp"
 #include "scene/valve_json.hpp"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "scene/read_json.hpp"
+#include "scene/detail/read_json.hpp"
 
 #include "core/error.hpp"
 

@@ -1,8 +1,8 @@
 // Validates JSON against the table of the scene file. Private to this room.
 #pragma once
 
+#include "scene/detail/read_json.hpp"
 #include "scene/parameters.hpp"
-#include "scene/read_json.hpp"
 #include "scene/schema.hpp"
 
 #include <filesystem>
