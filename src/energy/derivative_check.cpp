@@ -22,9 +22,8 @@ struct Rung {
   double step = 0, first = 0, second = 0;
 };
 
-// Slope over the finest decade whose remainders stand clear of the noise. Each slope spans a decade and
-// the better of the two finest counts: a remainder whose leading coefficient changes sign between two
-// rungs dips at one of them, and that is no fault.
+// Slope over the finest decade whose remainders stand clear of the noise; the better of the two finest
+// counts, since the last rung may carry some of the noise.
 double finest_slope(const std::vector<Rung>& ladder, double Rung::*remainder, double noise) {
   size_t count = 0;
   while (count < ladder.size() && ladder[count].*remainder > noise) ++count;
@@ -67,8 +66,11 @@ void check_direction(const Subject& subject, const Vector& q, const Vector& g, c
   for (const double h : steps(options)) {
     const double ahead = subject.value(q + h * d), behind = subject.value(q - h * d);
     if (!std::isfinite(ahead) || !std::isfinite(behind)) continue;  // beyond a barrier
-    const double first = ahead - report.energy - h * slope;
-    ladder.push_back({h, std::abs(first), std::abs(first - 0.5 * h * h * curvature)});
+    // The larger of both sides: its orders add in magnitude, where on one side they could cancel.
+    const double first = ahead - report.energy - h * slope, first_behind = behind - report.energy + h * slope;
+    const double quadratic = 0.5 * h * h * curvature;
+    ladder.push_back({h, std::max(std::abs(first), std::abs(first_behind)),
+                      std::max(std::abs(first - quadratic), std::abs(first_behind - quadratic))});
     if (slope_scale > 0)
       gradient_error = std::min(gradient_error, std::abs((ahead - behind) / (2 * h) - slope) / slope_scale);
     const Vector difference = (subject.gradient(q + h * d) - subject.gradient(q - h * d)) / (2 * h);

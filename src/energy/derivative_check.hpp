@@ -15,9 +15,9 @@ struct DerivativeOptions {
 
 // Worst figures over all directions. With E(q + h d) and the remainders
 //   R1(h) = |E(q + h d) - E(q) - h g.d|,   R2(h) = |... - h^2/2 d.H d|
-// right derivatives give R1 ~ h^2 and R2 ~ h^3: slopes of 2 and 3 on a log-log ladder of steps, read at
-// its finest decade above round-off. A remainder that is nothing but round-off (a linear term has no R1,
-// a quadratic one no R2) has slope +infinity.
+// each the larger of the two at +h and -h, right derivatives give R1 ~ h^2 and R2 ~ h^3: slopes of 2 and 3 on
+// a log-log ladder of steps, read at its finest decade above round-off. A remainder that is nothing but
+// round-off (a linear term has no R1, a quadratic one no R2) has slope +infinity.
 struct DerivativeReport {
   std::string name, type;
   double energy = 0;         // at the state [force x length]

@@ -18,7 +18,7 @@ try:
 except ImportError:
     jsonschema = None
 
-COAPT, SCHEMA = sys.argv[1], pathlib.Path(sys.argv[2])
+COAPT, SCHEMA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2])
 FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv"}
 
 

@@ -98,13 +98,14 @@ TEST(Metrics, CountHalfTheContactingAreaAsCoaptation) {
 TEST(Metrics, MeasureTheHoleOfARingAsOrifice) {
   const Model model = ring();
   const Metrics metrics = measure_at(model, model.X);
-  EXPECT_NEAR(metrics.annulus_area_mm2.value(), polygon_area(40, 10), 1e-9);
+  EXPECT_NEAR(metrics.annulus_area_mm2.value(), polygon_area(40, 10), 1e-3);
   EXPECT_NEAR(metrics.orifice_area_mm2.value(), polygon_area(40, 4), 1e-3);
   EXPECT_NEAR(metrics.orifice_area_percent.value(), 16, 1e-3);
 }
 
 TEST(Metrics, MeasureTheDepthOfAFunnelAsTenting) {
   Model model = ring();
+  model.contact_range = 0.2;
   for (int k = 0; k < 40; ++k) model.X(2, k) = -3;  // the open leaflets hang to -z
   const Metrics metrics = measure_at(model, model.X);
   EXPECT_NEAR(metrics.tenting_height_mm.value(), 3, 0.3);  // a column is 0.57 wide
