@@ -24,7 +24,7 @@ struct Report {
 };
 
 // How the pressure of the model was treated, in words.
-std::string pressure_route(const Model& model, int rounds);
+std::string pressure_route(const Model& model, const Result& result);
 
 // The text of result.json; its schema is result_schema(). Numbers that are not finite become null.
 std::string result_json(const Model& model, const Report& report);

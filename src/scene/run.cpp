@@ -57,7 +57,7 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);
 
   const Result& result = report.result;
-  report.pressure_route = pressure_route(model, result.rounds);
+  report.pressure_route = pressure_route(model, result);
   report.warnings = model.warnings;
   report.fields = compute_fields(model, model.objective->positions(result.q));
   report.metrics = measure(model, result.q, report.fields);
