@@ -144,10 +144,15 @@ class ContactFacet final : public EnergyTerm {
   }
 
   double evaluate(const Points& x, Sink& sink) const override {
+    const Spheres spheres = bounding_spheres(x);
     double energy = 0;
     active_pairs_ = 0;
-    for (size_t pair = 0; pair < pairs_.size(); ++pair)
+    for (size_t pair = 0; pair < pairs_.size(); ++pair) {
+      const auto [j, k] = pairs_[pair];
+      const double reach = options_.range + spheres.radii[j] + spheres.radii[k];
+      if ((spheres.centres.col(j) - spheres.centres.col(k)).squaredNorm() > 1.001 * reach * reach) continue;
       energy += evaluate_pair(x, static_cast<long>(pair), sink);
+    }
     return energy;
   }
 
@@ -155,19 +160,30 @@ class ContactFacet final : public EnergyTerm {
   struct Pair {
     int j, k;
   };
+  struct Spheres {
+    Points centres;
+    Vector radii;
+  };
+
+  // Around each facet's centroid: a cheap way to see that two facets are out of range.
+  Spheres bounding_spheres(const Points& x) const {
+    Spheres spheres{Points(3, triangles_.cols()), Vector(triangles_.cols())};
+    for (int t = 0; t < triangles_.cols(); ++t) {
+      const Vec3 a = x.col(triangles_(0, t)), b = x.col(triangles_(1, t)), c = x.col(triangles_(2, t));
+      const Vec3 centroid = (a + b + c) / 3;
+      spheres.centres.col(t) = centroid;
+      spheres.radii[t] = std::sqrt(std::max(
+          {(a - centroid).squaredNorm(), (b - centroid).squaredNorm(), (c - centroid).squaredNorm()}));
+    }
+    return spheres;
+  }
 
   void search(const Points& x) {
     ++searches_;
     searched_at_ = x;
-    CentroidCloud cloud{Points(3, triangles_.cols())};
-    Vector radius(triangles_.cols());
-    for (int t = 0; t < triangles_.cols(); ++t) {
-      const Vec3 a = x.col(triangles_(0, t)), b = x.col(triangles_(1, t)), c = x.col(triangles_(2, t));
-      const Vec3 centroid = (a + b + c) / 3;
-      cloud.points.col(t) = centroid;
-      radius[t] = std::sqrt(std::max(
-          {(a - centroid).squaredNorm(), (b - centroid).squaredNorm(), (c - centroid).squaredNorm()}));
-    }
+    const Spheres spheres = bounding_spheres(x);
+    const CentroidCloud cloud{spheres.centres};
+    const Vector& radius = spheres.radii;
     using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, CentroidCloud>,
                                                      CentroidCloud, 3>;
     const Tree tree(3, cloud);

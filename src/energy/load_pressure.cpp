@@ -58,8 +58,7 @@ std::unique_ptr<EnergyTerm> volume_term(std::string name, const Triangles& trian
       std::vector<FacetVolume::Rest>(static_cast<size_t>(triangles.cols()), {p, origin}));
 }
 
-// The surface closed by fans over its moving rims carries the potential; the fans' own force, which no
-// membrane is there to feel, is the circulatory remainder, and is taken off exactly.
+// The surface closed by fans over its moving rims carries the potential; the remainder lives on the rims.
 class LoadPressureFollower final : public EnergyTerm {
  public:
   LoadPressureFollower(std::string name, const Points& X, const Triangles& triangles, double p,
@@ -78,11 +77,24 @@ class LoadPressureFollower final : public EnergyTerm {
   bool has_circulatory_force() const override { return true; }
   TermCounters counters() const override { return {triangles_.cols(), 0, 0}; }
 
+  // The consistent force of a facet at its corner a is p/6 (b x c + a x b + c x a), that of the potential
+  // p/6 (b x c). Summed over the facets the difference cancels on every inner edge and leaves p/6 (a x b)
+  // at both ends of each rim edge a -> b. The force on the fans, which no membrane feels, is taken off.
   void add_circulatory_force(const Points& x, Points& force) const override {
-    Points potential_gradient = Points::Zero(3, x.cols());
-    Sink sink(potential_gradient.data());
-    closed_->evaluate(x, sink);
-    force += follower_pressure_forces(x, triangles_, rest_.pressure) + potential_gradient;
+    const Vec3& o = rest_.origin;
+    const double sixth = rest_.pressure / 6;
+    for (const auto& rim : rims_)
+      for (size_t k = 0; k < rim.size(); ++k) {
+        const int a = rim[k], b = rim[(k + 1) % rim.size()];
+        const Vec3 remainder = sixth * (x.col(a) - o).cross(x.col(b) - o);
+        force.col(a) += remainder;
+        force.col(b) += remainder;
+      }
+    for (int t = 0; t < fans_.cols(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int b = fans_((k + 1) % 3, t), c = fans_((k + 2) % 3, t);
+        force.col(fans_(k, t)) -= sixth * (x.col(b) - o).cross(x.col(c) - o);
+      }
   }
 
   bool renew(const Points& x) override {
@@ -92,19 +104,23 @@ class LoadPressureFollower final : public EnergyTerm {
 
  private:
   void set_fans(const Points& x) {
-    std::vector<int> corners = corner_list(triangles_);
+    std::vector<int> fan_corners;
     for (const auto& rim : rims_) {
       if (rim.size() < 3) continue;
       const std::vector<int> fan = corner_list(close_rim(x, rim));
-      corners.insert(corners.end(), fan.begin(), fan.end());
+      fan_corners.insert(fan_corners.end(), fan.begin(), fan.end());
     }
+    fans_ = Eigen::Map<const Triangles>(fan_corners.data(), 3, static_cast<int>(fan_corners.size() / 3));
+    std::vector<int> corners = corner_list(triangles_);
+    corners.insert(corners.end(), fan_corners.begin(), fan_corners.end());
     const size_t count = corners.size() / 3;
     closed_.emplace(name(), std::move(corners), std::vector<FacetVolume::Rest>(count, rest_));
   }
 
   Triangles triangles_;
-  std::vector<std::vector<int>> rims_;
+  std::vector<std::vector<int>> rims_;  // those that move, in the direction of the facets
   FacetVolume::Rest rest_;
+  Triangles fans_;
   std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans
 };
 

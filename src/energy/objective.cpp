@@ -26,7 +26,6 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
       free_count_ += 3 - static_cast<int>(fixed_.col(node).count());
     }
   nodal_gradient_.resize(3, x_.cols());
-  if (has_circulatory_force()) dead_ = Points::Zero(3, x_.cols());
 }
 
 Vector Objective::unknowns(const Points& x) const {
@@ -87,12 +86,17 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
       std::fill_n(h->valuePtr(), h->nonZeros(), 0.0);
   }
   double* gradient = g == nullptr ? nullptr : nodal_gradient_.data();
-  if (gradient != nullptr) {
-    nodal_gradient_.setZero();
-    if (dead_.size() != 0) nodal_gradient_ = -dead_;
-  }
+  if (gradient != nullptr) nodal_gradient_.setZero();
 
-  double energy = dead_.size() == 0 ? 0 : -dead_.cwiseProduct(x_).sum();
+  double energy = 0;
+  if (circulatory_ == Circulatory::HeldDead) {
+    energy = -remainder_.cwiseProduct(x_).sum();
+    if (gradient != nullptr) nodal_gradient_ = -remainder_;
+  } else if (circulatory_ == Circulatory::PathWork) {
+    const Points force = circulatory_force();
+    energy = -work_ - 0.5 * (remainder_ + force).cwiseProduct(x_ - anchor_).sum();
+    if (gradient != nullptr) nodal_gradient_ = -force;
+  }
   bool loads_are_complete = false;
   const auto read_off_loads = [&] {
     if (gradient != nullptr && !loads_are_complete) load_scale_ = largest_column_norm(nodal_gradient_);
@@ -168,28 +172,43 @@ bool Objective::has_circulatory_force() const {
                      [](const auto& term) { return term->has_circulatory_force(); });
 }
 
-void Objective::renew(const Vector& q) {
+Points Objective::circulatory_force() const {
+  Points force = Points::Zero(3, node_count());
+  for (const auto& term : terms_) term->add_circulatory_force(x_, force);
+  return force;
+}
+
+void Objective::hold_dead(const Vector& q) {
   prepare(q);
-  dead_.setZero();
-  for (const auto& term : terms_) {
-    if (!term->has_circulatory_force()) continue;
-    if (term->renew(x_)) pattern_is_current_ = false;
-    term->add_circulatory_force(x_, dead_);
-  }
+  for (const auto& term : terms_)
+    if (term->has_circulatory_force() && term->renew(x_)) pattern_is_current_ = false;
+  circulatory_ = Circulatory::HeldDead;
+  remainder_ = circulatory_force();
+}
+
+void Objective::follow_path(const Vector& q) {
+  prepare(q);
+  circulatory_ = Circulatory::PathWork;
+  remainder_ = circulatory_force();
+  anchor_ = x_;
+  work_ = 0;
+}
+
+void Objective::advance(const Vector& q) {
+  if (circulatory_ != Circulatory::PathWork) return;
+  prepare(q);
+  const Points force = circulatory_force();
+  work_ += 0.5 * (remainder_ + force).cwiseProduct(x_ - anchor_).sum();
+  remainder_ = force;
+  anchor_ = x_;
 }
 
 Points Objective::exact_gradient(const Vector& q) {
   prepare(q);
   Points g = Points::Zero(3, node_count());
   Sink sink(g.data());
-  for (const auto& term : terms_) {
-    term->evaluate(x_, sink);
-    if (!term->has_circulatory_force()) continue;
-    Points force = Points::Zero(3, node_count());
-    term->add_circulatory_force(x_, force);
-    g -= force;
-  }
-  return g;
+  for (const auto& term : terms_) term->evaluate(x_, sink);
+  return g - circulatory_force();
 }
 
 double Objective::true_residual(const Vector& q) {

@@ -72,8 +72,20 @@ class Objective {
 
   // --- Loads without a potential --------------------------------------------------------------------
   bool has_circulatory_force() const;
-  // Holds the circulatory remainder dead at its value at q; evaluations then belong to that potential.
-  void renew(const Vector& q);
+
+  // Treats the circulatory force in this way from q on. Pre: has_circulatory_force().
+  //   Held dead: the remainder keeps its value at q, and evaluations belong to a true potential. Terms
+  //   may choose that potential anew.
+  //   Path work: the gradient is the exact out-of-balance force, and the energy counts the work of the
+  //   remainder along the way from q (trapezoidal rule), so that it falls along any step that the force
+  //   drives. It is a merit for a line search from q, not a function of the position alone.
+  void hold_dead(const Vector& q);
+  void follow_path(const Vector& q);
+
+  // Goes on from q: call it at each accepted iterate. The energy is continuous there. Does nothing unless
+  // the path is followed.
+  void advance(const Vector& q);
+
   // Residual with the exact load at q, never that of the potential. The final judge of convergence.
   double true_residual(const Vector& q);
 
@@ -89,6 +101,7 @@ class Objective {
   void prepare(const Vector& q);
   void renew_pattern();
   void split(const Points& nodal, Vector& free);
+  Points circulatory_force() const;  // at x_
   Points exact_gradient(const Vector& q);
   double strained_force() const;
 
@@ -99,7 +112,11 @@ class Objective {
   std::vector<int> block_;                          // block of each node, -1 = wholly prescribed
   int free_count_ = 0;
 
-  Points dead_;            // circulatory force held dead; empty when no term has any
+  enum class Circulatory { None, HeldDead, PathWork };
+  Circulatory circulatory_ = Circulatory::None;
+  Points remainder_;       // circulatory force, 3 x node_count: held dead, or at the anchor of the path
+  Points anchor_;          // where the path has got to
+  double work_ = 0;        // of the circulatory force along the path so far
   Points nodal_gradient_;  // work space
   double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0, strained_scale_ = 0;
 

@@ -1,16 +1,16 @@
 // The nearest positive semidefinite matrix of an element Hessian, so that a sum of them is one.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace coapt {
 
-// Sets the negative eigenvalues of a symmetric matrix to zero (Teran et al. 2005, section 6).
-template <typename Matrix>
-void project_psd(Matrix& h) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(h);
-  if (eigen.eigenvalues()[0] >= 0) return;
-  h = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
-}
+// Sets the negative eigenvalues of a symmetric matrix to zero (Teran et al. 2005, section 6). Defined for
+// the sizes of the element laws, 6 (two nodes) and 9 (three nodes).
+template <int kSize>
+void project_psd(Eigen::Matrix<double, kSize, kSize>& h);
+
+extern template void project_psd<6>(Eigen::Matrix<double, 6, 6>&);
+extern template void project_psd<9>(Eigen::Matrix<double, 9, 9>&);
 
 }  // namespace coapt

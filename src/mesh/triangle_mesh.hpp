@@ -9,10 +9,10 @@
 namespace coapt {
 
 struct TriangleMesh {
-  Points vertices = Points(3, 0);        // 3 x vertex_count [length]
-  Triangles triangles = Triangles(3, 0); // 3 x triangle_count, counter-clockwise seen from the normal's side
-  std::vector<int> regions;              // region of each triangle; empty: the mesh has one unnamed region
-  std::vector<std::string> region_names; // indexed by the entries of `regions`
+  Points vertices = Points(3, 0);         // 3 x vertex_count [length]
+  Triangles triangles = Triangles(3, 0);  // 3 x triangle_count, counter-clockwise seen from the normal's side
+  std::vector<int> regions;               // region of each triangle; empty: the mesh has one unnamed region
+  std::vector<std::string> region_names;  // indexed by the entries of `regions`
 
   int vertex_count() const { return static_cast<int>(vertices.cols()); }
   int triangle_count() const { return static_cast<int>(triangles.cols()); }

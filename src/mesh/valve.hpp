@@ -34,15 +34,15 @@ struct ChordNetwork {
 
 struct Valve {
   std::string name;
-  TriangleMesh leaflets;                   // start shape, normals point to the high-pressure side
+  TriangleMesh leaflets;  // start shape, normals point to the high-pressure side
   std::optional<TriangleMesh> closed_reference;
-  std::vector<int> annulus;                // ordered closed loop of vertices
-  Points annulus_closed = Points(3, 0);    // where the annulus goes; empty: it stays
-  std::vector<int> free_edge;              // ordered closed loop of vertices, may be empty
-  std::vector<int> commissures;            // vertices where the leaflets meet at the annulus, may be empty
+  std::vector<int> annulus;              // ordered closed loop of vertices
+  Points annulus_closed = Points(3, 0);  // where the annulus goes; empty: it stays
+  std::vector<int> free_edge;            // ordered closed loop of vertices, may be empty
+  std::vector<int> commissures;          // vertices where the leaflets meet at the annulus, may be empty
   ChordNetwork chords;
-  double pressure = 0;                     // [force/length^2]; 0 = not stated
-  double thickness = 0;                    // [length]; 0 = not stated
+  double pressure = 0;   // [force/length^2]; 0 = not stated
+  double thickness = 0;  // [length]; 0 = not stated
 };
 
 }  // namespace coapt

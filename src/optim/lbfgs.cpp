@@ -55,6 +55,7 @@ class SolverLbfgs final : public Solver {
   explicit SolverLbfgs(const LbfgsOptions& options) : options_(options) {}
 
   std::string_view name() const override { return "lbfgs"; }
+  bool follows_path() const override { return true; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     CurvatureMemory memory(options_.memory);

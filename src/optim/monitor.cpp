@@ -73,6 +73,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.seconds = seconds();
   now.evaluations = objective_.counts().gradient + objective_.counts().hessian;
   last_ = q;
+  objective_.advance(q);
   extent_ = q.size() == 0 ? 0 : q.maxCoeff() - q.minCoeff();
   trace_.push_back(now);
 

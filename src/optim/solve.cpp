@@ -23,7 +23,8 @@ std::string number(double value) {
 // potential around the last equilibrium; the remainder contracts geometrically where it settles.
 Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
               int& rounds, std::string& note) {
-  if (!objective.has_circulatory_force()) {
+  if (!objective.has_circulatory_force() || solver.follows_path()) {
+    if (objective.has_circulatory_force()) objective.follow_path(q);
     monitor.begin_round(monitor.round(), tolerance);
     return solver.minimize(objective, q, monitor);
   }
@@ -31,7 +32,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   double best_residual = kInfinity, last_residual = kInfinity, contraction = kNaN;
   int without_gain = 0;
   for (int round = 0; round < kMaxRounds; ++round) {
-    objective.renew(q);
+    objective.hold_dead(q);
     const double residual = objective.true_residual(q);
     if (residual < best_residual) {
       without_gain = residual < 0.9 * best_residual ? 0 : without_gain + 1;
@@ -45,7 +46,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
     if (residual <= tolerance) return Status::Converged;
     if (without_gain >= kMaxRoundsWithoutGain) break;
     ++rounds;
-    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.03 * std::min(residual, 1.0)));
+    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
     const Status status = solver.minimize(objective, q, monitor);
     if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
         status == Status::NonFinite)
@@ -124,9 +125,19 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   // A run that was cut short is still judged, and saved, at the end of the path.
   if (problem.motion.positions) objective.prescribe(problem.motion.positions(1));
 
+  if (objective.has_circulatory_force())
+    result.route = solver.follows_path()
+                       ? "exact force, with its work along the path as merit"
+                       : "potential of the surface closed by a fan, remainder held dead and renewed in " +
+                             std::to_string(result.rounds) + " rounds";
+
   // The verdict is the objective's, whatever the solver thinks.
   result.residual = objective.true_residual(result.q);
-  result.energy = objective.value(result.q);
+  // The potential around the final state, so that the energy depends on that state alone and not on the
+  // way that a solver took to it.
+  if (objective.has_circulatory_force()) objective.hold_dead(result.q);
+  result.terms = objective.breakdown(result.q);
+  for (const TermReport& term : result.terms) result.energy += term.energy;
   if (result.residual <= stop.tolerance && status != Status::Cancelled)
     status = Status::Converged;
   else if (status == Status::Converged || status == Status::LineSearchFailed)
@@ -139,7 +150,6 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
                         objective.counts().gradient - counts_before.gradient,
                         objective.counts().hessian - counts_before.hessian};
   result.factorisations = monitor.factorisations();
-  result.terms = objective.breakdown(result.q);
   result.trace = monitor.take_trace();
   result.phase_s = monitor.phases().seconds();
   result.wall_s = monitor.seconds();

@@ -53,7 +53,10 @@ class Solver {
  public:
   virtual ~Solver() = default;
   virtual std::string_view name() const = 0;
-  virtual bool needs_hessian() const { return false; }
+
+  // Whether the method works from the exact out-of-balance force and needs the energy only to compare a
+  // step with its start. Others get a load without potential in rounds, each with a true potential.
+  virtual bool follows_path() const { return false; }
 
   // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
   // accepted iterate, finite whatever happens. Never throws for numerical reasons.
@@ -79,7 +82,8 @@ struct Result {
   double energy = 0;    // potential energy [force x length]
   double residual = 0;  // relative, exact loads, measured by the objective after the solver returned
   int iterations = 0;
-  int rounds = 0;  // outer renewals of a load without potential; 0 = none was needed
+  std::string route;  // how a load without potential was treated, for the user; empty = there was none
+  int rounds = 0;     // outer renewals of such a load
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;

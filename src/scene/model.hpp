@@ -16,15 +16,15 @@ namespace coapt {
 
 // One cable or tether of the scene, for reports; indexed as in its term.
 struct Line {
-  int a = 0, b = 0;         // nodes
-  double rest_length = 0;   // [mm]; 0 for a constant-force cable
-  std::string term;         // name of the term that it belongs to
-  int element = 0;          // its element in that term
+  int a = 0, b = 0;        // nodes
+  double rest_length = 0;  // [mm]; 0 for a constant-force cable
+  std::string term;        // name of the term that it belongs to
+  int element = 0;         // its element in that term
 };
 
 // Plane-stress membrane properties of one triangle, for strain and stress fields.
 struct MembraneProperties {
-  double young = 0;      // [MPa]
+  double young = 0;  // [MPa]
   double poisson = 0;
   double thickness = 0;  // [mm]
   double prestress = 0;  // resultant [N/mm]
@@ -34,19 +34,19 @@ struct MembraneProperties {
 // Lengths in mm, forces in N. Positions are kept relative to `origin` (the centre of the nodes), so that
 // a mesh far from zero loses no digits; add it back on output.
 struct Model {
-  Vec3 origin = Vec3::Zero();              // [mm]
-  Points X;                                // reference positions, 3 x node_count [mm]
-  TriangleMesh mesh;                       // its vertices are the first columns of X
+  Vec3 origin = Vec3::Zero();                    // [mm]
+  Points X;                                      // reference positions, 3 x node_count [mm]
+  TriangleMesh mesh;                             // its vertices are the first columns of X
   std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
   std::vector<Line> lines;
-  std::vector<MembraneProperties> membrane;      // per triangle; empty without a membrane term
-  double applied_pressure = 0;             // largest pressure of the load terms [MPa]
-  double contact_range = 0;                // [mm]; 0 without a contact term
+  std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term
+  double applied_pressure = 0;               // largest pressure of the load terms [MPa]
+  double contact_range = 0;                  // [mm]; 0 without a contact term
   std::unique_ptr<Objective> objective;
   MotionPath motion;
   Vector q0;
   std::optional<TriangleMesh> closed_reference;  // relative to origin too
-  std::vector<std::string> warnings;       // whole sentences
+  std::vector<std::string> warnings;             // whole sentences
 };
 
 }  // namespace coapt

@@ -55,8 +55,8 @@ std::vector<Fan> fans_of_muscle(const MitralShape& shape, int muscle, int branch
   fans.push_back(spread(shape, muscle, anterior, secondary, 0.12, 0.28, 0.7, branches));
   fans.push_back(spread(shape, muscle, anterior, strut, 0.26, 0.40, 0.6, branches));
   add_primary(posterior, 4);
-  fans.push_back(spread(shape, muscle, posterior, secondary, 0.10, 0.26, 0.6, branches));
-  fans.push_back(spread(shape, muscle, posterior, secondary, 0.30, 0.46, 0.6, branches));
+  fans.push_back(spread(shape, muscle, posterior, secondary, 0.08, 0.22, 0.65, branches));
+  fans.push_back(spread(shape, muscle, posterior, secondary, 0.26, 0.40, 0.65, branches));
   Fan commissural = spread(shape, muscle, anterior, primary, 0, kEdgeFrom, 1, 2);
   for (const Insertion& insertion : spread(shape, muscle, posterior, primary, 0, kEdgeFrom, 1, 2).insertions)
     commissural.insertions.push_back(insertion);
@@ -71,10 +71,10 @@ Points papillary_tips(const MitralDimensions& d) {
     const double side = muscle == 0 ? 1 : -1;
     const Vec3 centre(side * d.papillary_distance / 2, d.papillary_offset, -d.papillary_depth);
     int tip = muscle * kTips;
-    tips.col(tip++) = centre + Vec3(-side * 1.0, 2.5, 0);    // towards the anterior leaflet
-    tips.col(tip++) = centre + Vec3(side * 1.5, 1.0, 0.8);   // towards the commissure
-    tips.col(tip++) = centre + Vec3(side * 1.0, -1.5, 0.4);  // towards the posterior leaflet, lateral
-    tips.col(tip++) = centre + Vec3(-side * 1.5, -2.5, -0.6);
+    tips.col(tip++) = centre + Vec3(-side * 1.0, 3.5, 0);   // towards the anterior leaflet
+    tips.col(tip++) = centre + Vec3(side * 1.5, 1.0, 0.8);  // towards the commissure
+    tips.col(tip++) = centre + Vec3(side * 1.0, -2, 0.4);   // towards the posterior leaflet, lateral
+    tips.col(tip++) = centre + Vec3(-side * 0.5, -5, -0.6);
   }
   return tips;
 }
@@ -108,15 +108,35 @@ int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::
   });
 }
 
-// Start position of a junction: `start`, moved until no chord that ends there is longer than its
-// rest length (projection onto one ball after the other; converges when the balls have a common point).
-Vec3 settle_junction(Vec3 junction, const Points& ends, const std::vector<double>& rest_lengths) {
+struct Plane {
+  Vec3 point, normal;
+};
+
+// The limits on the start position of a junction: no chord that ends there longer than its rest length, and
+// the junction at least a clearance on the ventricular side of some planes.
+struct JunctionLimits {
+  Points ends = Points(3, 0);
+  std::vector<double> rest_lengths;
+  std::vector<Plane> planes;
+};
+
+// `start`, projected onto one limit after the other; the balls come last, so that chords stay slack when
+// the limits exclude each other. All limits are convex: the sweeps converge to a common point if there is
+// one.
+Vec3 settle_junction(Vec3 junction, const JunctionLimits& limits) {
   constexpr int kSweeps = 200;
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (int i = 0; i < ends.cols(); ++i) {
-      const Vec3 from_end = junction - ends.col(i);
-      if (from_end.norm() > rest_lengths[i]) junction = ends.col(i) + rest_lengths[i] * from_end.normalized();
+  constexpr double kClearance = 0.8;  // [mm]
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (const Plane& plane : limits.planes) {
+      const double distance = (junction - plane.point).dot(plane.normal);
+      if (distance < kClearance) junction += (kClearance - distance) * plane.normal;
     }
+    for (int i = 0; i < limits.ends.cols(); ++i) {
+      const Vec3 end = limits.ends.col(i), from_end = junction - end;
+      if (from_end.norm() > limits.rest_lengths[i])
+        junction = end + limits.rest_lengths[i] * from_end.normalized();
+    }
+  }
   return junction;
 }
 
@@ -142,22 +162,28 @@ struct Builder {
     const Vec3 closed_junction = closed_tip + kJunctionPlace * (closed_middle - closed_tip);
 
     const int count = static_cast<int>(fan.insertions.size());
-    Points ends(3, count + 1);  // of the trunk, then of the branches, at the start
-    ends.col(0) = open_tip;
-    std::vector<double> rest_lengths = {(closed_junction - closed_tip).norm()};
+    JunctionLimits limits;  // ends and lengths: of the trunk, then of the branches
+    limits.ends.resize(3, count + 1);
+    limits.ends.col(0) = open_tip;
+    limits.rest_lengths = {(closed_junction - closed_tip).norm()};
     std::vector<int> vertices;
     for (int i = 0; i < count; ++i) {
       const Insertion& insertion = fan.insertions[i];
-      const int v = nearest_vertex(shape, mesh, insertion.t == 1 ? sites.free_edge : sites.inside, insertion);
-      const Vec3 closed_end = mitral_closed_point(shape, mesh.coordinates(0, v), mesh.coordinates(1, v));
+      const bool is_inside = insertion.t < 1;
+      const int v = nearest_vertex(shape, mesh, is_inside ? sites.inside : sites.free_edge, insertion);
+      const double u = mesh.coordinates(0, v), t = mesh.coordinates(1, v);
       vertices.push_back(v);
-      ends.col(i + 1) = mesh.leaflets.vertices.col(v);
-      rest_lengths.push_back((closed_end - closed_junction).norm());
+      limits.ends.col(i + 1) = mesh.leaflets.vertices.col(v);
+      limits.rest_lengths.push_back((mitral_closed_point(shape, u, t) - closed_junction).norm());
+      if (!is_inside) continue;  // a chord to the belly must not run through the leaflet below its insertion
+      for (const double height : {t, 1.0})
+        limits.planes.push_back({mitral_open_point(shape, u, height), mitral_open_normal(shape, u, height)});
     }
     const Vec3 start = open_tip + kJunctionPlace * (open_middle - open_tip);
-    const Vec3 junction = settle_junction(start, ends, rest_lengths);
+    const Vec3 junction = settle_junction(start, limits);
+    std::vector<double>& rest_lengths = limits.rest_lengths;
     for (int i = 0; i <= count; ++i)
-      rest_lengths[i] = std::max(rest_lengths[i], (junction - ends.col(i)).norm());
+      rest_lengths[i] = std::max(rest_lengths[i], (junction - limits.ends.col(i)).norm());
 
     const ChordEnd node = {ChordEnd::Kind::Junction, static_cast<int>(junctions.size())};
     junctions.push_back(junction);

@@ -9,9 +9,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kShrink = 0.35;  // of the circumference from the annulus to the free edge, about
+constexpr double kShrink = 0.35;  // of the height of the rows from the annulus to the free edge
 
-// Cosine of the triangle's angle at corner a.
+// Angle at corner a of a triangle [radians].
 double angle_at(const Points& x, int a, int b, int c) {
   const Vec3 ab = x.col(b) - x.col(a), ac = x.col(c) - x.col(a);
   return std::atan2(ab.cross(ac).norm(), ab.dot(ac));

@@ -11,10 +11,12 @@ namespace coapt {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kAnnulusSteps = 4096;      // of the tables, per leaflet
-constexpr int kCoaptationSteps = 512;    // of the coaptation line
-constexpr double kHeightExponent = 1.5;  // above 1: the height has no kink at the commissures
-constexpr double kDome = 0.08;           // rise of the closed leaflet's dome over its chord line
+constexpr int kAnnulusSteps = 4096;    // of the tables, per leaflet
+constexpr int kCoaptationSteps = 512;  // of the coaptation line
+constexpr double kBumpExponent = 1.3;
+constexpr double kSlopeExponent = 0.5;       // how much denser the mesh is where the free edge is steep
+constexpr double kCommissureSteepness = 12;  // of the open leaflets, more than at mid-leaflet [degrees]
+constexpr double kDome = 0.08;               // rise of the closed leaflet's dome over its chord line
 constexpr double kDomeLength = 1 + 8.0 / 3 * kDome * kDome;  // of a shallow arc over its chord line
 
 double radians(double degrees) { return degrees * kPi / 180; }
@@ -32,19 +34,23 @@ Vec3 annulus_point(const MitralDimensions& d, double angle, bool is_closed) {
           -shrink * a * saddle * std::cos(2 * angle)};
 }
 
-// Horizontal unit normal of the open annulus, inward.
-Vec3 inward_normal(const MitralDimensions& d, double angle) {
+// Zero at the commissures and one at mid-leaflet, without a kink at the commissures.
+double bump(double fraction) { return std::pow(std::max(0.0, std::sin(kPi * fraction)), kBumpExponent); }
+
+// Horizontal direction of the open leaflet's meridian: the inward normal of the annulus, but nearly
+// parallel over the anterior leaflet, which does not narrow towards its free edge.
+Vec3 inward_direction(const MitralDimensions& d, double angle, MitralLeaflet leaflet, double fraction) {
   const double a = d.commissural_diameter / 2, b = anteroposterior(d) / 2;
   const double dx = -a * std::sin(angle);
   const double dy = b * (std::cos(angle) - 2 * d.flatness * std::sin(2 * angle));
-  return Vec3(-dy, dx, 0).normalized();
+  const double converging = leaflet == MitralLeaflet::Anterior ? 1 - bump(fraction) : 1;
+  return Vec3(-converging * dy, dx, 0).normalized();
 }
 
 double leaflet_height(const MitralDimensions& d, MitralLeaflet leaflet, double fraction) {
   const double middle =
       leaflet == MitralLeaflet::Anterior ? d.anterior_height_ratio : d.posterior_height_ratio;
-  const double bump = std::pow(std::max(0.0, std::sin(kPi * fraction)), kHeightExponent);
-  const double ratio = d.commissural_height_ratio + (middle - d.commissural_height_ratio) * bump;
+  const double ratio = d.commissural_height_ratio + (middle - d.commissural_height_ratio) * bump(fraction);
   return anteroposterior(d) * ratio;
 }
 
@@ -67,9 +73,13 @@ AnnulusPosition position_at(const MitralShape& shape, double u) {
   return {mix(shape.angle), fraction, mix(shape.height)};
 }
 
-// Parameter of the coaptation line that belongs to a meridian.
+MitralLeaflet leaflet_at(const MitralShape& shape, double u) {
+  return u - std::floor(u) < shape.anterior_share ? MitralLeaflet::Anterior : MitralLeaflet::Posterior;
+}
+
+// Parameter of the coaptation line that belongs to a meridian: opposite fractions of the two leaflets meet.
 double line_parameter(const MitralShape& shape, double u, double fraction) {
-  return u - std::floor(u) < shape.anterior_share ? fraction : 1 - fraction;
+  return leaflet_at(shape, u) == MitralLeaflet::Anterior ? fraction : 1 - fraction;
 }
 
 Vec3 coaptation_point(const MitralShape& shape, double w) {
@@ -80,8 +90,9 @@ Vec3 coaptation_point(const MitralShape& shape, double w) {
 
 double domed_length(const Vec3& from, const Vec3& to) { return kDomeLength * (to - from).norm(); }
 
-// Where two opposite meridians meet: on the line between their annulus points, lowered by the tenting,
-// at the place that leaves both the same length.
+// Where two opposite meridians meet: between their annulus points, lowered by the tenting, straight
+// across from the anterior one (whose leaflet neither narrows nor widens) and as far along y as leaves
+// both the same length.
 Vec3 meeting_point(const Vec3& anterior, const Vec3& posterior, double drop, double anterior_height,
                    double posterior_height) {
   double low = 0, high = 1;
@@ -89,6 +100,7 @@ Vec3 meeting_point(const Vec3& anterior, const Vec3& posterior, double drop, dou
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     point = anterior + middle * (posterior - anterior) - drop * Vec3::UnitZ();
+    point.x() = anterior.x();
     const double anterior_left = anterior_height - domed_length(anterior, point);
     const double posterior_left = posterior_height - domed_length(posterior, point);
     (anterior_left > posterior_left ? low : high) = middle;
@@ -109,8 +121,10 @@ void fill_annulus_tables(MitralShape& shape) {
     for (int i = shape.u.empty() ? 0 : 1; i <= kAnnulusSteps; ++i) {
       const double fraction = along[i] / along[kAnnulusSteps];
       const double height = leaflet_height(d, leaflet, fraction);
-      const double step =
-          i == 0 ? 0 : (along[i] - along[i - 1]) * 0.5 * (1 / height + 1 / shape.height.back());
+      const double ds = i == 0 ? 0 : along[i] - along[i - 1];
+      const double previous = i == 0 ? height : shape.height.back();
+      const double slope = i == 0 ? 0 : (height - previous) / ds;
+      const double step = ds * std::pow(1 + slope * slope, kSlopeExponent) * 2 / (height + previous);
       shape.u.push_back(shape.u.empty() ? 0 : shape.u.back() + step);
       shape.angle.push_back(angle_at(i));
       shape.fraction.push_back(fraction);
@@ -190,21 +204,31 @@ Vec3 mitral_open_point(const MitralShape& shape, double u, double t) {
   const MitralDimensions& d = shape.dimensions;
   const AnnulusPosition at = position_at(shape, u);
   // The slope below the horizontal grows evenly along the meridian, whose arc length is t * height.
-  const double from = radians(d.hinge_angle), to = radians(d.edge_angle), slope = from + t * (to - from);
+  const double steeper = kCommissureSteepness * (1 - bump(at.fraction));
+  const double from = radians(d.hinge_angle + steeper), to = radians(d.edge_angle + steeper);
+  const double slope = from + t * (to - from);
   const double inward = at.height * (std::sin(slope) - std::sin(from)) / (to - from);
   const double down = at.height * (std::cos(from) - std::cos(slope)) / (to - from);
-  return annulus_point(d, at.angle, false) + inward * inward_normal(d, at.angle) - down * Vec3::UnitZ();
+  return annulus_point(d, at.angle, false) +
+         inward * inward_direction(d, at.angle, leaflet_at(shape, u), at.fraction) - down * Vec3::UnitZ();
+}
+
+Vec3 mitral_open_normal(const MitralShape& shape, double u, double t) {
+  constexpr double kStep = 1e-4;
+  const Vec3 around = mitral_open_point(shape, u + kStep, t) - mitral_open_point(shape, u - kStep, t);
+  const Vec3 down = mitral_open_point(shape, u, t + kStep) - mitral_open_point(shape, u, t - kStep);
+  return down.cross(around).normalized();
 }
 
 Vec3 mitral_closed_point(const MitralShape& shape, double u, double t) {
   const AnnulusPosition at = position_at(shape, u);
   const Vec3 start = annulus_point(shape.dimensions, at.angle, true);
-  const Vec3 meeting = coaptation_point(shape, line_parameter(shape, u, at.fraction));
+  const double w = line_parameter(shape, u, at.fraction);
+  const Vec3 meeting = coaptation_point(shape, w), line = meeting - start;
   const double reach = domed_length(start, meeting), length = t * at.height;
   if (length >= reach) return meeting - (length - reach) * Vec3::UnitZ();
   const double s = length / reach;
-  const double rise = 4 * kDome * (meeting - start).norm() * s * (1 - s);
-  return start + s * (meeting - start) + rise * Vec3::UnitZ();
+  return start + s * line + 4 * kDome * line.norm() * s * (1 - s) * Vec3::UnitZ();
 }
 
 double mitral_coaptation_height(const MitralShape& shape, double u) {

@@ -21,15 +21,15 @@ struct MitralDimensions {
   double saddle_ratio_open = 0.13;         // annular height / commissural diameter, end of diastole
   double saddle_ratio_closed = 0.18;       // the same in systole
   double annulus_contraction = 0.08;       // loss of annulus area from open to closed, as a fraction
-  double commissure_angle = 25;            // of a commissure, from the x axis towards anterior [degrees]
-  double anterior_height_ratio = 0.84;     // height of the leaflets / anteroposterior diameter:
-  double posterior_height_ratio = 0.50;    //   both at mid-leaflet,
-  double commissural_height_ratio = 0.31;  //   and at the commissures
-  double hinge_angle = 45;         // of the open leaflet below the horizontal, at the annulus [degrees]
-  double edge_angle = 72;          // the same at the free edge [degrees]
-  double tenting_height = 5;       // of the closed coaptation line below the annulus, mid-valve [mm]
+  double commissure_angle = 15;            // of a commissure, from the x axis towards anterior [degrees]
+  double anterior_height_ratio = 0.83;     // height of the leaflets / anteroposterior diameter:
+  double posterior_height_ratio = 0.53;    //   both at mid-leaflet,
+  double commissural_height_ratio = 0.28;  //   and at the commissures
+  double hinge_angle = 55;         // of the open leaflet below the horizontal, at the annulus [degrees]
+  double edge_angle = 76;          // the same at the free edge [degrees]
+  double tenting_height = 6;       // of the closed coaptation line below the annulus, mid-valve [mm]
   double papillary_depth = 24;     // of the muscles' tips below the annulus plane [mm]
-  double papillary_distance = 31;  // between the centres of the two groups of tips [mm]
+  double papillary_distance = 33;  // between the centres of the two groups of tips [mm]
   double papillary_offset = 2;     // of the tips from the annulus centre towards anterior [mm]
   double chord_area_scale = 1;     // factor on all cross-sections of chords
   double thickness = 0.8;          // of the leaflets [mm]
@@ -44,12 +44,13 @@ enum class MitralLeaflet { Anterior, Posterior };
 // The surface by two coordinates. `u` in [0, 1) runs once around, anticlockwise seen from the atrium: from
 // the anterolateral commissure (u = 0) along the anterior leaflet to the posteromedial commissure
 // (u = anterior_share) and back along the posterior leaflet. Steps in u are proportional to the leaflet's
-// height, so that equal steps make triangles of equal shape. `t` in [0, 1] is the fraction of the height,
-// from the annulus to the free edge.
+// height, (and shorter where the free edge is
+// steep), so that equal steps make triangles of about equal shape. `t` in [0, 1] is the fraction of the
+// height, from the annulus to the free edge.
 struct MitralShape {
   MitralDimensions dimensions;
   double anterior_share = 0;       // u of the posteromedial commissure
-  double annulus_over_height = 0;  // integral of ds/height around the open annulus
+  double annulus_over_height = 0;  // length of u before it was scaled to 1
   // Tables at equal steps of the annulus angle, anterior part then posterior; neighbours are interpolated.
   std::vector<double> u, angle, fraction, height;  // fraction: of the leaflet's annulus length, 0 to 1
   Points coaptation = Points(3, 0);  // closed coaptation line from the anterolateral commissure, equal steps
@@ -62,6 +63,9 @@ MitralShape mitral_shape(const MitralDimensions& dimensions);
 double mitral_coordinate(const MitralShape& shape, MitralLeaflet leaflet, double fraction);
 
 Vec3 mitral_open_point(const MitralShape& shape, double u, double t);  // [mm]
+
+// Unit normal of the open leaflets towards the ventricle.
+Vec3 mitral_open_normal(const MitralShape& shape, double u, double t);
 
 // Closed by construction, not by equilibrium: every meridian keeps its length, runs from the systolic annulus
 // to the coaptation line in a slight dome towards the atrium and hangs straight down from there. The line is

@@ -47,8 +47,9 @@ struct TentOptions {
 // arc that bows horizontally inward (straight for an infinite radius), the inside filled by transfinite
 // interpolation (Coons 1967: the sum of the two ruled surfaces less the bilinear one), so straight edges
 // give a hyperbolic paraboloid. n x n cells as in square(). Normals have a positive z component.
-// Throws InputError when the radius is too small for the edge: edge_radius must exceed 0.71 times the
-// length of an edge, or opposite edges would come near each other.
+// The arcs make the corners sharper: seen flat, the angle at a corner is 90 degrees less twice
+// asin(edge/(2 edge_radius)), and no triangle there can be better than that. Throws InputError unless
+// edge_radius exceeds 0.71 times the length of an edge, where the angle vanishes.
 TriangleMesh tent(const TentOptions& options);
 
 }  // namespace coapt

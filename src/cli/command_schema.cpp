@@ -1,0 +1,22 @@
+#include "cli/commands.hpp"
+#include "scene/result_schema.hpp"
+#include "scene/schema.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace coapt::cli {
+
+void add_schema_command(CLI::App& app, int& /*exit_code*/) {
+  const auto which = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of scene files or results");
+  command->add_option("WHICH", *which, "scene or result")
+      ->required()
+      ->check(CLI::IsMember({"scene", "result"}));
+  command->callback([which] { std::cout << (*which == "scene" ? json_schema() : result_schema()); });
+}
+
+}  // namespace coapt::cli

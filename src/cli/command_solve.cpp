@@ -1,0 +1,99 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "scene/run.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, folder, solver;
+  double tolerance = 0, max_seconds = 0;
+};
+
+void print_value(const char* label, const std::optional<double>& value, const char* unit,
+                 const char* format) {
+  if (!value) return;
+  std::printf("  %-22s ", label);
+  std::printf(format, *value);
+  std::printf(" %s\n", unit);
+}
+
+void print_reference(const ReferenceDistance& distance) {
+  std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "distance to reference",
+              (distance.to_reference.mean + distance.from_reference.mean) / 2,
+              std::max(distance.to_reference.p95, distance.from_reference.p95),
+              std::max(distance.to_reference.max, distance.from_reference.max));
+}
+
+void print_summary(const RunReport& run) {
+  const Report& report = run.report;
+  const Result& result = report.result;
+  const Metrics& m = report.metrics;
+  std::printf("%s\n", result.message.c_str());
+  std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
+  std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
+  std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh",
+              run.model.mesh.vertex_count(), run.model.mesh.triangle_count(), run.model.lines.size());
+  std::printf("  %-22s %s, %d iterations, %ld gradients, %.2f s\n", "solver", report.solver.c_str(),
+              result.iterations, result.evaluations.gradient, result.wall_s);
+  std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
+  if (m.orifice_area_mm2 && m.annulus_area_mm2)
+    std::printf("  %-22s %.2f of %.1f mm2\n", "orifice area", *m.orifice_area_mm2, *m.annulus_area_mm2);
+  print_value("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f");
+  print_value("coaptation height", m.coaptation_height_mm, "mm", "%.2f");
+  print_value("tenting height", m.tenting_height_mm, "mm", "%.2f");
+  if (run.model.mesh.triangle_count() > 0)
+    std::printf("  %-22s %.6g mm2 (open: %.6g mm2)\n", "area", m.leaflet_area_closed_mm2,
+                m.leaflet_area_open_mm2);
+  print_value("greatest strain", m.max_principal_strain, "", "%.4f");
+  print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
+  print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
+  std::printf("  %-22s %ld\n", "intersections", m.intersections);
+  if (report.reference) print_reference(*report.reference);
+  for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
+  std::printf("written to %s (result.json, closed.vtp, closed.obj, trace.csv, metrics.csv)\n",
+              run.folder.string().c_str());
+}
+
+}  // namespace
+
+void add_solve_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("solve", "Solve a scene and write its result folder");
+  command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("-o,--output", arguments->folder,
+                      "Result folder (default: the scene's, or `result` beside the scene)");
+  command->add_option("--solver", arguments->solver, "Solver (default: the scene's)");
+  const auto* tolerance =
+      command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
+          ->check(CLI::PositiveNumber);
+  const auto* seconds =
+      command
+          ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")
+          ->check(CLI::PositiveNumber);
+  command->callback([arguments, tolerance, seconds, &exit_code] {
+    listen_for_interrupts();
+    RunOptions options;
+    options.solver = arguments->solver;
+    options.folder = arguments->folder;
+    if (tolerance->count() > 0) options.tolerance = arguments->tolerance;
+    if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
+    options.observer = make_observer();
+    const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);
+    end_progress();
+    print_summary(report);
+    exit_code = report.report.result.status == Status::Converged ? kConverged : kNotConverged;
+  });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,17 @@
+// The commands of `coapt`, one file each. Each adds itself to the application and, when it runs, leaves
+// its exit code in `exit_code`. Bad input leaves a command as InputError.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace coapt::cli {
+
+void add_solve_command(CLI::App& app, int& exit_code);
+void add_check_command(CLI::App& app, int& exit_code);
+void add_generate_command(CLI::App& app, int& exit_code);
+void add_import_command(CLI::App& app, int& exit_code);
+void add_schema_command(CLI::App& app, int& exit_code);
+
+}  // namespace coapt::cli

@@ -1,0 +1,57 @@
+// The command `coapt`: arguments in, exit code out.
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "core/components.hpp"
+#include "core/error.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <string>
+
+namespace {
+
+std::string version_text() {
+  std::string text = "coapt " + coapt::version() + "\n";
+  for (const coapt::Component& component : coapt::components())
+    text += "  " + std::string(component.present ? "with    " : "without ") + component.name + " (" +
+            component.licence + "): " + component.gives + "\n";
+  return text + "Licence: " + coapt::combined_licence();
+}
+
+int run_command(int argc, char** argv) {
+  using namespace coapt::cli;
+  CLI::App app("Closed, loaded equilibria of thin membranes by direct energy minimisation", "coapt");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_text, "Version, components and licence");
+  int exit_code = kConverged;
+  add_solve_command(app, exit_code);
+  add_check_command(app, exit_code);
+  add_generate_command(app, exit_code);
+  add_import_command(app, exit_code);
+  add_schema_command(app, exit_code);
+  app.footer("Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // help or version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    std::cerr << "coapt: error: " << error.what() << "\nRun `coapt --help` for the commands and options.\n";
+    return kBadInput;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_command(argc, argv);
+  } catch (const coapt::InputError& error) {
+    for (const std::string& defect : error.defects()) std::cerr << "coapt: error: " << defect << "\n";
+    return coapt::cli::kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "coapt: internal error: " << error.what() << "\n";
+    return coapt::cli::kInternal;
+  }
+}

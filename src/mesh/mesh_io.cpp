@@ -1,0 +1,70 @@
+#include "mesh/mesh_io.hpp"
+
+#include "core/error.hpp"
+#include "mesh/formats/formats.hpp"
+#include "mesh/formats/whole_file.hpp"
+#include "mesh/vtp_writer.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace coapt {
+namespace {
+
+std::string extension(const std::filesystem::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+[[noreturn]] void refuse_extension(const std::filesystem::path& path) {
+  throw InputError(path.string() + ": the extension '" + extension(path) +
+                   "' is not a mesh format; use .obj, .ply, .stl, .off or .vtp");
+}
+
+VtpSurface vtp_surface(const TriangleMesh& mesh) {
+  VtpSurface surface;
+  surface.vertices = mesh.vertices;
+  surface.triangles = mesh.triangles;
+  if (mesh.regions.empty()) return surface;
+  const auto count = static_cast<Eigen::Index>(mesh.regions.size());
+  VtpArray region{"region", Eigen::MatrixXd(1, count), true};
+  for (Eigen::Index t = 0; t < count; ++t) region.values(0, t) = mesh.regions[static_cast<size_t>(t)];
+  surface.triangle_arrays.push_back(std::move(region));
+  surface.texts.push_back({"region_names", mesh.region_names});
+  return surface;
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+  const std::string format = extension(path);
+  MeshFile (*read)(std::string_view, const std::string&) = format == ".obj"   ? formats::read_obj
+                                                           : format == ".ply" ? formats::read_ply
+                                                           : format == ".stl" ? formats::read_stl
+                                                           : format == ".off" ? formats::read_off
+                                                           : format == ".vtp" ? formats::read_vtp
+                                                                              : nullptr;
+  if (!read) refuse_extension(path);
+  return read(formats::read_whole(path), path.string());
+}
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                std::optional<MeshCoding> coding) {
+  const std::string format = extension(path);
+  if (format == ".obj")
+    formats::write_whole(path, formats::write_obj(mesh));
+  else if (format == ".ply")
+    formats::write_whole(path, formats::write_ply(mesh, coding.value_or(MeshCoding::Binary)));
+  else if (format == ".stl")
+    formats::write_whole(path, formats::write_stl(mesh, coding.value_or(MeshCoding::Ascii)));
+  else if (format == ".off")
+    formats::write_whole(path, formats::write_off(mesh));
+  else if (format == ".vtp")
+    write_vtp(path, vtp_surface(mesh), coding.value_or(MeshCoding::Binary));
+  else
+    refuse_extension(path);
+}
+
+}  // namespace coapt

@@ -1,0 +1,37 @@
+// Triangle meshes from and to files: OBJ, PLY, STL, OFF and VTP, told apart by the extension.
+#pragma once
+
+#include "mesh/triangle_mesh.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct MeshFile {
+  TriangleMesh mesh;
+  std::vector<std::string> warnings;  // what was changed or left out while reading, each naming the file
+};
+
+// Reads a surface. Polygons are cut into a fan of triangles from their first corner and counted in a
+// warning. Regions come from OBJ groups (else objects, else materials), STL solids, and the integer face
+// array `region` of PLY and VTP. Coordinates are taken as they are: a file carries no unit.
+// Throws InputError with every defect found (at most 20 are listed), each naming file and line, when the
+// file cannot be read, is not of its format, holds a number that is not finite, an index out of range, a
+// face of less than three corners, or no face at all. Geometry and topology are judged by check_mesh.
+MeshFile read_mesh(const std::filesystem::path& path);
+
+enum class MeshCoding { Ascii, Binary };
+
+// Writes a surface with its regions where the format can hold them (OBJ, PLY, STL ASCII, VTP), so that
+// reading gives the same numbers bit by bit; binary STL alone keeps single precision, and STL forgets
+// vertices without a triangle. Without `coding`, PLY and VTP are binary and STL is ASCII; OBJ and OFF are
+// always text. The file appears under its name only when it is whole.
+// Pre: regions, where not empty, has one entry per triangle and indexes region_names.
+// Throws InputError for an unknown extension, or when the file cannot be written.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                std::optional<MeshCoding> coding = std::nullopt);
+
+}  // namespace coapt

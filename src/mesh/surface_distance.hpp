@@ -1,0 +1,27 @@
+// How far one surface lies from another: mean, 95th percentile and maximum.
+#pragma once
+
+#include "mesh/triangle_mesh.hpp"
+
+namespace coapt {
+
+// Samples of a surface are its vertices, the middles of its edges and the centroids of its triangles. In mean
+// and percentile they weigh 1/20, 2/15 and 9/20 of the area of each triangle they belong to (the quadrature
+// rule of degree 3 on these seven points), so that a fine region does not outweigh a coarse one.
+// The distance of each sample is that to the closest point of the other surface, unsigned.
+struct SurfaceDistance {
+  double mean = 0;  // area-weighted [length]
+  double p95 = 0;   // 95 % of the area lie closer than this [length]
+  double max = 0;   // over all samples [length]
+  int sample_count = 0;
+  Vector vertex_distances;  // of every vertex of `from`, also of those without a triangle [length]
+};
+
+// One direction, from a surface to another; call twice for both.
+// Throws InputError when `from` has no area or `to` no triangle. Pre: all positions are finite.
+SurfaceDistance surface_distance(const TriangleMesh& from, const TriangleMesh& to);
+
+// From points, all of equal weight. Throws InputError when there is no point, or `to` has no triangle.
+SurfaceDistance surface_distance(const Points& from, const TriangleMesh& to);
+
+}  // namespace coapt

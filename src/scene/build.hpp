@@ -1,0 +1,15 @@
+// From a scene to what a solver needs.
+#pragma once
+
+#include "scene/model.hpp"
+#include "scene/scene.hpp"
+
+namespace coapt {
+
+// Reads the scene's files, checks the mesh, numbers the nodes, and builds motion, terms and objective.
+// What is doubtful but usable is said in Model::warnings: slack rest data, isolated vertices (prescribed, so
+// that they carry no unknowns), parts that no prescribed node holds.
+// Throws InputError with all defects that could be found, each naming its file or its place in the scene.
+Model build(const Scene& scene);
+
+}  // namespace coapt

@@ -1,0 +1,117 @@
+#include "scene/check.hpp"
+
+#include "core/error.hpp"
+#include "mesh/mesh_check.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/build.hpp"
+#include "scene/scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+namespace coapt {
+namespace {
+
+constexpr unsigned kSeed = 20240607;
+constexpr int kDirections = 6;
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  for (const std::string& item : more)
+    if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+// The mesh that a scene names, even where the rest of the scene cannot be used: the user wants to hear
+// about both at once.
+void check_named_mesh(const std::filesystem::path& scene_file, CheckReport& report) {
+  std::ifstream in(scene_file);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const auto json = nlohmann::json::parse(text, nullptr, false, true);
+  if (!json.is_object() || !json.contains("mesh") || !json["mesh"].is_object()) return;
+  const auto file = json["mesh"].find("file");
+  if (file == json["mesh"].end() || !file->is_string()) return;
+  const std::filesystem::path path = scene_file.parent_path() / file->get<std::string>();
+  if (!std::filesystem::exists(path)) return;  // the scene's own defect
+  try {
+    const MeshFile mesh = read_mesh(path);
+    append(report.warnings, mesh.warnings);
+    for (const MeshDefect& defect : check_mesh(mesh.mesh))
+      append(defect.severity == Severity::Error ? report.defects : report.warnings,
+             {path.string() + ": " + defect.message});
+  } catch (const InputError& error) {
+    append(report.defects, error.defects());
+  }
+}
+
+std::optional<Model> load(const std::filesystem::path& scene_file, CheckReport& report) {
+  std::optional<Scene> scene;
+  try {
+    scene = load_scene(scene_file);
+  } catch (const InputError& error) {
+    append(report.defects, error.defects());
+    check_named_mesh(scene_file, report);
+    return std::nullopt;
+  }
+  try {
+    return build(*scene);
+  } catch (const InputError& error) {
+    append(report.defects, error.defects());
+    return std::nullopt;
+  }
+}
+
+// Mean edge or line: the scale of what a small step is.
+double length_scale(const Model& model) {
+  const double edge = mean_edge_length(model.X, model.mesh.triangles);
+  if (edge > 0 || model.lines.empty()) return edge > 0 ? edge : 1;
+  double sum = 0;
+  for (const Line& line : model.lines) sum += (model.X.col(line.a) - model.X.col(line.b)).norm();
+  return sum > 0 ? sum / static_cast<double>(model.lines.size()) : 1;
+}
+
+std::vector<DerivativeReport> check_model(Model& model) {
+  Objective& objective = *model.objective;
+  const double scale = length_scale(model);
+  const Points start = objective.positions(model.q0);
+  const Eigen::MatrixXd motion = random_directions(objective.fixed(), 1, scale / 20, kSeed);
+  const Points near = start + Eigen::Map<const Points>(motion.data(), 3, start.cols());
+  const Vec3 centre = near.rowwise().mean();
+  const Points larger = (1.1 * (near.colwise() - centre)).colwise() + centre;
+
+  std::vector<DerivativeReport> reports;
+  const FixedMask all_free = FixedMask::Constant(3, start.cols(), false);
+  const Eigen::MatrixXd directions = random_directions(all_free, kDirections, scale, kSeed + 1);
+  for (const auto& term : objective.terms()) {
+    DerivativeReport report = check_derivatives(*term, near, directions);
+    if (!report.is_active()) report = check_derivatives(*term, larger, directions);
+    reports.push_back(report);
+  }
+  if (objective.unknown_count() == 0) return reports;
+  const Eigen::MatrixXd nodal = random_directions(objective.fixed(), kDirections, scale, kSeed + 2);
+  Eigen::MatrixXd free(objective.unknown_count(), nodal.cols());
+  for (int k = 0; k < nodal.cols(); ++k)
+    free.col(k) = objective.unknowns(Eigen::Map<const Points>(nodal.col(k).data(), 3, start.cols()));
+  reports.push_back(check_derivatives(objective, objective.unknowns(near), free));
+  return reports;
+}
+
+}  // namespace
+
+bool CheckReport::is_sound() const {
+  return defects.empty() && std::all_of(derivatives.begin(), derivatives.end(),
+                                        [](const DerivativeReport& r) { return r.has_passed(); });
+}
+
+CheckReport check(const std::filesystem::path& scene_file) {
+  CheckReport report;
+  std::optional<Model> model = load(scene_file, report);
+  if (!model) return report;
+  append(report.warnings, model->warnings);
+  report.derivatives = check_model(*model);
+  return report;
+}
+
+}  // namespace coapt

@@ -1,0 +1,147 @@
+#include "scene/fields.hpp"
+
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
+#include "energy/kernels/tether_cubic.hpp"
+#include "mesh/triangle_distance.hpp"
+#include "mesh/triangle_tree.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+// Green strain of a triangle in its rest plane.
+Eigen::Matrix2d green_strain(const Points& X, const Points& x, const Eigen::Vector3i& t) {
+  const Vec3 E1 = X.col(t[1]) - X.col(t[0]), E2 = X.col(t[2]) - X.col(t[0]);
+  const Vec3 along = E1.normalized(), across = E1.cross(E2).cross(E1).normalized();
+  Eigen::Matrix2d rest;
+  rest << E1.dot(along), E2.dot(along), 0, E2.dot(across);
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << x.col(t[1]) - x.col(t[0]), x.col(t[2]) - x.col(t[0]);
+  const Eigen::Matrix<double, 3, 2> F = edges * rest.inverse();
+  return 0.5 * (F.transpose() * F - Eigen::Matrix2d::Identity());
+}
+
+// Eigenvalues of a symmetric 2 x 2 matrix, larger first.
+Eigen::Vector2d principal_values(const Eigen::Matrix2d& m) {
+  const double mean = 0.5 * (m(0, 0) + m(1, 1)), half = 0.5 * (m(0, 0) - m(1, 1));
+  const double radius = std::hypot(half, m(0, 1));
+  return {mean + radius, mean - radius};
+}
+
+void add_strain_and_stress(const Model& model, Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  const bool has_membrane = !model.membrane.empty();
+  fields.principal_strain.resize(2, triangles.cols());
+  fields.principal_stress.resize(2, has_membrane ? triangles.cols() : 0);
+  for (int t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector2d green = principal_values(green_strain(model.X, fields.x, triangles.col(t)));
+    fields.principal_strain.col(t) = (1 + 2 * green.array()).max(0).sqrt() - 1;
+    if (!has_membrane) continue;
+    const MembraneProperties& m = model.membrane[t];
+    const double prestress = m.thickness > 0 ? m.prestress / m.thickness : 0;
+    fields.principal_stress.col(t) =
+        (m.young / (1 - m.poisson * m.poisson) * m.poisson * green.sum() + prestress) +
+        (m.young / (1 + m.poisson) * green.array());
+  }
+}
+
+template <typename Kernel>
+bool tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
+  const auto* lines = dynamic_cast<const ElementTerm<Kernel>*>(&term);
+  if (lines == nullptr) return false;
+  Eigen::Vector<double, 6> ends, g;
+  ends << x.col(line.a), x.col(line.b);
+  Kernel::evaluate(lines->rest()[line.element], ends, &g, nullptr);
+  // The gradient at the second end is the force along the line from the first to the second.
+  force = g.tail<3>().dot((x.col(line.b) - x.col(line.a)).normalized());
+  return true;
+}
+
+void add_line_forces(const Model& model, Fields& fields) {
+  fields.line_force = Vector::Zero(static_cast<Eigen::Index>(model.lines.size()));
+  for (size_t k = 0; k < model.lines.size(); ++k)
+    for (const auto& term : model.objective->terms()) {
+      if (term->name() != model.lines[k].term) continue;
+      double& force = fields.line_force[static_cast<Eigen::Index>(k)];
+      if (!tension_of<Cable>(*term, model.lines[k], fields.x, force))
+        tension_of<TetherCubic>(*term, model.lines[k], fields.x, force);
+    }
+}
+
+// The vertices around each vertex.
+std::vector<std::vector<int>> vertex_neighbours(const Triangles& triangles, Eigen::Index vertex_count) {
+  std::vector<std::vector<int>> neighbours(static_cast<size_t>(vertex_count));
+  for (const Edge& edge : edges(triangles)) {
+    neighbours[edge.a].push_back(edge.b);
+    neighbours[edge.b].push_back(edge.a);
+  }
+  return neighbours;
+}
+
+// Distance from vertex v to the nearest triangle in the box without a marked corner.
+double nearest_unmarked(const TriangleTree& tree, const Points& x, const Triangles& triangles, int v,
+                        double half_size, const std::vector<int>& mark) {
+  const Vec3 p = x.col(v);
+  const Vec3 half = Vec3::Constant(half_size);
+  double nearest = kInfinity;
+  for (const int t : tree.overlapping({p - half, p + half})) {
+    const Eigen::Vector3i corners = triangles.col(t);
+    if (mark[corners[0]] == v || mark[corners[1]] == v || mark[corners[2]] == v) continue;
+    nearest = std::min(nearest,
+                       point_triangle_distance(p, x.col(corners[0]), x.col(corners[1]), x.col(corners[2])));
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Vector vertex_gaps(const Points& x, const Triangles& triangles, double reach) {
+  Vector gaps = Vector::Constant(x.cols(), kNaN);
+  if (triangles.cols() == 0 || !x.allFinite()) return gaps;
+  const auto neighbours = vertex_neighbours(triangles, x.cols());
+  const TriangleTree tree(x, triangles);
+  std::vector<int> mark(static_cast<size_t>(x.cols()), -1);  // == v: within two rings of v
+  for (int v = 0; v < x.cols(); ++v) {
+    mark[v] = v;
+    for (const int ring1 : neighbours[v]) {
+      mark[ring1] = v;
+      for (const int ring2 : neighbours[ring1]) mark[ring2] = v;
+    }
+    // The box grows until what it found is certainly the nearest.
+    for (double size = reach / 8; size <= reach; size *= 2) {
+      const double nearest = nearest_unmarked(tree, x, triangles, v, size, mark);
+      if (nearest > size) continue;
+      gaps[v] = nearest;
+      break;
+    }
+  }
+  return gaps;
+}
+
+double contact_distance(const Model& model) {
+  if (model.contact_range > 0) return model.contact_range;
+  return 0.5 * mean_edge_length(model.X, model.mesh.triangles);
+}
+
+Fields compute_fields(const Model& model, const Points& x) {
+  Fields fields;
+  fields.x = x;
+  fields.displacement = x - model.X;
+  add_strain_and_stress(model, fields);
+  add_line_forces(model, fields);
+  const Points surface = x.leftCols(model.mesh.vertex_count());
+  fields.contact_distance = contact_distance(model);
+  const double reach = std::max(2 * fields.contact_distance, 5 * mean_edge_length(x, model.mesh.triangles));
+  fields.gap = vertex_gaps(surface, model.mesh.triangles, reach);
+  fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
+  for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
+    fields.is_contact[static_cast<size_t>(v)] = fields.gap[v] <= fields.contact_distance;
+  return fields;
+}
+
+}  // namespace coapt

@@ -1,0 +1,130 @@
+#include "core/error.hpp"
+#include "scene/detail/read_json.hpp"
+#include "scene/detail/read_parameters.hpp"
+#include "scene/scene.hpp"
+#include "scene/units.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace coapt {
+namespace {
+
+// The factor of a key `unit`; `otherwise` where it is absent.
+double length_scale(const Parameters& values, double otherwise, Reading& reading) {
+  if (!values.has("unit")) return otherwise;
+  try {
+    return unit_factor(values.text("unit"), kLength);
+  } catch (const InputError& error) {
+    reading.defects.push_back(values.where("unit") + ": " + error.what());
+    return otherwise;
+  }
+}
+
+std::optional<SceneMesh> mesh_from(const Parameters& scene, Reading& reading) {
+  if (!scene.has("mesh")) return std::nullopt;
+  const Parameters& values = scene.object("mesh");
+  SceneMesh mesh;
+  if (values.has("file")) mesh.file = values.text("file");
+  mesh.scale = length_scale(values, 1, reading);
+  if (values.has("sets")) mesh.sets = values.text("sets");
+  return mesh;
+}
+
+std::vector<BoundaryEntry> boundary_from(const Parameters& scene, double mesh_scale, Reading& reading) {
+  std::vector<BoundaryEntry> entries;
+  if (!scene.has("boundary")) return entries;
+  for (const Parameters& values : scene.objects("boundary")) {
+    BoundaryEntry entry;
+    entry.where = values.where();
+    if (values.has("nodes")) entry.nodes = values.nodes("nodes");
+    if (values.has("move_to")) entry.path = values.targets("move_to");
+    entry.fix.fill(!values.has("fix"));
+    if (values.has("fix"))
+      for (const std::string& axis : values.texts("fix"))
+        entry.fix[static_cast<size_t>(axis[0] - 'x')] = true;
+    if (!entry.path.empty() && entry.fix == std::array<bool, 3>{})
+      reading.defects.push_back(values.where("fix") + ": nodes that move cannot be free");
+    entry.scale = length_scale(values, mesh_scale, reading);
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+// Names default to the type; where several terms share it they are numbered from the second on.
+std::vector<TermSpec> terms_from(const Parameters& scene, Reading& reading) {
+  std::vector<TermSpec> terms;
+  if (!scene.has("terms")) return terms;
+  std::set<std::string> names;
+  const std::vector<Parameters>& all = scene.objects("terms");
+  for (const Parameters& values : all)
+    if (values.has("name") && !names.insert(values.text("name")).second)
+      reading.defects.push_back(values.where("name") + ": \"" + values.text("name") +
+                                "\" is the name of another term too");
+  for (const Parameters& values : all) {
+    TermSpec term{values.text("type"), "", values};
+    if (values.has("name")) {
+      term.name = values.text("name");
+    } else {
+      term.name = term.type;
+      for (int number = 2; !names.insert(term.name).second; ++number)
+        term.name = term.type + "_" + std::to_string(number);
+    }
+    terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
+SolverSpec solver_from(const Parameters& values) {
+  SolverSpec solver;
+  solver.type = values.text("type");
+  solver.tolerance = values.number("tolerance");
+  solver.max_iterations = values.integer("max_iterations");
+  solver.max_seconds = values.number_or("max_seconds", 0);
+  solver.memory = values.integer("memory");
+  return solver;
+}
+
+void check_substance(const Scene& scene, const Json& json, const std::string& file, Reading& reading) {
+  const bool has_terms = json.is_object() && json.contains("terms");
+  if (has_terms && json["terms"].is_array() && json["terms"].empty())
+    reading.defects.push_back(file + ": terms: empty; a scene needs at least one term");
+  const bool has_network = std::any_of(scene.terms.begin(), scene.terms.end(),
+                                       [](const TermSpec& term) { return term.parameters.has("network"); });
+  if (reading.defects.empty() && !scene.mesh && !has_network)
+    reading.defects.push_back(file + ": mesh: missing; a scene needs a mesh, or a term with a `network`");
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const Json json = parse_json(text, file);
+  Reading reading{path.parent_path(), {}};
+  const Parameters values = read_object(json, scene_spec(), file, reading);
+  Scene scene;
+  scene.file = path;
+  scene.name = values.has("name") ? values.text("name") : path.stem().string();
+  scene.mesh = mesh_from(values, reading);
+  const double mesh_scale = scene.mesh ? scene.mesh->scale : 1;
+  if (values.has("sets")) scene.sets = values.selections("sets");
+  scene.boundary = boundary_from(values, mesh_scale, reading);
+  if (values.has("motion") && values.object("motion").has("steps"))
+    scene.motion_steps = values.object("motion").integer("steps");
+  scene.terms = terms_from(values, reading);
+  if (values.has("reference")) {
+    const Parameters& reference = values.object("reference");
+    if (reference.has("closed_surface")) scene.closed_surface = reference.text("closed_surface");
+    scene.closed_surface_scale = length_scale(reference, mesh_scale, reading);
+  }
+  if (values.has("output") && values.object("output").has("folder"))
+    scene.output_folder = (path.parent_path() / values.object("output").text("folder")).lexically_normal();
+  check_substance(scene, json, file, reading);
+  if (!reading.defects.empty()) throw InputError(reading.defects);
+  scene.solver = solver_from(values.object("solver"));
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }
+
+}  // namespace coapt

@@ -1,0 +1,46 @@
+// The numbers that a user came for. Definitions, sources and conventions: docs/metrics.md.
+#pragma once
+
+#include "scene/fields.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
+struct Metrics {
+  long intersections = 0;                      // pairs of facets that pass through each other
+  std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
+  std::optional<double> annulus_area_mm2;      // projected on the annulus plane
+  std::optional<double> orifice_area_percent;  // of the annulus area
+  std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another
+  std::optional<double> coaptation_height_mm;  // extent of contact along the annulus normal, 90th percentile
+  std::optional<double> tenting_height_mm;  // greatest depth of the coaptation line below the annulus plane
+  double leaflet_area_open_mm2 = 0;
+  double leaflet_area_closed_mm2 = 0;
+  std::optional<double> max_principal_strain;  // stretch - 1
+  std::optional<double> max_chord_force_n;
+  std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
+  std::optional<double> moment_balance;
+  long contact_vertices = 0;
+  std::optional<double> smallest_gap_mm;
+  std::optional<long> slack_chords;  // lines that carry no tension
+  double max_displacement_mm = 0;
+};
+
+// Measures the state q. fields: those of the same state.
+// Pre: the set "annulus" of the model, where there is one, is an ordered loop of at least three vertices.
+Metrics measure(const Model& model, const Vector& q, const Fields& fields);
+
+// The same as a table, for files and summaries: one row per metric, in the order of the struct.
+struct MetricRow {
+  std::string name, unit;
+  std::string meaning;  // one sentence
+  bool is_count = false;
+  std::optional<double> value;
+};
+std::vector<MetricRow> metric_rows(const Metrics& metrics);
+
+}  // namespace coapt

@@ -1,0 +1,81 @@
+// Validated values of one object of a scene file: plain numbers in internal units, texts, selections.
+#pragma once
+
+#include "core/types.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace coapt {
+
+// Which nodes are meant. Coordinates are those of the mesh file, in mm.
+struct NodeSelection {
+  enum class Kind { Set, Indices, Plane, Box, Nearest };
+  Kind kind = Kind::Indices;
+  std::string set;           // Set: name
+  std::vector<int> indices;  // Indices: 0-based, in order
+  int axis = 0;              // Plane: 0, 1, 2 for x, y, z
+  double at = 0;             // Plane [mm]
+  double within = 0;         // Plane [mm]; 0 = a millionth of the model's size
+  Vec3 low = Vec3::Zero();   // Box, or the point of Nearest [mm]
+  Vec3 high = Vec3::Zero();  // Box [mm]
+};
+
+// Where moved nodes go: one point of their path.
+struct MoveTarget {
+  enum class Kind { File, Named, Translation };
+  Kind kind = Kind::Translation;
+  std::string text;                 // File: path; Named: key of a valve JSON
+  Vec3 translation = Vec3::Zero();  // from the reference position [mm]
+};
+
+// A straight line through two nodes or two points.
+struct LineThrough {
+  std::optional<NodeSelection> nodes;       // two nodes, or more: the first and the one farthest from it
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // [mm]
+};
+
+class Parameters;
+using ParameterValue = std::variant<double, bool, std::string, Vec3, std::vector<std::string>, NodeSelection,
+                                    std::vector<MoveTarget>, LineThrough,
+                                    std::map<std::string, NodeSelection>, std::vector<Parameters>>;
+
+// Reading a key that is absent or of another kind is a defect of the calling code and throws
+// std::logic_error.
+class Parameters {
+ public:
+  explicit Parameters(std::string where = "") : where_(std::move(where)) {}
+
+  // For messages: the file and the place in it, `scene.json: terms[1]`.
+  const std::string& where() const { return where_; }
+  std::string where(const std::string& key) const;
+
+  bool has(const std::string& key) const { return values_.contains(key); }
+  double number(const std::string& key) const;
+  double number_or(const std::string& key, double otherwise) const;
+  int integer(const std::string& key) const;
+  bool flag(const std::string& key) const;
+  const std::string& text(const std::string& key) const;  // texts, choices, paths of files
+  const Vec3& vector(const std::string& key) const;
+  const std::vector<std::string>& texts(const std::string& key) const;
+  const NodeSelection& nodes(const std::string& key) const;
+  const std::vector<MoveTarget>& targets(const std::string& key) const;
+  const LineThrough& line(const std::string& key) const;
+  const std::map<std::string, NodeSelection>& selections(const std::string& key) const;
+  const Parameters& object(const std::string& key) const;
+  const std::vector<Parameters>& objects(const std::string& key) const;
+
+  void set(const std::string& key, ParameterValue value);
+
+ private:
+  template <typename T>
+  const T& get(const std::string& key) const;
+
+  std::string where_;
+  std::map<std::string, ParameterValue> values_;
+};
+
+}  // namespace coapt

@@ -1,0 +1,166 @@
+#include "scene/prescribed_motion.hpp"
+
+#include "core/error.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/detail/read_json.hpp"
+#include "scene/node_selection.hpp"
+#include "scene/suggestion.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+// Splits a line at commas, semicolons, blanks and tabs.
+std::vector<std::string_view> fields(std::string_view line) {
+  std::vector<std::string_view> result;
+  constexpr std::string_view kSeparators = ",; \t\r";
+  for (size_t begin = line.find_first_not_of(kSeparators); begin != std::string_view::npos;) {
+    const size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
+    result.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kSeparators, end);
+  }
+  return result;
+}
+
+bool read_point(const std::vector<std::string_view>& texts, Vec3& point) {
+  if (texts.size() != 3) return false;
+  for (int c = 0; c < 3; ++c) {
+    const std::string_view text = texts[static_cast<size_t>(c)];
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), point[c]);
+    if (result.ec != std::errc{} || result.ptr != text.data() + text.size() || !std::isfinite(point[c]))
+      return false;
+  }
+  return true;
+}
+
+// Three numbers a line; lines that start with # and a first line of names are passed over.
+Points read_csv(const std::string& path) {
+  const std::string text = read_text(path);
+  std::vector<Vec3> rows;
+  std::vector<std::string> defects;
+  int number = 0;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const auto texts = fields(line);
+    Vec3 point;
+    if (texts.empty() || texts[0].starts_with('#')) continue;
+    if (read_point(texts, point)) {
+      rows.push_back(point);
+    } else if (number > 1 && defects.size() < 20) {
+      defects.push_back(path + ":" + std::to_string(number) + ": expected three finite numbers x, y, z");
+    }
+  }
+  if (rows.empty() && defects.empty()) defects.push_back(path + ": holds no position");
+  if (!defects.empty()) throw InputError(defects);
+  Points points(3, static_cast<Eigen::Index>(rows.size()));
+  for (size_t k = 0; k < rows.size(); ++k) points.col(static_cast<Eigen::Index>(k)) = rows[k];
+  return points;
+}
+
+Points named_points(const std::string& name, const std::map<std::string, Points>& points,
+                    const std::string& where) {
+  const auto found = points.find(name);
+  if (found != points.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& entry : points) names.push_back(entry.first);
+  throw InputError(where + ".move_to: no positions \"" + name + "\"; known: " + listed(names) +
+                   suggestion(name, names) + " A file needs its extension.");
+}
+
+// Positions of `nodes` at one station, relative to the origin.
+Points station(const MoveTarget& target, const BoundaryEntry& entry, const std::vector<int>& nodes,
+               const Model& model, const std::map<std::string, Points>& points) {
+  const Points start = model.X(Eigen::all, nodes);
+  if (target.kind == MoveTarget::Kind::Translation) return start.colwise() + target.translation;
+  Points read;
+  if (target.kind == MoveTarget::Kind::Named) {
+    read = named_points(target.text, points, entry.where);
+  } else if (std::filesystem::path(target.text).extension() == ".csv") {
+    read = entry.scale * read_csv(target.text);
+  } else {
+    read = entry.scale * read_mesh(target.text).mesh.vertices;
+    // A mesh of the whole surface gives each node its own vertex.
+    const bool is_whole = read.cols() == model.mesh.vertex_count() && read.cols() != start.cols();
+    const bool are_vertices = std::all_of(nodes.begin(), nodes.end(), [&](int n) { return n < read.cols(); });
+    if (is_whole && are_vertices) read = Points(read(Eigen::all, nodes));
+  }
+  if (read.cols() != start.cols())
+    throw InputError(entry.where + ".move_to: \"" + target.text + "\" has " + std::to_string(read.cols()) +
+                     " positions for " + std::to_string(start.cols()) + " nodes");
+  return read.colwise() - model.origin;
+}
+
+void apply(const BoundaryEntry& entry, const Model& model, const std::map<std::string, Points>& points,
+           Prescribed& prescribed) {
+  const std::vector<int> nodes = selected_nodes(entry.nodes, model, entry.where + ".nodes");
+  std::vector<Points> stations;
+  for (const MoveTarget& target : entry.path)
+    stations.push_back(station(target, entry, nodes, model, points));
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    for (size_t c = 0; c < 3; ++c) prescribed.fixed(static_cast<int>(c), nodes[k]) = entry.fix[c];
+    prescribed.paths.erase(nodes[k]);
+    for (const Points& positions : stations)
+      prescribed.paths[nodes[k]].push_back(positions.col(static_cast<Eigen::Index>(k)));
+  }
+}
+
+// The longest way that a node travels in one section of its path.
+double longest_section(const Prescribed& prescribed, const Points& X) {
+  double longest = 0;
+  for (const auto& [node, path] : prescribed.paths) {
+    Vec3 from = X.col(node);
+    for (const Vec3& to : path) {
+      longest = std::max(longest, (to - from).norm() * static_cast<double>(path.size()));
+      from = to;
+    }
+  }
+  return longest;
+}
+
+}  // namespace
+
+Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vector<int>& held,
+                     const Model& model, const std::map<std::string, Points>& points,
+                     std::vector<std::string>& defects) {
+  Prescribed prescribed{FixedMask::Constant(3, model.X.cols(), false), {}};
+  for (const int node : held) prescribed.fixed.col(node).setConstant(true);
+  for (const BoundaryEntry& entry : boundary) {
+    try {
+      apply(entry, model, points, prescribed);
+    } catch (const InputError& error) {
+      defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+    }
+  }
+  return prescribed;
+}
+
+MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps, double spacing) {
+  constexpr double kMostSteps = 1000;
+  MotionPath motion;
+  const double longest = longest_section(prescribed, X);
+  if (longest == 0) return motion;
+  motion.steps = steps;
+  if (steps == 0)
+    motion.steps =
+        spacing > 0 ? static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMostSteps)) : 1;
+  motion.positions = [paths = prescribed.paths, X](double t) {
+    Points x = X;
+    for (const auto& [node, path] : paths) {
+      const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(path.size());
+      const size_t section = std::min(static_cast<size_t>(place), path.size() - 1);
+      const Vec3 from = section == 0 ? Vec3(X.col(node)) : path[section - 1];
+      const double part = place - static_cast<double>(section);
+      x.col(node) = part == 1 ? path[section] : Vec3(from + part * (path[section] - from));
+    }
+    return x;
+  };
+  return motion;
+}
+
+}  // namespace coapt

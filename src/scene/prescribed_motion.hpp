@@ -1,0 +1,29 @@
+// Prescribed nodes: which coordinates, and where they go. Private to this room.
+#pragma once
+
+#include "scene/model.hpp"
+#include "scene/scene.hpp"
+#include "scene/valve_json.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct Prescribed {
+  FixedMask fixed;                         // 3 x node_count
+  std::map<int, std::vector<Vec3>> paths;  // of the nodes that move: stations after the start [mm]
+};
+
+// Applies the boundary entries in order, on top of `held` (nodes prescribed unless an entry frees them).
+// points: named positions in the frame of the files [mm]. Defects are added.
+Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vector<int>& held,
+                     const Model& model, const std::map<std::string, Points>& points,
+                     std::vector<std::string>& defects);
+
+// The motion along straight lines from station to station, each path at constant t per section.
+// steps: as given, or where 0 as many as keep every node below `spacing` [mm] per step.
+MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps, double spacing);
+
+}  // namespace coapt

@@ -1,0 +1,27 @@
+// How far a solved surface lies from a given closed one.
+#pragma once
+
+#include "scene/fields.hpp"
+
+#include <optional>
+
+namespace coapt {
+
+struct DistanceFigures {
+  double mean = 0, p95 = 0, max = 0;  // [mm]
+};
+
+struct VertexDistance {
+  double mean = 0, max = 0;  // [mm]
+};
+
+struct ReferenceDistance {
+  DistanceFigures to_reference;               // from the solved surface to the reference
+  DistanceFigures from_reference;             // from the reference to the solved surface
+  std::optional<VertexDistance> same_vertex;  // when both have the same triangles
+};
+
+// Nothing for a model without a closed reference. Also fills fields.reference_distance.
+std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields);
+
+}  // namespace coapt

@@ -1,0 +1,154 @@
+#include "scene/result_schema.hpp"
+
+#include "scene/metrics.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <initializer_list>
+#include <string_view>
+
+namespace coapt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+enum class Need { Required, Optional };
+
+struct Property {
+  std::string name;
+  Json schema;
+  Need need = Need::Required;
+};
+
+Json described(Json schema, std::string_view meaning) {
+  schema["description"] = meaning;
+  return schema;
+}
+
+Json text(std::string_view meaning) { return described({{"type", "string"}}, meaning); }
+Json flag(std::string_view meaning) { return described({{"type", "boolean"}}, meaning); }
+Json count(std::string_view meaning) { return described({{"type", "integer"}, {"minimum", 0}}, meaning); }
+// A number that could not be computed (infinite energy, residual of a failed run) is null.
+Json number(std::string_view meaning) {
+  return described({{"type", Json::array({"number", "null"})}}, meaning);
+}
+
+Json object(const std::vector<Property>& properties, std::string_view meaning) {
+  Json schema = {{"type", "object"}, {"description", meaning}, {"additionalProperties", false}};
+  Json required = Json::array();
+  schema["properties"] = Json::object();
+  for (const Property& property : properties) {
+    schema["properties"][property.name] = property.schema;
+    if (property.need == Need::Required) required.push_back(property.name);
+  }
+  schema["required"] = required;
+  return schema;
+}
+
+Json list(const Json& items, std::string_view meaning) {
+  return {{"type", "array"}, {"description", meaning}, {"items", items}};
+}
+
+Json distance(std::string_view meaning) {
+  return object({{"mean_mm", number("mean [mm]")},
+                 {"p95_mm", number("95th percentile [mm]")},
+                 {"max_mm", number("greatest [mm]")}},
+                meaning);
+}
+
+Json terms() {
+  return list(
+      object({{"name", text("as in the scene")},
+              {"type", text("as in the scene")},
+              {"energy", number("energy of the term [mJ]")},
+              {"greatest_force", number("largest nodal force of the term [N]")},
+              {"counters", object({{"elements", count("elements; for contact the active pairs at the end")},
+                                   {"candidates", count("contact: pairs in the candidate list at the end")},
+                                   {"searches", count("contact: how often the list was renewed")}},
+                                  "what the term did")}},
+             "one term"),
+      "every term of the scene");
+}
+
+Json metrics() {
+  std::vector<Property> properties;
+  for (const MetricRow& row : metric_rows({})) {
+    const std::string meaning = row.meaning + (row.unit.empty() ? "" : " [" + row.unit + "]");
+    Json schema = {{"type", Json::array({row.is_count ? "integer" : "number", "null"})}};
+    properties.push_back({row.name, described(schema, meaning)});
+  }
+  return object(properties, "what was measured on the closed shape; null where not defined for the scene");
+}
+
+Json reference_distance() {
+  return object(
+      {{"mean_mm", number("mean over both directions of their means [mm]")},
+       {"p95_mm", number("the worse of both 95th percentiles [mm]")},
+       {"max_mm", number("the worse of both greatest distances (Hausdorff distance) [mm]")},
+       {"to_reference", distance("from the solved surface to the reference")},
+       {"from_reference", distance("from the reference to the solved surface")},
+       {"same_vertex",
+        object({{"mean_mm", number("mean [mm]")}, {"max_mm", number("greatest [mm]")}},
+               "between vertices of the same number, when the reference has the same vertices and triangles"),
+        Need::Optional}},
+      "distance between the solved surface and the closed surface that the scene names");
+}
+
+Json counters() {
+  return object({{"membrane_elements", count("triangles of elastic terms")},
+                 {"cable_elements", count("cables and tethers")},
+                 {"pressure_facets", count("elements of pressure terms: facets, or loaded nodes if frozen")},
+                 {"contact_candidates", count("pairs in the candidate lists at the end")},
+                 {"contact_searches", count("renewals of candidate lists")}},
+                "work by kind: zero for what the scene does not use");
+}
+
+}  // namespace
+
+std::string result_schema() {
+  const Json statuses = {"converged",          "iteration_limit", "time_limit", "stalled",
+                         "line_search_failed", "non_finite",      "cancelled"};
+  Json schema =
+      object({{"version", text("of coapt")},
+              {"scene", text("file name of the scene")},
+              {"status", described({{"enum", statuses}}, "how the run ended")},
+              {"message", text("the same in one sentence")},
+              {"converged", flag("the residual is below the tolerance")},
+              {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
+              {"energy", number("potential energy [mJ]")},
+              {"terms", terms()},
+              {"iterations", count("accepted iterates")},
+              {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"evaluations", object({{"value", count("energy alone")},
+                                      {"gradient", count("energy and gradient")},
+                                      {"hessian", count("energy, gradient and Hessian")},
+                                      {"factorisations", count("of a matrix")}},
+                                     "evaluations of the objective")},
+              {"time", object({{"wall_s", number("wall time of the solve [s]")},
+                               {"cpu_s", number("CPU time of the solve [s]")},
+                               {"by_phase",
+                                {{"type", "object"},
+                                 {"description", "wall time [s]"},
+                                 {"additionalProperties", number("[s]")}}}},
+                              "how long it took")},
+              {"peak_memory_mb", number("largest resident size of the process [MB]")},
+              {"mesh", object({{"vertices", count("of the surface")},
+                               {"triangles", count("of the surface")},
+                               {"nodes", count("vertices and points of the chord networks")},
+                               {"unknowns", count("free coordinates")}},
+                              "size of the problem")},
+              {"metrics", metrics()},
+              {"distance_to_reference", reference_distance(), Need::Optional},
+              {"counters", counters()},
+              {"solver", object({{"type", text("name of the solver")},
+                                 {"tolerance", number("on the residual")},
+                                 {"route", text("how pressure was treated")}},
+                                "what was asked for")},
+              {"warnings", list({{"type", "string"}}, "whole sentences")}},
+             "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "Coapt result";
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace coapt

@@ -1,0 +1,232 @@
+#include "scene/results.hpp"
+
+#include "core/components.hpp"
+#include "core/error.hpp"
+#include "mesh/formats/whole_file.hpp"
+#include "mesh/mesh_io.hpp"
+#include "mesh/vtp_writer.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <system_error>
+
+namespace coapt {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// JSON knows no NaN and no infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json terms_json(const Result& result) {
+  Json terms = Json::array();
+  for (const TermReport& term : result.terms)
+    terms.push_back({{"name", term.name},
+                     {"type", term.type},
+                     {"energy", number(term.energy)},
+                     {"greatest_force", number(term.greatest_force)},
+                     {"counters",
+                      {{"elements", term.counters.elements},
+                       {"candidates", term.counters.candidates},
+                       {"searches", term.counters.searches}}}});
+  return terms;
+}
+
+Json metrics_json(const Metrics& metrics) {
+  Json json = Json::object();
+  for (const MetricRow& row : metric_rows(metrics)) {
+    if (!row.value)
+      json[row.name] = nullptr;
+    else if (row.is_count)
+      json[row.name] = std::lround(*row.value);
+    else
+      json[row.name] = number(*row.value);
+  }
+  return json;
+}
+
+Json figures_json(const DistanceFigures& figures) {
+  return {
+      {"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
+}
+
+Json reference_json(const ReferenceDistance& distance) {
+  const DistanceFigures &to = distance.to_reference, &from = distance.from_reference;
+  Json json =
+      figures_json({(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)});
+  json["to_reference"] = figures_json(to);
+  json["from_reference"] = figures_json(from);
+  if (distance.same_vertex)
+    json["same_vertex"] = {{"mean_mm", number(distance.same_vertex->mean)},
+                           {"max_mm", number(distance.same_vertex->max)}};
+  return json;
+}
+
+Json counters_json(const Model& model, const Result& result) {
+  long membrane = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
+  for (const auto& term : model.objective->terms()) {
+    const long elements = term->counters().elements;
+    const bool is_internal = term->role() == TermRole::Internal;
+    if (is_internal && term->stencils().width == 3) membrane += elements;
+    if (is_internal && term->stencils().width == 2) cable += elements;
+    if (term->type() == "load_pressure") pressure += elements;
+  }
+  for (const TermReport& term : result.terms) {
+    candidates += term.counters.candidates;
+    searches += term.counters.searches;
+  }
+  return {{"membrane_elements", membrane},
+          {"cable_elements", cable},
+          {"pressure_facets", pressure},
+          {"contact_candidates", candidates},
+          {"contact_searches", searches}};
+}
+
+std::string trace_csv(const Result& result) {
+  std::ostringstream out;
+  out.precision(10);
+  out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations\n";
+  for (const Iteration& it : result.trace)
+    out << it.iteration << ',' << it.round << ',' << it.energy << ',' << it.residual << ',' << it.step << ','
+        << it.seconds << ',' << it.evaluations << '\n';
+  return out.str();
+}
+
+std::string metrics_csv(const Report& report) {
+  std::ostringstream out;
+  out.precision(10);
+  out << "metric,value,unit\n";
+  for (const MetricRow& row : metric_rows(report.metrics)) {
+    out << row.name << ',';
+    if (row.value && std::isfinite(*row.value)) out << *row.value;
+    out << ',' << row.unit << '\n';
+  }
+  return out.str();
+}
+
+// A field of the mesh vertices over all nodes: the points of the networks get NaN.
+Eigen::MatrixXd over_nodes(const Vector& of_vertices, Eigen::Index node_count) {
+  Eigen::MatrixXd row = Eigen::MatrixXd::Constant(1, node_count, kNaN);
+  row.leftCols(of_vertices.size()) = of_vertices.transpose();
+  return row;
+}
+
+VtpSurface vtp_surface(const Model& model, const Fields& fields) {
+  VtpSurface surface;
+  const Eigen::Index nodes = fields.x.cols();
+  surface.vertices = fields.x.colwise() + model.origin;
+  surface.triangles = model.mesh.triangles;
+  Vector contact(static_cast<Eigen::Index>(fields.is_contact.size()));
+  for (Eigen::Index v = 0; v < contact.size(); ++v) contact[v] = fields.is_contact[static_cast<size_t>(v)];
+  Eigen::MatrixXd contact_row = Eigen::MatrixXd::Zero(1, nodes);
+  contact_row.leftCols(contact.size()) = contact.transpose();
+  surface.point_arrays = {{"displacement", fields.displacement, false},
+                          {"gap", over_nodes(fields.gap, nodes), false},
+                          {"contact", contact_row, true}};
+  if (fields.reference_distance.size() > 0)
+    surface.point_arrays.push_back(
+        {"distance_to_reference", over_nodes(fields.reference_distance, nodes), false});
+
+  surface.triangle_arrays = {{"principal_strain_1", fields.principal_strain.row(0), false},
+                             {"principal_strain_2", fields.principal_strain.row(1), false}};
+  if (fields.principal_stress.cols() > 0) {
+    surface.triangle_arrays.push_back({"principal_stress_1_mpa", fields.principal_stress.row(0), false});
+    surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
+  }
+  if (!model.mesh.regions.empty()) {
+    Eigen::MatrixXd region(1, model.mesh.triangle_count());
+    for (int t = 0; t < model.mesh.triangle_count(); ++t) region(0, t) = model.mesh.regions[t];
+    surface.triangle_arrays.push_back({"region", region, true});
+    surface.texts.push_back({"region_names", model.mesh.region_names});
+  }
+  surface.lines.resize(2, static_cast<Eigen::Index>(model.lines.size()));
+  for (size_t k = 0; k < model.lines.size(); ++k)
+    surface.lines.col(static_cast<Eigen::Index>(k)) << model.lines[k].a, model.lines[k].b;
+  if (!model.lines.empty()) surface.line_arrays = {{"line_force_n", fields.line_force.transpose(), false}};
+  surface.texts.push_back({"units", {"mm"}});
+  return surface;
+}
+
+}  // namespace
+
+std::string pressure_route(const Model& model, const Result& result) {
+  if (model.objective->has_circulatory_force())
+    return "follower pressure on a rim that moves: " + result.route;
+  for (const auto& term : model.objective->terms()) {
+    if (term->type() != "load_pressure") continue;
+    if (term->stencils().width == 1) return "frozen: dead forces of the pressure on the reference shape";
+    return "follower pressure by its potential, minus pressure times volume (exact: no rim moves freely)";
+  }
+  return "no pressure";
+}
+
+std::string result_json(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  Json phases = Json::object();
+  for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number(seconds);
+  Json json = {
+      {"version", version()},
+      {"scene", report.scene_file},
+      {"status", status_name(result.status)},
+      {"message", result.message},
+      {"converged", result.status == Status::Converged},
+      {"residual", number(result.residual)},
+      {"energy", number(result.energy)},
+      {"terms", terms_json(result)},
+      {"iterations", result.iterations},
+      {"rounds", result.rounds},
+      {"evaluations",
+       {{"value", result.evaluations.value},
+        {"gradient", result.evaluations.gradient},
+        {"hessian", result.evaluations.hessian},
+        {"factorisations", result.factorisations}}},
+      {"time", {{"wall_s", number(result.wall_s)}, {"cpu_s", number(result.cpu_s)}, {"by_phase", phases}}},
+      {"peak_memory_mb", number(peak_memory_mb())},
+      {"mesh",
+       {{"vertices", model.mesh.vertex_count()},
+        {"triangles", model.mesh.triangle_count()},
+        {"nodes", model.X.cols()},
+        {"unknowns", model.objective->free_count()}}},
+      {"metrics", metrics_json(report.metrics)}};
+  if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
+  json["counters"] = counters_json(model, result);
+  json["solver"] = {
+      {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
+  json["warnings"] = report.warnings;
+  // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void prepare_result_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be used as the result folder: " +
+                     (error ? error.message() : "it is a file") + "; choose another with -o");
+  const fs::path probe = folder / ".coapt.part";
+  {
+    std::ofstream out(probe);
+    if (!out)
+      throw InputError(folder.string() + ": no file can be written into this folder; choose another with -o");
+  }
+  fs::remove(probe, error);
+}
+
+void write_results(const fs::path& folder, const Model& model, const Report& report) {
+  prepare_result_folder(folder);
+  write_vtp(folder / "closed.vtp", vtp_surface(model, report.fields));
+  TriangleMesh closed = model.mesh;
+  closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
+  write_mesh(folder / "closed.obj", closed);
+  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
+  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
+  // Last: where it is, the others are.
+  formats::write_whole(folder / "result.json", result_json(model, report));
+}
+
+}  // namespace coapt

@@ -1,0 +1,41 @@
+// Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv.
+#pragma once
+
+#include "scene/metrics.hpp"
+#include "scene/reference_distance.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// Everything about one solved scene.
+struct Report {
+  std::string scene_file;  // file name without folder; may be empty
+  std::string solver;      // name
+  double tolerance = 0;    // on the residual
+  std::string pressure_route;
+  Result result;
+  Fields fields;
+  Metrics metrics;
+  std::optional<ReferenceDistance> reference;
+  std::vector<std::string> warnings;
+};
+
+// How the pressure of the model was treated, in words.
+std::string pressure_route(const Model& model, const Result& result);
+
+// The text of result.json; its schema is result_schema(). Numbers that are not finite become null.
+std::string result_json(const Model& model, const Report& report);
+
+// Creates the folder where it is missing and throws InputError when nothing can be written into it; called
+// before a long solve, it saves the user the disappointment after.
+void prepare_result_folder(const std::filesystem::path& folder);
+
+// Writes all files into the folder; each appears under its name only when it is whole. closed.vtp holds the
+// mesh and the lines in the coordinates of the input; positions are in mm.
+// Throws InputError when a file cannot be written.
+void write_results(const std::filesystem::path& folder, const Model& model, const Report& report);
+
+}  // namespace coapt

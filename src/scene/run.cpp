@@ -1,0 +1,72 @@
+#include "scene/run.hpp"
+
+#include "core/error.hpp"
+#include "optim/lbfgs.hpp"
+#include "scene/build.hpp"
+#include "scene/suggestion.hpp"
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+std::unique_ptr<Solver> make_solver(const SolverTable& solvers, const std::string& name, const Scene& scene) {
+  const auto found = solvers.find(name);
+  if (found == solvers.end()) {
+    std::vector<std::string> known;
+    for (const auto& [key, factory] : solvers) known.push_back(key);
+    throw InputError("solver \"" + name + "\" is not known" + suggestion(name, known) +
+                     "; this build has: " + listed(known));
+  }
+  if (name == "lbfgs") return make_lbfgs({scene.solver.memory});
+  return found->second();
+}
+
+StopRule stop_rule(const Scene& scene, const RunOptions& options) {
+  StopRule stop;
+  stop.tolerance = options.tolerance.value_or(scene.solver.tolerance);
+  stop.max_iterations = scene.solver.max_iterations;
+  const double seconds = options.max_seconds.value_or(scene.solver.max_seconds);
+  stop.max_seconds = seconds > 0 ? seconds : kInfinity;
+  if (!(stop.tolerance > 0) || !std::isfinite(stop.tolerance))
+    throw InputError("tolerance must be a positive number");
+  return stop;
+}
+
+}  // namespace
+
+std::filesystem::path result_folder(const Scene& scene) {
+  return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
+}
+
+RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
+  RunReport run;
+  Report& report = run.report;
+  report.solver = options.solver.empty() ? scene.solver.type : options.solver;
+  const std::unique_ptr<Solver> solver = make_solver(solvers, report.solver, scene);
+  const StopRule stop = stop_rule(scene, options);
+  if (options.writes) {
+    run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
+    prepare_result_folder(run.folder);
+  }
+
+  run.model = build(scene);
+  Model& model = run.model;
+  report.scene_file = scene.file.filename().string();
+  report.tolerance = stop.tolerance;
+  report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);
+
+  const Result& result = report.result;
+  report.pressure_route = pressure_route(model, result);
+  report.warnings = model.warnings;
+  report.fields = compute_fields(model, model.objective->positions(result.q));
+  report.metrics = measure(model, result.q, report.fields);
+  report.reference = compare_with_reference(model, report.fields);
+  if (report.metrics.intersections > 0)
+    report.warnings.push_back(std::to_string(report.metrics.intersections) +
+                              " pairs of facets pass through each other in the result.");
+  if (options.writes) write_results(run.folder, model, report);
+  return run;
+}
+
+}  // namespace coapt

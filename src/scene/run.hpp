@@ -1,0 +1,35 @@
+// From a scene to its result folder: build, solve, measure, write.
+#pragma once
+
+#include "scene/results.hpp"
+#include "scene/scene.hpp"
+
+#include <optional>
+
+namespace coapt {
+
+struct RunOptions {
+  std::string solver;                 // empty: the scene's
+  std::optional<double> tolerance;    // empty: the scene's
+  std::optional<double> max_seconds;  // empty: the scene's
+  std::filesystem::path folder;       // empty: the scene's, see result_folder()
+  bool writes = true;                 // false: measures only
+  Observer observer;                  // may be empty
+};
+
+struct RunReport {
+  Model model;
+  Report report;
+  std::filesystem::path folder;  // empty: nothing was written
+};
+
+// Where results go unless something else is asked for: the scene's output folder, or `result` beside the
+// scene file.
+std::filesystem::path result_folder(const Scene& scene);
+
+// Solves the scene. Results are written whatever the status: also those of a run that did not converge or
+// was cancelled. Throws InputError for bad input, an unknown solver (listing those in the table), or a
+// folder that cannot be written, before the solve.
+RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options = {});
+
+}  // namespace coapt

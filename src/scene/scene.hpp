@@ -1,0 +1,64 @@
+// A scene as plain data: names, and numbers in internal units (mm, N, MPa).
+#pragma once
+
+#include "scene/parameters.hpp"
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct SceneMesh {
+  std::filesystem::path file;
+  double scale = 1;                           // mm per unit of the file
+  std::optional<std::filesystem::path> sets;  // JSON with named node sets and points
+};
+
+// Later entries win over earlier ones where they share nodes.
+struct BoundaryEntry {
+  std::string where;  // for messages
+  NodeSelection nodes;
+  std::array<bool, 3> fix{};     // prescribed coordinates
+  std::vector<MoveTarget> path;  // empty: they stay
+  double scale = 1;              // mm per unit of the files in `path`
+};
+
+struct TermSpec {
+  std::string type, name;  // the name is unique within the scene
+  Parameters parameters;
+};
+
+struct SolverSpec {
+  std::string type = "lbfgs";
+  double tolerance = 1e-6;  // on the relative residual
+  int max_iterations = 100000;
+  double max_seconds = 0;  // 0 = no limit [s]
+  int memory = 12;         // pairs of lbfgs
+};
+
+struct Scene {
+  std::filesystem::path file;  // that it was read from
+  std::string name;
+  std::optional<SceneMesh> mesh;
+  std::map<std::string, NodeSelection> sets;
+  std::vector<BoundaryEntry> boundary;
+  int motion_steps = 0;  // 0 = no prescribed node moves by more than one mean edge length in a step
+  std::vector<TermSpec> terms;
+  SolverSpec solver;
+  std::optional<std::filesystem::path> closed_surface;  // reference
+  double closed_surface_scale = 1;                      // mm per unit of that file
+  std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
+};
+
+// Reads and validates a scene file (docs/scene.md). Throws InputError with all defects, each as
+// `FILE: terms[1].yuong: unknown key; did you mean "young"?`.
+Scene load_scene(const std::filesystem::path& path);
+
+// The same from text; `path` gives the name for messages and the folder that relative paths start from.
+Scene parse_scene(const std::string& text, const std::filesystem::path& path);
+
+}  // namespace coapt

@@ -1,0 +1,197 @@
+#include "scene/schema.hpp"
+
+namespace coapt {
+namespace {
+
+KeySpec mesh_key() {
+  return {
+      .name = "mesh",
+      .kind = KeyKind::Object,
+      .object = {.keys = {{.name = "file",
+                           .kind = KeyKind::File,
+                           .required = true,
+                           .doc = "Triangle mesh of the reference shape: OBJ, PLY, STL, OFF or VTP."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .fallback = "\"mm\"",
+                           .doc = "Unit of length of the file's coordinates, such as \"m\" or \"cm\"."},
+                          {.name = "sets",
+                           .kind = KeyKind::File,
+                           .doc = "JSON file, such as a valve JSON, that names node sets (lists of vertex "
+                                  "numbers) and points to move to (lists of positions)."}}},
+      .doc = "The surface; a scene of cables alone has none."};
+}
+
+KeySpec boundary_key() {
+  return {
+      .name = "boundary",
+      .kind = KeyKind::Objects,
+      .object = {.keys = {{.name = "nodes",
+                           .kind = KeyKind::Nodes,
+                           .required = true,
+                           .doc = "The nodes that the entry speaks of."},
+                          {.name = "fix",
+                           .kind = KeyKind::Axes,
+                           .doc = "Coordinates that are prescribed: true for all, or some of \"x\", \"y\", "
+                                  "\"z\" (a symmetry plane); false sets the nodes free. Default: all where "
+                                  "`move_to` is given."},
+                          {.name = "move_to",
+                           .kind = KeyKind::Targets,
+                           .doc = "Where the nodes go: a CSV or mesh file with one position per node, the "
+                                  "name of positions in a valve JSON (\"annulus_closed\"), a translation, or "
+                                  "a list of these as stations of a path."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .doc = "Unit of length of the files in `move_to`; default: that of the mesh."}},
+                 .groups = {{{"fix", "move_to"}, false}}},
+      .doc =
+          "Prescribed nodes, each entry for some of them; later entries win. The anchors of a network "
+          "(\"papillary\") are prescribed unless an entry says otherwise."};
+}
+
+KeySpec solver_key() {
+  return {.name = "solver",
+          .kind = KeyKind::Object,
+          .fallback = "{}",
+          .object = {.keys = {{.name = "type",
+                               .kind = KeyKind::Choice,
+                               .fallback = "\"lbfgs\"",
+                               .choices = {"lbfgs", "bfgs", "ceres", "nlopt"},
+                               .doc = "The method; ceres and nlopt need a build that has them."},
+                              {.name = "tolerance",
+                               .fallback = "1e-6",
+                               .min = 0,
+                               .max = 1,
+                               .excludes_min = true,
+                               .doc = "Greatest out-of-balance nodal force, relative to the greatest load or "
+                                      "reaction, at which the result counts as converged."},
+                              {.name = "max_iterations",
+                               .kind = KeyKind::Integer,
+                               .fallback = "100000",
+                               .min = 0,
+                               .doc = "Greatest number of iterations over all steps."},
+                              {.name = "max_seconds",
+                               .kind = KeyKind::Quantity,
+                               .dimension = kTime,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Greatest wall time; default: no limit."},
+                              {.name = "memory",
+                               .kind = KeyKind::Integer,
+                               .fallback = "12",
+                               .min = 1,
+                               .max = 1000,
+                               .doc = "Pairs of steps and gradient changes that lbfgs keeps."}}},
+          .doc = "How the equilibrium is found."};
+}
+
+KeySpec reference_key() {
+  return {.name = "reference",
+          .kind = KeyKind::Object,
+          .object = {.keys = {{.name = "closed_surface",
+                               .kind = KeyKind::File,
+                               .required = true,
+                               .doc = "Mesh of the closed surface that the result is compared with."},
+                              {.name = "unit",
+                               .kind = KeyKind::Text,
+                               .doc = "Unit of length of that file; default: that of the mesh."}}},
+          .doc = "What the result is compared with; it never influences the solution."};
+}
+
+}  // namespace
+
+const ObjectSpec& scene_spec() {
+  static const ObjectSpec kSpec{
+      .keys = {
+          {.name = "$schema", .kind = KeyKind::Text, .doc = "Address of the JSON Schema, for editors."},
+          {.name = "name", .kind = KeyKind::Text, .doc = "Title of the scene; default: the file's name."},
+          mesh_key(),
+          {.name = "sets",
+           .kind = KeyKind::NodeSets,
+           .doc = "Named node selections, for use wherever nodes are asked for."},
+          boundary_key(),
+          {.name = "motion",
+           .kind = KeyKind::Object,
+           .object = {.keys = {{.name = "steps",
+                                .kind = KeyKind::Integer,
+                                .min = 1,
+                                .max = 100000,
+                                .doc = "Equal steps of the prescribed motion; default: as many as keep every "
+                                       "prescribed node below one mean edge length per step."}}},
+           .doc = "How the prescribed nodes travel."},
+          {.name = "terms",
+           .kind = KeyKind::Terms,
+           .required = true,
+           .doc = "Energies and loads, a list of objects with a `type`; each is added to the others."},
+          solver_key(),
+          reference_key(),
+          {.name = "output",
+           .kind = KeyKind::Object,
+           .object = {.keys = {{.name = "folder",
+                                .kind = KeyKind::Text,
+                                .required = true,
+                                .doc = "Result folder, relative to the scene's."}}},
+           .doc = "Where results go."},
+      }};
+  return kSpec;
+}
+
+const ObjectSpec& selection_spec() {
+  static const ObjectSpec kSpec{
+      .keys = {{.name = "plane",
+                .kind = KeyKind::Object,
+                .object = {.keys = {{.name = "axis",
+                                     .kind = KeyKind::Choice,
+                                     .required = true,
+                                     .choices = {"x", "y", "z"},
+                                     .doc = "Axis normal to the plane."},
+                                    {.name = "at",
+                                     .dimension = kLength,
+                                     .fallback = "0",
+                                     .doc = "Its coordinate on that axis."},
+                                    {.name = "within",
+                                     .dimension = kLength,
+                                     .min = 0,
+                                     .doc = "Greatest distance from the plane; default: a millionth of the "
+                                            "model's size."}}},
+                .doc = "All nodes on a coordinate plane."},
+               {.name = "box",
+                .kind = KeyKind::Object,
+                .object = {.keys = {{.name = "min",
+                                     .kind = KeyKind::Triple,
+                                     .dimension = kLength,
+                                     .required = true,
+                                     .doc = "Smallest coordinates."},
+                                    {.name = "max",
+                                     .kind = KeyKind::Triple,
+                                     .dimension = kLength,
+                                     .required = true,
+                                     .doc = "Greatest coordinates."}}},
+                .doc = "All nodes in a box, its faces included."},
+               {.name = "nearest",
+                .kind = KeyKind::Triple,
+                .dimension = kLength,
+                .doc = "The one node nearest to a point."}},
+      .groups = {{{"plane", "box", "nearest"}, true}}};
+  return kSpec;
+}
+
+const ObjectSpec& target_spec() {
+  static const ObjectSpec kSpec{.keys = {{.name = "translate",
+                                          .kind = KeyKind::Triple,
+                                          .dimension = kLength,
+                                          .required = true,
+                                          .doc = "Displacement from the reference position."}}};
+  return kSpec;
+}
+
+const std::vector<KeySpec>& common_term_keys() {
+  static const std::vector<KeySpec> kKeys{
+      {.name = "type", .kind = KeyKind::Text, .required = true, .doc = "Which energy or load."},
+      {.name = "name",
+       .kind = KeyKind::Text,
+       .doc = "Name in results; default: the type, with a number where it stands more than once."}};
+  return kKeys;
+}
+
+}  // namespace coapt

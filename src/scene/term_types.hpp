@@ -1,0 +1,65 @@
+// The table of term types. A new term is one entry: its name, its keys, and how to build it.
+#pragma once
+
+#include "energy/term.hpp"
+#include "mesh/valve.hpp"
+#include "scene/model.hpp"
+#include "scene/scene.hpp"
+#include "scene/schema.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// A chord network of the scene and where its points stand among the nodes.
+struct PlacedNetwork {
+  ChordNetwork network;
+  int first_papillary = 0, first_junction = 0;  // node numbers
+
+  int node(const ChordEnd& end) const {
+    if (end.kind == ChordEnd::Kind::Leaflet) return end.index;
+    return end.index + (end.kind == ChordEnd::Kind::Papillary ? first_papillary : first_junction);
+  }
+};
+
+// What a term is built from, and what it adds to the model.
+struct BuildContext {
+  Model& model;  // X, mesh and sets are ready; lines, membrane, applied_pressure ... are added to
+  const FixedMask& fixed;
+  const std::map<std::string, PlacedNetwork>& networks;  // by the path in the term's parameters
+  std::function<std::vector<int>(const NodeSelection&, const std::string& where)> nodes;
+};
+
+using TermPointer = std::unique_ptr<EnergyTerm>;
+
+struct TermType {
+  std::string name;                    // of `type` in the scene
+  TermRole role = TermRole::Internal;  // contact is built last: it needs the applied pressure
+  std::string summary;                 // one sentence
+  ObjectSpec spec;
+  // Rules between keys; one text per defect, without file and place. May be empty.
+  std::function<std::vector<std::string>(const Parameters&)> check;
+  // Throws InputError.
+  std::function<TermPointer(const TermSpec&, BuildContext&)> build;
+};
+
+const std::vector<TermType>& term_types();
+
+// nullptr for an unknown name.
+const TermType* find_term_type(const std::string& name);
+
+// The entries by family, each in its own file.
+std::vector<TermType> membrane_term_types();  // cst_stvk, surface_tension
+std::vector<TermType> line_term_types();      // cable, tether_cubic
+std::vector<TermType> load_term_types();      // load_field, load_pressure
+std::vector<TermType> contact_term_types();   // contact_facet
+
+// For the entries: the key `region`, and the triangles that it names (all where it is absent).
+KeySpec region_key();
+std::vector<int> region_triangles(const Parameters& parameters, const TriangleMesh& mesh);
+
+}  // namespace coapt

@@ -1,0 +1,82 @@
+#include "core/error.hpp"
+#include "energy/contact_facet.hpp"
+#include "scene/term_types.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr double kRangePerEdge = 0.6;  // default range over mean edge length
+constexpr double kMargin = 6;          // default capacity over applied pressure
+
+TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  Model& model = context.model;
+  if (model.mesh.triangle_count() == 0) throw InputError(p.where() + ": contact needs a mesh");
+  ContactFacetOptions options;
+  options.range =
+      p.number_or("range", kRangePerEdge * mean_edge_length(model.mesh.vertices, model.mesh.triangles));
+  options.exponent = p.integer("exponent");
+  options.quadrature = p.integer("quadrature");
+  options.subdivision = p.integer("subdivision");
+  if (!p.has("strength") && model.applied_pressure == 0)
+    throw InputError(p.where("strength") +
+                     ": missing; it can only be chosen for you where a pressure load acts");
+  options.strength = p.has("strength") ? p.number("strength")
+                                       : contact_facet_strength(model.applied_pressure, options.range,
+                                                                options.exponent, kMargin);
+  const double capacity = contact_facet_capacity(options.strength, options.range, options.exponent);
+  if (capacity < model.applied_pressure)
+    model.warnings.push_back(
+        p.where("strength") + ": two sheets can be pressed through each other: the contact carries " +
+        std::to_string(capacity) + " MPa, the load is " + std::to_string(model.applied_pressure) + " MPa.");
+  model.contact_range = std::max(model.contact_range, options.range);
+  try {
+    return make_contact_facet(spec.name, model.X, model.mesh.triangles, options);
+  } catch (const InputError& error) {
+    throw InputError(p.where() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<TermType> contact_term_types() {
+  return {
+      {.name = "contact_facet",
+       .role = TermRole::Contact,
+       .summary = "Smoothed repulsion of facets that come close (Burlina et al. 2010); a finite barrier, so "
+                  "intersections are counted in the result.",
+       .spec = {.keys = {{.name = "range",
+                          .dimension = kLength,
+                          .min = 0,
+                          .excludes_min = true,
+                          .doc = "Distance at which the repulsion begins; default: 0.6 mean edge lengths."},
+                         {.name = "exponent",
+                          .kind = KeyKind::Integer,
+                          .fallback = "3",
+                          .min = 2,
+                          .max = 20,
+                          .doc = "How steeply it rises; the stiffness is continuous from 3 on."},
+                         {.name = "strength",
+                          .dimension = kForcePerVolume,
+                          .min = 0,
+                          .excludes_min = true,
+                          .doc = "Energy density of coincident facets; default: enough to carry six times "
+                                 "the greatest pressure load."},
+                         {.name = "quadrature",
+                          .kind = KeyKind::Integer,
+                          .fallback = "3",
+                          .choices = {"1", "3", "6"},
+                          .doc = "Quadrature points on each part of a facet."},
+                         {.name = "subdivision",
+                          .kind = KeyKind::Integer,
+                          .fallback = "1",
+                          .min = 1,
+                          .max = 16,
+                          .doc = "Each facet is cut into the square of this number of parts."}}},
+       .check = {},
+       .build = build_contact}};
+}
+
+}  // namespace coapt

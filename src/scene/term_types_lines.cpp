@@ -1,0 +1,196 @@
+#include "core/error.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
+#include "energy/kernels/tether_cubic.hpp"
+#include "scene/suggestion.hpp"
+#include "scene/term_types.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace coapt {
+namespace {
+
+// One line before it gets its law.
+struct RestLine {
+  int a = 0, b = 0;
+  double length = 0;  // at rest [mm]
+  double area = 0;    // [mm^2]; 0 = not known
+  std::string label;  // for messages
+};
+
+std::vector<RestLine> network_lines(const Parameters& p, const BuildContext& context) {
+  const PlacedNetwork& placed = context.networks.at(p.text("network"));
+  std::set<std::string> wanted, known;
+  if (p.has("materials")) wanted.insert(p.texts("materials").begin(), p.texts("materials").end());
+  std::vector<RestLine> lines;
+  for (size_t k = 0; k < placed.network.chords.size(); ++k) {
+    const Chord& chord = placed.network.chords[k];
+    known.insert(chord.material);
+    if (!wanted.empty() && !wanted.contains(chord.material)) continue;
+    lines.push_back({placed.node(chord.from), placed.node(chord.to), chord.rest_length, chord.area,
+                     p.text("network") + ": chords[" + std::to_string(k) + "]"});
+  }
+  if (lines.empty())
+    throw InputError(p.where(wanted.empty() ? "network" : "materials") +
+                     ": no chord is left; the network's materials: " +
+                     listed(std::vector<std::string>(known.begin(), known.end())));
+  return lines;
+}
+
+// Boundary edges for the set "boundary", else every mesh edge with both nodes in the selection.
+std::vector<RestLine> edge_lines(const Parameters& p, const BuildContext& context) {
+  const NodeSelection& selection = p.nodes("edges");
+  const std::vector<int> nodes = context.nodes(selection, p.where("edges"));
+  const bool is_boundary = selection.kind == NodeSelection::Kind::Set && selection.set == "boundary";
+  std::vector<bool> is_wanted(static_cast<size_t>(context.model.X.cols()), false);
+  for (const int node : nodes) is_wanted[static_cast<size_t>(node)] = true;
+  std::vector<RestLine> lines;
+  for (const Edge& edge : edges(context.model.mesh.triangles)) {
+    if (!is_wanted[static_cast<size_t>(edge.a)] || !is_wanted[static_cast<size_t>(edge.b)]) continue;
+    if (is_boundary && edge.triangles.size() != 1) continue;
+    const double length = (context.model.X.col(edge.a) - context.model.X.col(edge.b)).norm();
+    lines.push_back({edge.a, edge.b, length, 0,
+                     p.where("edges") + ": edge " + std::to_string(edge.a) + "-" + std::to_string(edge.b)});
+  }
+  if (lines.empty()) throw InputError(p.where("edges") + ": no mesh edge joins two of these nodes");
+  return lines;
+}
+
+std::vector<RestLine> rest_lines(const Parameters& p, const BuildContext& context) {
+  return p.has("network") ? network_lines(p, context) : edge_lines(p, context);
+}
+
+void note_line(const TermSpec& spec, const RestLine& line, double length, int element, Model& model) {
+  model.lines.push_back({line.a, line.b, length, spec.name, element});
+}
+
+TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  const bool is_elastic = p.has("young");
+  std::vector<int> nodes;
+  std::vector<Cable::Rest> rest;
+  std::vector<std::string> defects;
+  for (const RestLine& line : rest_lines(p, context)) {
+    Cable::Rest element{0, 0, 0, p.number_or("tension", 0)};
+    if (is_elastic) {
+      const double area = p.number_or("area", line.area);
+      element.length = line.length * p.number("length_scale");
+      if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
+      if (element.length <= 0) {
+        context.model.warnings.push_back(line.label +
+                                         ": the rest length is zero, so its stiffness would be "
+                                         "infinite; it is left out.");
+        continue;
+      }
+      element.stiffness = p.number("young") * area / element.length;
+      element.smoothing = p.number("smoothing") * element.length;
+    }
+    note_line(spec, line, element.length, static_cast<int>(rest.size()), context.model);
+    nodes.insert(nodes.end(), {line.a, line.b});
+    rest.push_back(element);
+  }
+  if (!defects.empty()) throw InputError(defects);
+  return std::make_unique<ElementTerm<Cable>>(spec.name, std::move(nodes), std::move(rest));
+}
+
+TermPointer build_tether(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  std::vector<int> nodes;
+  std::vector<TetherCubic::Rest> rest;
+  for (const RestLine& line : rest_lines(p, context)) {
+    const double length = p.number_or("length", line.length * p.number("length_scale"));
+    if (length == 0) context.model.warnings.push_back(line.label + ": the tether has length zero.");
+    note_line(spec, line, length, static_cast<int>(rest.size()), context.model);
+    nodes.insert(nodes.end(), {line.a, line.b});
+    rest.push_back({p.number("strength"), length, p.number("scale")});
+  }
+  return std::make_unique<ElementTerm<TetherCubic>>(spec.name, std::move(nodes), std::move(rest));
+}
+
+std::vector<KeySpec> line_keys() {
+  return {
+      {.name = "network",
+       .kind = KeyKind::File,
+       .doc = "Valve JSON whose chords are the lines; terms that name the same file share its nodes."},
+      {.name = "edges",
+       .kind = KeyKind::Nodes,
+       .doc = "Every mesh edge with both nodes in this selection is a line; \"boundary\" takes the boundary "
+              "edges only."},
+      {.name = "materials",
+       .kind = KeyKind::Texts,
+       .doc = "Only chords of this material, or of one of a list; default: all."},
+      {.name = "length_scale",
+       .fallback = "1",
+       .min = 0,
+       .excludes_min = true,
+       .doc = "Factor on all rest lengths."}};
+}
+
+std::vector<KeySpec> with(std::vector<KeySpec> keys, const std::vector<KeySpec>& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+}  // namespace
+
+std::vector<TermType> line_term_types() {
+  return {
+      {.name = "cable",
+       .summary = "Lines that carry tension only: linear elastic, or of constant force.",
+       .spec = {.keys = with({{.name = "young",
+                               .dimension = kPressure,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Young's modulus of an elastic cable."},
+                              {.name = "tension",
+                               .dimension = kForce,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Tension of a constant-force cable."},
+                              {.name = "area",
+                               .dimension = kArea,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Cross-section; default: that of each chord of the network."},
+                              {.name = "smoothing",
+                               .fallback = "0",
+                               .min = 0,
+                               .max = 1,
+                               .doc = "Elongation, as a fraction of the rest length, over which the onset of "
+                                      "tension is rounded."}},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
+       .check = [](const Parameters& p) -> std::vector<std::string> {
+         if (p.has("young") && p.has("edges") && !p.has("area"))
+           return {"area: missing; mesh edges have no cross-section of their own"};
+         return {};
+       },
+       .build = build_cable},
+      {.name = "tether_cubic",
+       .summary = "Lines that are slack up to their length and then pull with the square of the excess "
+                  "(Burlina et al. 2010).",
+       .spec = {.keys = with({{.name = "strength",
+                               .dimension = kEnergy,
+                               .required = true,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Energy at an excess equal to the scale."},
+                              {.name = "scale",
+                               .dimension = kLength,
+                               .required = true,
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Scale of the excess length."},
+                              {.name = "length",
+                               .dimension = kLength,
+                               .min = 0,
+                               .doc = "Length of every tether; default: the rest length of each line."}},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}}},
+       .check = {},
+       .build = build_tether},
+  };
+}
+
+}  // namespace coapt

@@ -1,0 +1,288 @@
+#include "scene/valve_json.hpp"
+
+#include "core/error.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/detail/read_json.hpp"
+#include "scene/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace coapt {
+namespace {
+
+using Numbers = std::vector<int>;
+
+// The file, its scale and the defects found so far.
+class ValveReader {
+ public:
+  ValveReader(const Json& json, std::filesystem::path path) : json_(json), path_(std::move(path)) {}
+
+  ValveFile read(ValveMeshes meshes) {
+    if (!json_.is_object()) throw InputError(path_.string() + ": expected an object { ... }");
+    read_scalars();
+    for (const auto& [key, value] : json_.items()) keep_named(key, value);
+    if (json_.contains("sets") && json_["sets"].is_object())
+      for (const auto& [key, value] : json_["sets"].items()) keep_named(key, value);
+    join_free_edges();
+    fill_valve();
+    read_chords();
+    if (meshes == ValveMeshes::Read) read_meshes();
+    if (!defects_.empty()) throw InputError(defects_);
+    return std::move(file_);
+  }
+
+ private:
+  void refuse(const std::string& place, const std::string& reason) {
+    constexpr size_t kMost = 20;
+    if (defects_.size() < kMost) defects_.push_back(path_.string() + ": " + place + ": " + reason);
+  }
+
+  const Json* find(const std::string& key) const {
+    const auto found = json_.find(key);
+    return found == json_.end() ? nullptr : &*found;
+  }
+
+  std::string text(const std::string& key) {
+    const Json* value = find(key);
+    if (value == nullptr) return "";
+    if (value->is_string()) return value->get<std::string>();
+    refuse(key, "expected a text");
+    return "";
+  }
+
+  double finite_number(const Json& value, const std::string& place) {
+    if (value.is_number()) return value.get<double>();
+    refuse(place, "expected a number");
+    return 0;
+  }
+
+  void read_scalars() {
+    file_.valve.name = text("name");
+    // Others add remarks: "m (by size: ...)"; the unit is the first word.
+    const std::string units = text("units");
+    if (!units.empty()) try {
+        scale_ = unit_factor(units.substr(0, units.find(' ')), kLength);
+      } catch (const InputError& error) {
+        refuse("units", error.what());
+      }
+    if (const Json* thickness = find("leaflet_thickness_mm"))
+      file_.valve.thickness = finite_number(*thickness, "leaflet_thickness_mm");
+    if (const Json* thickness = find("leaflet_thickness"))
+      file_.valve.thickness = scale_ * finite_number(*thickness, "leaflet_thickness");
+    if (file_.valve.thickness < 0) refuse("leaflet_thickness", "is negative");
+    const Json* pressure = find("pressure");
+    if (pressure == nullptr || !pressure->is_object() || !pressure->contains("value")) return;
+    try {
+      const Json unit = pressure->value("unit", Json("MPa"));
+      file_.valve.pressure = finite_number((*pressure)["value"], "pressure.value") *
+                             unit_factor(unit.is_string() ? unit.get<std::string>() : "?", kPressure);
+    } catch (const InputError& error) {
+      refuse("pressure.unit", error.what());
+    }
+  }
+
+  static bool is_number_list(const Json& value) {
+    return value.is_array() && !value.empty() &&
+           std::all_of(value.begin(), value.end(),
+                       [](const Json& entry) { return entry.is_number_integer(); });
+  }
+
+  static bool is_point_list(const Json& value) {
+    const auto is_point = [](const Json& entry) {
+      return entry.is_array() && entry.size() == 3 && entry[0].is_number() && entry[1].is_number() &&
+             entry[2].is_number();
+    };
+    return value.is_array() && !value.empty() && std::all_of(value.begin(), value.end(), is_point);
+  }
+
+  void keep_named(const std::string& key, const Json& value) {
+    if (is_number_list(value)) {
+      file_.sets[key] = node_numbers(value, key);
+    } else if (is_point_list(value)) {
+      Points points(3, static_cast<Eigen::Index>(value.size()));
+      for (size_t k = 0; k < value.size(); ++k)
+        for (int c = 0; c < 3; ++c) points(c, static_cast<int>(k)) = scale_ * value[k][c].get<double>();
+      file_.points[key] = points;
+    }
+  }
+
+  Numbers node_numbers(const Json& value, const std::string& key) {
+    Numbers numbers;
+    for (size_t k = 0; k < value.size(); ++k) {
+      const double number = value[k].get<double>();
+      if (number < 0 || number > 2147483647) {
+        refuse(key + "[" + std::to_string(k) + "]",
+               "read " + value[k].dump() + "; expected a number counted from 0");
+        return {};
+      }
+      numbers.push_back(static_cast<int>(number));
+    }
+    return numbers;
+  }
+
+  void join_free_edges() {
+    const Json* edges = find("free_edges");
+    if (edges == nullptr || !edges->is_array() || file_.sets.contains("free_edge")) return;
+    Numbers joined;
+    for (const Json& part : *edges)
+      if (is_number_list(part)) {
+        const Numbers numbers = node_numbers(part, "free_edges");
+        joined.insert(joined.end(), numbers.begin(), numbers.end());
+      }
+    if (!joined.empty()) file_.sets["free_edge"] = joined;
+  }
+
+  // A key that we use must have its form, or be absent, or empty.
+  Numbers numbers_of(const std::string& key) {
+    if (file_.sets.contains(key)) return file_.sets[key];
+    const Json* value = find(key);
+    if (value != nullptr && !(value->is_array() && value->empty()) && !is_point_list(*value))
+      refuse(key, "expected a list of vertex numbers");
+    return {};
+  }
+
+  Points points_of(const std::string& key) {
+    if (file_.points.contains(key)) return file_.points[key];
+    const Json* value = find(key);
+    if (value != nullptr && !(value->is_array() && value->empty()))
+      refuse(key, "expected a list of positions [x, y, z]");
+    return Points(3, 0);
+  }
+
+  void fill_valve() {
+    Valve& valve = file_.valve;
+    valve.annulus = numbers_of("annulus");
+    valve.free_edge = numbers_of("free_edge");
+    valve.commissures = numbers_of("commissures");
+    valve.annulus_closed = points_of("annulus_closed");
+    ChordNetwork& chords = valve.chords;
+    chords.papillary = points_of("papillary");
+    chords.papillary_closed = points_of("papillary_closed");
+    chords.junctions = points_of("junctions");
+    const auto compare = [&](const std::string& key, Eigen::Index count, const std::string& other,
+                             size_t wanted) {
+      if (count != 0 && static_cast<size_t>(count) != wanted)
+        refuse(key, "has " + std::to_string(count) + " positions, but " + other + " has " +
+                        std::to_string(wanted));
+    };
+    compare("annulus_closed", valve.annulus_closed.cols(), "annulus", valve.annulus.size());
+    compare("papillary_closed", chords.papillary_closed.cols(), "papillary",
+            static_cast<size_t>(chords.papillary.cols()));
+  }
+
+  ChordEnd chord_end(const Json& chord, const std::string& key, const std::string& place) {
+    ChordEnd end;
+    const auto found = chord.find(key);
+    const std::string where = place + "." + key;
+    const bool is_end = found != chord.end() && found->is_object() && found->size() == 1 &&
+                        found->begin()->is_number_integer();
+    const std::string kind = is_end ? found->begin().key() : "";
+    if (kind != "papillary" && kind != "junction" && kind != "leaflet") {
+      refuse(where, "expected one of {\"papillary\": i}, {\"junction\": i}, {\"leaflet\": vertex}");
+      return end;
+    }
+    const double index = found->begin()->get<double>();
+    end.kind = kind == "papillary"  ? ChordEnd::Kind::Papillary
+               : kind == "junction" ? ChordEnd::Kind::Junction
+                                    : ChordEnd::Kind::Leaflet;
+    const ChordNetwork& chords = file_.valve.chords;
+    const double count = kind == "papillary"  ? static_cast<double>(chords.papillary.cols())
+                         : kind == "junction" ? static_cast<double>(chords.junctions.cols())
+                                              : 2147483647.0;
+    if (index < 0 || index >= count) {
+      refuse(where, kind + " " + found->begin()->dump() + " does not exist; the file has " +
+                        std::to_string(static_cast<long>(count)) + ", counted from 0");
+      return end;
+    }
+    end.index = static_cast<int>(index);
+    return end;
+  }
+
+  void read_chords() {
+    const Json* chords = find("chords");
+    if (chords == nullptr) return;
+    if (!chords->is_array()) return refuse("chords", "expected a list of chords");
+    for (size_t k = 0; k < chords->size(); ++k) read_chord((*chords)[k], "chords[" + std::to_string(k) + "]");
+  }
+
+  void read_chord(const Json& json, const std::string& place) {
+    if (!json.is_object()) return refuse(place, "expected an object with from, to, rest_length");
+    Chord chord;
+    chord.from = chord_end(json, "from", place);
+    chord.to = chord_end(json, "to", place);
+    if (chord.from.kind == chord.to.kind && chord.from.index == chord.to.index)
+      refuse(place, "both ends are the same point");
+    if (!json.contains("rest_length")) return refuse(place + ".rest_length", "missing");
+    chord.rest_length = scale_ * finite_number(json["rest_length"], place + ".rest_length");
+    if (json.contains("area")) chord.area = scale_ * scale_ * finite_number(json["area"], place + ".area");
+    if (chord.rest_length < 0) refuse(place + ".rest_length", "is negative");
+    if (chord.area < 0) refuse(place + ".area", "is negative");
+    if (const auto material = json.find("material"); material != json.end() && material->is_string())
+      chord.material = material->get<std::string>();
+    if (const auto level = json.find("level"); level != json.end() && level->is_number_integer())
+      chord.level = level->get<int>();
+    file_.valve.chords.chords.push_back(std::move(chord));
+  }
+
+  TriangleMesh read_scaled(const std::string& key) {
+    MeshFile read = read_mesh(path_.parent_path() / text(key));
+    read.mesh.vertices *= scale_;
+    file_.warnings.insert(file_.warnings.end(), read.warnings.begin(), read.warnings.end());
+    return std::move(read.mesh);
+  }
+
+  void read_meshes() {
+    try {
+      if (find("leaflets") != nullptr) {
+        file_.valve.leaflets = read_scaled("leaflets");
+        for (const std::string& defect :
+             vertex_defects(file_, path_.string(), file_.valve.leaflets.vertex_count()))
+          defects_.push_back(defect);
+      }
+      if (find("closed_reference") != nullptr) file_.valve.closed_reference = read_scaled("closed_reference");
+    } catch (const InputError& error) {
+      defects_.insert(defects_.end(), error.defects().begin(), error.defects().end());
+    }
+  }
+
+  const Json& json_;
+  std::filesystem::path path_;
+  double scale_ = 1;  // mm per unit of the file
+  ValveFile file_;
+  std::vector<std::string> defects_;
+};
+
+}  // namespace
+
+ValveFile read_valve(const std::filesystem::path& path, ValveMeshes meshes) {
+  const Json json = read_json(path);
+  return ValveReader(json, path).read(meshes);
+}
+
+std::vector<std::string> vertex_defects(const ValveFile& file, const std::string& name, int vertex_count) {
+  std::vector<std::string> defects;
+  const auto compare = [&](const std::string& place, int vertex) {
+    constexpr size_t kMost = 20;
+    if (vertex >= vertex_count && defects.size() < kMost)
+      defects.push_back(name + ": " + place + ": vertex " + std::to_string(vertex) +
+                        " does not exist; the mesh has " + std::to_string(vertex_count) + ", counted from 0");
+  };
+  for (const char* key : {"annulus", "free_edge", "commissures"}) {
+    const auto found = file.sets.find(key);
+    if (found == file.sets.end()) continue;
+    for (size_t k = 0; k < found->second.size(); ++k)
+      compare(std::string(key) + "[" + std::to_string(k) + "]", found->second[k]);
+  }
+  const std::vector<Chord>& chords = file.valve.chords.chords;
+  for (size_t k = 0; k < chords.size(); ++k) {
+    const std::string place = "chords[" + std::to_string(k) + "]";
+    if (chords[k].from.kind == ChordEnd::Kind::Leaflet)
+      compare(place + ".from.leaflet", chords[k].from.index);
+    if (chords[k].to.kind == ChordEnd::Kind::Leaflet) compare(place + ".to.leaflet", chords[k].to.index);
+  }
+  return defects;
+}
+
+}  // namespace coapt

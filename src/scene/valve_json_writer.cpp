@@ -1,0 +1,90 @@
+#include "mesh/mesh_io.hpp"
+#include "scene/detail/read_json.hpp"
+#include "scene/valve_json.hpp"
+
+#include <fstream>
+
+namespace coapt {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+OrderedJson positions(const Points& points) {
+  OrderedJson list = OrderedJson::array();
+  for (int k = 0; k < points.cols(); ++k) list.push_back({points(0, k), points(1, k), points(2, k)});
+  return list;
+}
+
+OrderedJson end_of(const ChordEnd& end) {
+  switch (end.kind) {
+    case ChordEnd::Kind::Papillary:
+      return {{"papillary", end.index}};
+    case ChordEnd::Kind::Junction:
+      return {{"junction", end.index}};
+    case ChordEnd::Kind::Leaflet:
+      break;
+  }
+  return {{"leaflet", end.index}};
+}
+
+OrderedJson chord_of(const Chord& chord) {
+  OrderedJson json{{"from", end_of(chord.from)},
+                   {"to", end_of(chord.to)},
+                   {"rest_length", chord.rest_length},
+                   {"area", chord.area}};
+  if (!chord.material.empty()) json["material"] = chord.material;
+  if (chord.level != 0) json["level"] = chord.level;
+  return json;
+}
+
+// One entry of a long list per line: people compare such files.
+std::string laid_out(const OrderedJson& json) {
+  std::string text = "{";
+  bool is_first = true;
+  for (const auto& [key, value] : json.items()) {
+    text += (is_first ? "\n  " : ",\n  ") + OrderedJson(key).dump() + ": ";
+    is_first = false;
+    if (!value.is_array() || value.empty() || !value[0].is_structured()) {
+      text += value.dump();
+      continue;
+    }
+    for (size_t k = 0; k < value.size(); ++k) text += (k == 0 ? "[\n    " : ",\n    ") + value[k].dump();
+    text += "\n  ]";
+  }
+  return text + "\n}\n";
+}
+
+}  // namespace
+
+void write_valve(const std::filesystem::path& path, const Valve& valve) {
+  OrderedJson json;
+  if (!valve.name.empty()) json["name"] = valve.name;
+  json["units"] = "mm";
+  json["index_base"] = 0;
+  if (valve.leaflets.triangle_count() > 0) {
+    json["leaflets"] = "leaflets.obj";
+    write_mesh(path.parent_path() / "leaflets.obj", valve.leaflets);
+  }
+  if (valve.closed_reference) {
+    json["closed_reference"] = "closed_reference.obj";
+    write_mesh(path.parent_path() / "closed_reference.obj", *valve.closed_reference);
+  }
+  if (valve.pressure > 0) json["pressure"] = {{"value", valve.pressure}, {"unit", "MPa"}};
+  if (valve.thickness > 0) json["leaflet_thickness"] = valve.thickness;
+  if (!valve.annulus.empty()) json["annulus"] = valve.annulus;
+  if (valve.annulus_closed.cols() > 0) json["annulus_closed"] = positions(valve.annulus_closed);
+  if (!valve.free_edge.empty()) json["free_edge"] = valve.free_edge;
+  if (!valve.commissures.empty()) json["commissures"] = valve.commissures;
+  const ChordNetwork& chords = valve.chords;
+  if (chords.papillary.cols() > 0) json["papillary"] = positions(chords.papillary);
+  if (chords.papillary_closed.cols() > 0) json["papillary_closed"] = positions(chords.papillary_closed);
+  if (chords.junctions.cols() > 0) json["junctions"] = positions(chords.junctions);
+  if (!chords.chords.empty()) {
+    OrderedJson list = OrderedJson::array();
+    for (const Chord& chord : chords.chords) list.push_back(chord_of(chord));
+    json["chords"] = list;
+  }
+  write_text(path, laid_out(json));
+}
+
+}  // namespace coapt

@@ -1,0 +1,184 @@
+"""Drives the real command as a user does: exit codes, messages, files.
+
+Usage: command_test.py COAPT_BINARY RESULT_SCHEMA [unittest arguments]
+"""
+import json
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
+
+COAPT, SCHEMA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2])
+FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv"}
+
+
+def coapt(*arguments, cwd=None):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = pathlib.Path(self.scratch.name)
+
+    def generate(self, shape, *options):
+        run = coapt("generate", shape, "-o", self.folder, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.folder / "scene.json"
+
+    def result(self, folder=None):
+        text = ((folder or self.folder / "result") / "result.json").read_text()
+        self.assertNotIn("NaN", text)
+        return json.loads(text)
+
+    def assert_bad_input(self, run, *pieces):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for line in run.stderr.splitlines():
+            self.assertTrue(line.startswith("coapt: error: "), line)
+        for piece in pieces:
+            self.assertIn(piece, run.stderr)
+
+    def test_solves_every_generated_shape(self):
+        for shape in ["disc", "square", "sphere", "tent", "catenary", "airbag", "strip", "mitral"]:
+            with self.subTest(shape):
+                scene = self.generate(shape, "--triangles", 400)
+                run = coapt("solve", scene)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                self.assertEqual(run.stderr, "", "quiet in a pipe")
+                self.assertIn("residual", run.stdout)
+                self.assertEqual({p.name for p in (self.folder / "result").iterdir()}, FILES)
+                result = self.result()
+                self.assertTrue(result["converged"])
+                self.assertLessEqual(result["residual"], 1e-6)
+                self.assertLess(result["metrics"]["force_balance"], 1e-5)
+
+    def test_generated_disc_has_the_known_deflection(self):
+        scene = self.generate("disc", "--triangles", 2000)
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        self.assertAlmostEqual(self.result()["metrics"]["max_displacement_mm"], 1.4138457, delta=0.004)
+
+    def test_results_obey_the_published_schema(self):
+        schema = json.loads(SCHEMA.read_text())
+        self.assertEqual(coapt("schema", "result").stdout, SCHEMA.read_text())
+        if jsonschema is None:
+            self.skipTest("skipped: python3-jsonschema not found")
+        jsonschema.Draft202012Validator.check_schema(schema)
+        validator = jsonschema.Draft202012Validator(schema)
+        for shape in ["mitral", "catenary", "disc"]:
+            scene = self.generate(shape, "--triangles", 300)
+            coapt("solve", scene)
+            self.assertEqual([e.message for e in validator.iter_errors(self.result())], [])
+        broken = self.result()
+        broken["status"] = "fine"
+        self.assertNotEqual(list(validator.iter_errors(broken)), [])
+
+    def test_counters_are_zero_for_what_a_scene_does_not_use(self):
+        coapt("solve", self.generate("disc", "--triangles", 200))
+        counters = self.result()["counters"]
+        for kind in ["cable_elements", "contact_candidates", "contact_searches"]:
+            self.assertEqual(counters[kind], 0)
+        self.assertEqual(counters["membrane_elements"], self.result()["mesh"]["triangles"])
+        coapt("solve", self.generate("catenary"))
+        self.assertEqual(self.result()["counters"]["pressure_facets"], 0)
+        self.assertEqual(self.result()["counters"]["membrane_elements"], 0)
+        self.assertEqual(self.result()["counters"]["cable_elements"], 40)
+
+    def test_a_run_out_of_time_writes_its_result_and_returns_1(self):
+        scene = self.generate("mitral", "--triangles", 2500)
+        run = coapt("solve", scene, "--max-seconds", "0.05", "--tolerance", "1e-12")
+        self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+        self.assertEqual(self.result()["status"], "time_limit")
+        self.assertFalse(self.result()["converged"])
+
+    def test_an_interrupt_saves_the_best_state(self):
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            scene = self.generate("mitral", "--triangles", 10000)
+            process = subprocess.Popen([COAPT, "solve", str(scene), "--tolerance", "1e-14"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            time.sleep(1.5)
+            process.send_signal(number)
+            output = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 1, output)
+            self.assertEqual(self.result()["status"], "cancelled")
+            self.assertEqual({p.name for p in (self.folder / "result").iterdir()}, FILES)
+
+    def test_names_every_defect_of_a_scene_on_its_own_line(self):
+        scene = self.generate("disc", "--triangles", 100)
+        text = scene.read_text().replace('"young": "1 MPa"', '"yuong": "1 MPa"').replace('"0.1 kPa"', '"0.1 kg"')
+        scene.write_text(text)
+        for command in ["solve", "check"]:
+            run = coapt(command, scene)
+            self.assert_bad_input(run, "yuong", "young", "0.1 kg")
+            self.assertGreaterEqual(len(run.stderr.splitlines()), 2)
+        self.assertFalse((self.folder / "result").exists(), "nothing half-written")
+
+    def test_check_reports_scene_and_mesh_defects_in_one_pass(self):
+        scene = self.generate("disc", "--triangles", 100)
+        scene.write_text(scene.read_text().replace('"young": "1 MPa"', '"yuong": "1 MPa"'))
+        with open(self.folder / "mesh.obj", "a") as mesh:
+            mesh.write("f 1 2 99999\n")
+        self.assert_bad_input(coapt("check", scene), "yuong", "mesh.obj", "99999")
+
+    def test_check_prints_the_derivatives_of_every_term(self):
+        run = coapt("check", self.generate("mitral", "--triangles", 300))
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        for name in ["leaflets", "chords", "load_pressure", "sum"]:
+            self.assertIn(name, run.stdout)
+        self.assertNotIn("FAILED", run.stdout)
+
+    def test_lists_the_solvers_when_one_is_not_known(self):
+        run = coapt("solve", self.generate("disc", "--triangles", 100), "--solver", "lbgfs")
+        self.assert_bad_input(run, "lbgfs", "lbfgs", "bfgs")
+
+    def test_says_why_a_scene_or_folder_cannot_be_used(self):
+        self.assert_bad_input(coapt("solve", self.folder / "missing.json"), "missing.json")
+        scene = self.generate("disc", "--triangles", 100)
+        (self.folder / "file").write_text("")
+        self.assert_bad_input(coapt("solve", scene, "-o", self.folder / "file"), "file", "-o")
+        if os.geteuid() != 0:  # root writes anywhere
+            locked = self.folder / "locked"
+            locked.mkdir()
+            locked.chmod(stat.S_IRUSR | stat.S_IXUSR)
+            self.assert_bad_input(coapt("solve", scene, "-o", locked), "locked")
+
+    def test_refuses_bad_arguments_with_2(self):
+        for arguments in [["solve"], ["solve", "x", "--tolerance", "-1"], ["frobnicate"], ["generate", "cube", "-o", "x"],
+                          ["generate", "catenary", "--contact", "facet", "-o", "x"], []]:
+            run = coapt(*arguments, cwd=self.folder)
+            self.assertEqual(run.returncode, 2, arguments)
+            self.assertTrue(run.stderr.startswith("coapt: error: "), run.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_tells_version_components_and_licence(self):
+        run = coapt("--version")
+        self.assertEqual(run.returncode, 0)
+        self.assertRegex(run.stdout, r"coapt \d+\.\d+\.\d+")
+        self.assertIn("Licence:", run.stdout)
+        self.assertIn("nanoflann", run.stdout)
+
+    def test_prints_the_schemas(self):
+        for which in ["scene", "result"]:
+            self.assertIn("$schema", json.loads(coapt("schema", which).stdout))
+
+    def test_two_runs_give_the_same_positions(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        shapes = []
+        for name in ["a", "b"]:
+            coapt("solve", scene, "-o", self.folder / name)
+            shapes.append((self.folder / name / "closed.obj").read_bytes())
+        self.assertEqual(shapes[0], shapes[1])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,242 @@
+#include "scene/build.hpp"
+
+#include "core/error.hpp"
+#include "mesh/generators/shapes.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr const char* kDiscTerms = R"([
+  {"type": "cst_stvk", "young": "1 MPa", "thickness": "1 mm", "prestress": "0.1 N/mm"},
+  {"type": "load_pressure", "value": "1 kPa"}])";
+
+// A disc of radius 10 mm, the files around it, and a scene of the parts given.
+class BuildTest : public testing::Test {
+ protected:
+  BuildTest() {
+    disc_ = disc(10, 200);
+    write_mesh(folder_.path() / "disc.obj", disc_);
+  }
+
+  Model build_disc(const std::string& terms, const std::string& more) {
+    return build(load_scene(folder_.write(
+        "scene.json",
+        R"({"mesh": {"file": "disc.obj", "sets": "sets.json"}, "terms": )" + terms + more + "}")));
+  }
+
+  std::string refusal(const std::string& terms, const std::string& more) {
+    try {
+      build_disc(terms, more);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  TemporaryFolder folder_;
+  TriangleMesh disc_;
+  std::filesystem::path sets_ = folder_.write("sets.json", R"({"centre": [0], "far": [100000]})");
+};
+
+constexpr const char* kHeldRim = R"(, "boundary": [{"nodes": "boundary", "fix": true}])";
+
+TEST_F(BuildTest, MakesADiscReadyToSolve) {
+  Model model = build_disc(kDiscTerms, kHeldRim);
+  EXPECT_TRUE(model.warnings.empty()) << model.warnings[0];
+  const int rim = static_cast<int>(model.sets.at("boundary").size());
+  EXPECT_EQ(model.objective->free_count(), 3 * (disc_.vertex_count() - rim));
+  EXPECT_EQ(model.objective->terms().size(), 2u);
+  EXPECT_DOUBLE_EQ(model.applied_pressure, 0.001);
+  ASSERT_EQ(model.membrane.size(), static_cast<size_t>(disc_.triangle_count()));
+  EXPECT_EQ(model.membrane[0].prestress, 0.1);
+  EXPECT_EQ(model.sets.at("centre"), std::vector<int>{0});
+  EXPECT_FALSE(model.sets.contains("far"));
+  Vector g;
+  model.objective->gradient(model.q0, g);
+  EXPECT_GT(g.norm(), 0);
+}
+
+TEST_F(BuildTest, SolvesTheDiscToARoundedDome) {
+  const Model model = build_disc(kDiscTerms, kHeldRim);
+  const auto solver = built_in_solvers().at("lbfgs")();
+  const Result result = solve(*solver, {*model.objective, model.q0, model.motion}, {.tolerance = 1e-6});
+  EXPECT_EQ(result.status, Status::Converged) << result.message;
+  const double height = model.objective->positions(result.q)(2, 0);
+  // Without strain the prestressed disc would rise by p a^2 / (4 T) = 0.25 mm; stretching stiffens it.
+  EXPECT_GT(height, 0.15);
+  EXPECT_LT(height, 0.25);
+}
+
+TEST_F(BuildTest, PushesAgainstTheNormalsFromTheFront) {
+  for (const char* model_name : {"follower", "volume", "frozen"}) {
+    const auto force_at_centre = [&](const char* side) {
+      Model model = build_disc(R"([{"type": "cst_stvk", "young": "1 MPa", "thickness": "1 mm"},
+          {"type": "load_pressure", "value": "1 kPa", "side": ")" +
+                                   std::string(side) + R"(", "model": ")" + model_name + R"("}])",
+                               kHeldRim);
+      Vector g;
+      model.objective->gradient(model.q0, g);
+      return -g[2];  // the centre is node 0
+    };
+    EXPECT_GT(force_at_centre("back"), 0) << model_name;
+    EXPECT_DOUBLE_EQ(force_at_centre("back"), -force_at_centre("front")) << model_name;
+  }
+}
+
+TEST_F(BuildTest, MovesNodesAlongStraightLinesInSteps) {
+  const Model model = build_disc(kDiscTerms, R"(, "boundary": [
+      {"nodes": "boundary", "move_to": [{"translate": [0, 0, 4]}, {"translate": [2, 0, 4]}]}])");
+  ASSERT_TRUE(model.motion.positions != nullptr);
+  const int node = model.sets.at("boundary")[0];
+  const Vec3 X = model.X.col(node);
+  EXPECT_LT((model.motion.positions(0.25).col(node) - X - Vec3(0, 0, 2)).norm(), 1e-14);
+  EXPECT_LT((model.motion.positions(0.75).col(node) - X - Vec3(1, 0, 4)).norm(), 1e-14);
+  EXPECT_LT((model.motion.positions(1).col(node) - X - Vec3(2, 0, 4)).norm(), 1e-14);
+  const double edge = mean_edge_length(disc_.vertices, disc_.triangles);
+  EXPECT_EQ(model.motion.steps, static_cast<int>(std::ceil(8 / edge)));
+}
+
+TEST_F(BuildTest, ReadsTargetsFromAFileInItsUnit) {
+  folder_.write("to.csv", "x,y,z\n0.001, 0.002, 0.003\n");
+  const Model model = build_disc(kDiscTerms, R"(, "boundary": [{"nodes": "boundary", "fix": true},
+      {"nodes": "centre", "move_to": "to.csv", "unit": "m"}])");
+  EXPECT_EQ(model.motion.positions(1).col(0), Vec3(1, 2, 3));
+  folder_.write("to.csv", "1 2 3\n4 5 6\n");
+  EXPECT_NE(refusal(kDiscTerms, R"(, "boundary": [{"nodes": "centre", "move_to": "to.csv"}])")
+                .find("has 2 positions for 1 nodes"),
+            std::string::npos);
+  folder_.write("to.csv", "1 2 3\n4 5 nan\n");
+  EXPECT_NE(refusal(kDiscTerms, R"(, "boundary": [{"nodes": "centre", "move_to": "to.csv"}])")
+                .find("to.csv:2: expected three finite numbers"),
+            std::string::npos);
+}
+
+TEST_F(BuildTest, SelectsNodesByWhereTheyLie) {
+  const Model model = build_disc(kDiscTerms, R"(, "sets": {
+      "axis": {"plane": {"axis": "x"}}, "quarter": {"box": {"min": [-20, -20, -1], "max": [0, "0 mm", 1]}},
+      "rightmost": {"nearest": [100, 0, 0]}}, "boundary": [{"nodes": "axis", "fix": ["x"]}])");
+  for (const int node : model.sets.at("axis")) EXPECT_LT(std::abs(model.X(0, node)), 1e-5);
+  for (const int node : model.sets.at("quarter")) EXPECT_LE(model.X.col(node).head<2>().maxCoeff(), 0);
+  EXPECT_DOUBLE_EQ(model.X(0, model.sets.at("rightmost").at(0)), 10);
+  EXPECT_TRUE(model.objective->fixed()(0, model.sets.at("axis")[0]));
+  EXPECT_FALSE(model.objective->fixed()(1, model.sets.at("axis")[0]));
+}
+
+TEST_F(BuildTest, ListsTheKnownNamesForAnUnknownOne) {
+  const std::string set = refusal(kDiscTerms, R"(, "boundary": [{"nodes": "boundery", "fix": true},
+                                                                {"nodes": [5000], "fix": true}])");
+  EXPECT_NE(set.find("boundary[0].nodes: no node set \"boundery\"; known sets: all, boundary, centre"),
+            std::string::npos)
+      << set;
+  EXPECT_NE(set.find("node 5000 does not exist"), std::string::npos) << set;
+  const std::string region =
+      refusal(R"([{"type": "surface_tension", "tension": "1 N/m", "region": "anterior"}])", "");
+  EXPECT_NE(region.find("terms[0].region: the mesh has no region \"anterior\""), std::string::npos) << region;
+  const std::string points =
+      refusal(kDiscTerms, R"(, "boundary": [{"nodes": "centre", "move_to": "closed"}])");
+  EXPECT_NE(points.find("no positions \"closed\""), std::string::npos) << points;
+}
+
+TEST_F(BuildTest, WarnsOfAPartThatNothingHolds) {
+  const Model model = build_disc(kDiscTerms, "");
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("rigid-body modes"), std::string::npos);
+}
+
+TEST_F(BuildTest, HoldsIsolatedVerticesAndSaysSo) {
+  TriangleMesh mesh = disc_;
+  mesh.vertices.conservativeResize(3, mesh.vertex_count() + 1);
+  mesh.vertices.rightCols(1) = Vec3(0, 0, 50);
+  write_mesh(folder_.path() / "disc.obj", mesh);
+  const Model model = build_disc(kDiscTerms, kHeldRim);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find(std::to_string(disc_.vertex_count())), std::string::npos);
+  EXPECT_TRUE(model.objective->fixed().col(disc_.vertex_count()).all());
+}
+
+TEST_F(BuildTest, TakesTheContactStrengthFromThePressure) {
+  const std::string held = kHeldRim;
+  const Model model = build_disc(R"([{"type": "contact_facet"}, {"type": "load_pressure", "value": "1 kPa"},
+      {"type": "cst_stvk", "young": "1 MPa", "thickness": "1 mm"}])",
+                                 held);
+  EXPECT_NEAR(model.contact_range, 0.6 * mean_edge_length(disc_.vertices, disc_.triangles), 1e-12);
+  EXPECT_NE(refusal(R"([{"type": "contact_facet"}, {"type": "surface_tension", "tension": "1 N/m"}])", held)
+                .find("terms[0].strength: missing"),
+            std::string::npos);
+}
+
+TEST_F(BuildTest, LaysConstantForceCablesAlongTheBoundaryOnly) {
+  const Model model = build_disc(R"([{"type": "surface_tension", "tension": "1 N/mm"},
+      {"type": "cable", "edges": "boundary", "tension": "10 N"}])",
+                                 R"(, "boundary": [{"nodes": {"nearest": [10, 0, 0]}, "fix": true}])");
+  EXPECT_EQ(model.lines.size(), model.sets.at("boundary").size());
+}
+
+TEST_F(BuildTest, MovesAFarMeshToZero) {
+  TriangleMesh mesh = disc_;
+  mesh.vertices.colwise() += Vec3(1e6, -2e6, 3e6);
+  write_mesh(folder_.path() / "disc.obj", mesh);
+  const Model model = build_disc(kDiscTerms, kHeldRim);
+  EXPECT_LT(model.X.cwiseAbs().maxCoeff(), 11);
+  EXPECT_LT((model.X.col(0) + model.origin - Vec3(1e6, -2e6, 3e6)).norm(), 1e-8);
+  EXPECT_EQ(model.mesh.vertices, model.X);
+}
+
+constexpr const char* kChain = R"({"papillary": [[0, 0, 0], [10, 0, 0]], "junctions": [[5, 0, -1]],
+  "chords": [{"from": {"papillary": 0}, "to": {"junction": 0}, "rest_length": 6, "area": 1, "material": "a"},
+             {"from": {"junction": 0}, "to": {"papillary": 1}, "rest_length": %, "area": 1, "material": "b"}]})";
+
+Model build_chain(const TemporaryFolder& folder, const std::string& rest, const std::string& keys) {
+  std::string chain = kChain;
+  chain.replace(chain.find('%'), 1, rest);
+  folder.write("chain.json", chain);
+  return build(load_scene(folder.write("scene.json", R"({"terms": [
+      {"type": "cable", "network": "chain.json", "young": "1 MPa")" +
+                                                         keys + R"(},
+      {"type": "load_field", "direction": [0, 0, -1], "force": "1 N", "nodes": "junctions"}]})")));
+}
+
+TEST(BuildNetwork, HangsAChainWithoutAMeshFromItsAnchors) {
+  const TemporaryFolder folder;
+  const Model model = build_chain(folder, "6", "");
+  EXPECT_EQ(model.X.cols(), 3);
+  EXPECT_EQ(model.lines.size(), 2u);
+  EXPECT_EQ(model.sets.at("junctions"), std::vector<int>{2});
+  EXPECT_EQ(model.objective->free_count(), 3);
+  EXPECT_TRUE(model.warnings.empty());
+  EXPECT_EQ(build_chain(folder, "6", R"(, "materials": "b")").lines.size(), 1u);
+  EXPECT_EQ(build_chain(folder, "6", R"(, "length_scale": 0.5)").lines[0].rest_length, 3);
+}
+
+TEST(BuildNetwork, LeavesOutAnElasticChordOfZeroLengthWithAWarning) {
+  const TemporaryFolder folder;
+  const Model model = build_chain(folder, "0", "");
+  EXPECT_EQ(model.lines.size(), 1u);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("chords[1]: the rest length is zero"), std::string::npos);
+}
+
+TEST(BuildNetwork, NamesTheChordThatEndsAtAMissingVertex) {
+  const TemporaryFolder folder;
+  folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("net.json", R"({"papillary": [[0, 0, -5]], "chords": [
+      {"from": {"papillary": 0}, "to": {"leaflet": 3}, "rest_length": 5, "area": 1}]})");
+  try {
+    build(load_scene(folder.write("scene.json", R"({"mesh": {"file": "mesh.obj"}, "terms": [
+        {"type": "cable", "network": "net.json", "young": "1 MPa"}]})")));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("net.json: chords[0].to.leaflet: vertex 3 does not exist"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace coapt

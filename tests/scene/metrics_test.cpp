@@ -1,0 +1,215 @@
+#include "scene/metrics.hpp"
+
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
+#include "mesh/generators/shapes.hpp"
+#include "scene/reference_distance.hpp"
+#include "scene/valve_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+Model model_of(TriangleMesh mesh) {
+  Model model;
+  model.X = mesh.vertices;
+  model.mesh = std::move(mesh);
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, model.X.cols(), false),
+                                                std::vector<std::unique_ptr<EnergyTerm>>{});
+  return model;
+}
+
+Metrics measure_at(const Model& model, const Points& x) {
+  return measure(model, model.objective->unknowns(x), compute_fields(model, x));
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& other) {
+  const int vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
+  mesh.vertices.conservativeResize(3, vertices + other.vertex_count());
+  mesh.vertices.rightCols(other.vertex_count()) = other.vertices;
+  mesh.triangles.conservativeResize(3, triangles + other.triangle_count());
+  mesh.triangles.rightCols(other.triangle_count()) = other.triangles.array() + vertices;
+}
+
+// Two square plates of side 10 at a distance along z.
+Model plates(double distance) {
+  TriangleMesh mesh = square(10, 200), upper = mesh;
+  upper.vertices.row(2).array() += distance;
+  append(mesh, upper);
+  return model_of(std::move(mesh));
+}
+
+// A flat ring, 40 sectors: vertices 0-39 inside (radius 4), 40-79 outside (radius 10); annulus outside.
+Model ring() {
+  constexpr int n = 40;
+  TriangleMesh mesh;
+  mesh.vertices = Points::Zero(3, 2 * n);
+  mesh.triangles.resize(3, 2 * n);
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2 * std::numbers::pi * k / n;
+    mesh.vertices.col(k) << 4 * std::cos(angle), 4 * std::sin(angle), 0;
+    mesh.vertices.col(n + k) << 10 * std::cos(angle), 10 * std::sin(angle), 0;
+    const int next = (k + 1) % n;
+    mesh.triangles.col(2 * k) << k, n + k, n + next;
+    mesh.triangles.col(2 * k + 1) << k, n + next, next;
+  }
+  Model model = model_of(std::move(mesh));
+  for (int k = 0; k < n; ++k) model.sets["annulus"].push_back(n + k);
+  return model;
+}
+
+double polygon_area(int corners, double radius) {
+  return 0.5 * corners * radius * radius * std::sin(2 * std::numbers::pi / corners);
+}
+
+TEST(VertexGaps, MeasureTheDistanceOfParallelPlates) {
+  const Model model = plates(0.3);
+  const Vector gaps = vertex_gaps(model.X, model.mesh.triangles, 5);
+  EXPECT_NEAR(gaps.minCoeff(), 0.3, 1e-14);
+  EXPECT_NEAR(gaps.maxCoeff(), 0.3, 1e-14);
+}
+
+TEST(VertexGaps, AreUndefinedBeyondReachAndWithinTwoRings) {
+  const Model apart = plates(6);
+  EXPECT_TRUE(vertex_gaps(apart.X, apart.mesh.triangles, 0.5).array().isNaN().all());
+  const TriangleMesh two_triangles = square(1, 2);
+  EXPECT_TRUE(vertex_gaps(two_triangles.vertices, two_triangles.triangles, 5).array().isNaN().all());
+}
+
+TEST(Metrics, CountHalfTheContactingAreaAsCoaptation) {
+  Model model = plates(0.3);
+  model.contact_range = 0.5;
+  const Metrics near = measure_at(model, model.X);
+  EXPECT_EQ(near.contact_vertices, model.mesh.vertex_count());
+  EXPECT_NEAR(near.coaptation_area_mm2.value(), 100, 1e-10);
+  EXPECT_NEAR(near.smallest_gap_mm.value(), 0.3, 1e-14);
+  EXPECT_EQ(near.intersections, 0);
+  Model far = plates(0.6);
+  far.contact_range = 0.5;
+  EXPECT_EQ(measure_at(far, far.X).contact_vertices, 0);
+  EXPECT_EQ(measure_at(far, far.X).coaptation_area_mm2.value(), 0);
+}
+
+TEST(Metrics, MeasureTheHoleOfARingAsOrifice) {
+  const Model model = ring();
+  const Metrics metrics = measure_at(model, model.X);
+  EXPECT_NEAR(metrics.annulus_area_mm2.value(), polygon_area(40, 10), 1e-3);
+  EXPECT_NEAR(metrics.orifice_area_mm2.value(), polygon_area(40, 4), 1e-3);
+  EXPECT_NEAR(metrics.orifice_area_percent.value(), 16, 1e-3);
+}
+
+TEST(Metrics, MeasureTheDepthOfAFunnelAsTenting) {
+  Model model = ring();
+  model.contact_range = 0.2;
+  for (int k = 0; k < 40; ++k) model.X(2, k) = -3;  // the open leaflets hang to -z
+  const Metrics metrics = measure_at(model, model.X);
+  EXPECT_NEAR(metrics.tenting_height_mm.value(), 3, 0.3);  // a column is 0.57 wide
+  Points bulged = model.X;
+  for (int k = 0; k < 40; ++k) bulged(2, k) = 3;
+  EXPECT_NEAR(measure_at(model, bulged).tenting_height_mm.value(), 0, 0.3);
+}
+
+TEST(Metrics, MeasureTheHeightOfTwoHangingSheetsAsCoaptation) {
+  // Two sheets 10 wide hang 4 deep, 0.2 apart; the annulus is a wide loop around their tops.
+  TriangleMesh sheet = rectangle(10, 4, 640);
+  const Points flat = sheet.vertices;
+  sheet.vertices.row(2) = flat.row(1).array() - 4;
+  sheet.vertices.row(1).setConstant(0);
+  TriangleMesh mesh = sheet;
+  sheet.vertices.row(1).setConstant(0.2);
+  append(mesh, sheet);
+  TriangleMesh frame = square(20, 8);
+  frame.vertices.row(0).array() -= 5;
+  frame.vertices.row(1).array() -= 10;
+  const int first = mesh.vertex_count();
+  append(mesh, frame);
+  Model model = model_of(std::move(mesh));
+  model.contact_range = 0.25;
+  model.sets["annulus"] = {first, first + 2, first + 8, first + 6};
+  EXPECT_NEAR(measure_at(model, model.X).coaptation_height_mm.value(), 4, 0.3);
+}
+
+TEST(Metrics, AreUndefinedWithoutAnnulusChordsAndContact) {
+  const Model model = model_of(disc(5, 100));
+  const Metrics metrics = measure_at(model, model.X);
+  EXPECT_FALSE(metrics.orifice_area_mm2 || metrics.tenting_height_mm || metrics.coaptation_height_mm);
+  EXPECT_FALSE(metrics.coaptation_area_mm2 || metrics.max_chord_force_n || metrics.slack_chords);
+}
+
+TEST(Metrics, CountFacetsThatPassThroughEachOther) {
+  TriangleMesh mesh = square(10, 200), upright = square(10, 200);
+  upright.vertices.row(2) = upright.vertices.row(1).array() - 5.03;
+  upright.vertices.row(1).setConstant(5.01);
+  append(mesh, upright);
+  const Model model = model_of(std::move(mesh));
+  EXPECT_GT(measure_at(model, model.X).intersections, 10);
+}
+
+TEST(Fields, GivePrincipalStretchAndStressOfABiaxialPatch) {
+  Model model = model_of(square(1, 8));
+  model.membrane.assign(8, {1000, 0.3, 1, 0});
+  Points x = model.X;
+  x.row(0) *= 1.2;
+  x.row(1) *= 1.1;
+  const Fields fields = compute_fields(model, x);
+  for (int t = 0; t < 8; ++t) {
+    EXPECT_NEAR(fields.principal_strain(0, t), 0.2, 1e-14);
+    EXPECT_NEAR(fields.principal_strain(1, t), 0.1, 1e-14);
+    EXPECT_NEAR(fields.principal_stress(0, t), 331.648352 / 1.2, 1e-5);  // first Piola-Kirchhoff over stretch
+    EXPECT_NEAR(fields.principal_stress(1, t), 206.703297 / 1.1, 1e-5);
+  }
+}
+
+TEST(Fields, GiveTheTensionOfTautAndSlackLines) {
+  Model model;
+  model.X.resize(3, 3);
+  model.X << 0, 1, 3, 0, 0, 0, 0, 0, 0;
+  model.lines = {{0, 1, 1, "chords", 0}, {1, 2, 2, "chords", 1}};
+  std::vector<std::unique_ptr<EnergyTerm>> terms;
+  terms.push_back(std::make_unique<ElementTerm<Cable>>(
+      "chords", std::vector<int>{0, 1, 1, 2}, std::vector<Cable::Rest>{{50, 1, 0, 0}, {50, 2, 0, 0}}));
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, 3, false), std::move(terms));
+  Points x = model.X;
+  x(0, 1) = 1.1;  // the first line grows by 0.1, the second shrinks
+  const Metrics metrics = measure_at(model, x);
+  EXPECT_NEAR(metrics.max_chord_force_n.value(), 5, 1e-12);
+  EXPECT_EQ(metrics.slack_chords.value(), 1);
+}
+
+TEST(ReferenceDistance, MeasuresAParallelSurfaceBothWaysAndVertexByVertex) {
+  Model model = model_of(square(10, 200));
+  model.closed_reference = model.mesh;
+  model.closed_reference->vertices.row(2).array() += 0.5;
+  Fields fields = compute_fields(model, model.X);
+  const auto distance = compare_with_reference(model, fields);
+  ASSERT_TRUE(distance && distance->same_vertex);
+  EXPECT_NEAR(distance->to_reference.mean, 0.5, 1e-12);
+  EXPECT_NEAR(distance->from_reference.max, 0.5, 1e-12);
+  EXPECT_NEAR(distance->same_vertex->max, 0.5, 1e-12);
+  EXPECT_NEAR(fields.reference_distance[3], 0.5, 1e-12);
+}
+
+TEST(Metrics, AgreeWithThePublishedFiguresOfTheClosedTricuspidValve) {
+  const std::filesystem::path file =
+      std::filesystem::path(COAPT_SHARED_DIR) / "data/trivalve11-healthy/valve.json";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: data not found";
+  const ValveFile valve = read_valve(file);
+  Model model = model_of(valve.valve.leaflets);
+  model.sets["annulus"] = valve.valve.annulus;
+  model.contact_range = 0.3;  // twice the contact gap of that computation
+  const Metrics metrics = measure_at(model, valve.valve.closed_reference->vertices);
+  EXPECT_NEAR(metrics.annulus_area_mm2.value(), 711, 0.5);
+  EXPECT_NEAR(metrics.orifice_area_mm2.value(), 0.26, 0.02);
+  EXPECT_EQ(metrics.intersections, 56);
+  EXPECT_NEAR(metrics.leaflet_area_closed_mm2 / metrics.leaflet_area_open_mm2, 1.295, 1e-3);
+  EXPECT_NEAR(static_cast<double>(metrics.contact_vertices), 2729, 100);
+  EXPECT_NEAR(metrics.max_displacement_mm, 18.29, 0.01);
+}
+
+}  // namespace
+}  // namespace coapt
