@@ -112,7 +112,10 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   if (gradient == nullptr) return energy;
 
   split(nodal_gradient_, *g);
-  if (counts_.gradient + counts_.hessian == 0) first_scale_ = largest_column_norm(nodal_gradient_);
+  if (counts_.gradient + counts_.hessian == 0) {
+    first_scale_ = largest_column_norm(nodal_gradient_);
+    strained_scale_ = strained_force();
+  }
   return energy;
 }
 
@@ -134,9 +137,26 @@ double Objective::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double
   return energy;
 }
 
+// Largest change of the internal forces when the body grows by one part in a million.
+double Objective::strained_force() const {
+  if (x_.cols() == 0) return 0;
+  const Vec3 centre = x_.rowwise().mean();
+  const Points grown = ((x_.colwise() - centre) * (1 + 1e-3)).colwise() + centre;
+  Points change = Points::Zero(3, x_.cols());
+  Points before = change;
+  Sink after_sink(change.data()), before_sink(before.data());
+  for (const auto& term : terms_) {
+    if (term->role() != TermRole::Internal) continue;
+    term->evaluate(grown, after_sink);
+    term->evaluate(x_, before_sink);
+  }
+  const double force = largest_column_norm(change - before);
+  return std::isfinite(force) ? 1e-3 * force : 0;  // the growth by 1e-3 stands clear of round-off
+}
+
 double Objective::reference_force() const {
-  const double force = std::max(load_scale_, reaction_scale_);
-  return force > 0 ? force : first_scale_;
+  if (load_scale_ > 0) return std::max(load_scale_, reaction_scale_);
+  return std::max({strained_scale_, reaction_scale_, reaction_scale_ > 0 ? 0 : first_scale_});
 }
 
 double Objective::relative_residual(const Vector& g) const {

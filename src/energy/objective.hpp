@@ -65,8 +65,9 @@ class Objective {
   // largest nodal norm of g over reference_force().
   double relative_residual(const Vector& g) const;
 
-  // Largest load or reaction of the last gradient evaluation [force]; before there is any of either,
-  // the largest force at the first evaluation, so that an unloaded scene has a scale too.
+  // Largest load or reaction of the last gradient evaluation [force]. A scene without loads has a scale
+  // too: never less than the internal forces of a strain of some 1e-6, so that a body at rest is found at
+  // rest in spite of round-off, and without supports at least the largest force of the first evaluation.
   double reference_force() const;
 
   // --- Loads without a potential --------------------------------------------------------------------
@@ -102,6 +103,7 @@ class Objective {
   void split(const Points& nodal, Vector& free);
   Points circulatory_force() const;  // at x_
   Points exact_gradient(const Vector& q);
+  double strained_force() const;
 
   Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
@@ -116,7 +118,7 @@ class Objective {
   Points anchor_;          // where the path has got to
   double work_ = 0;        // of the circulatory force along the path so far
   Points nodal_gradient_;  // work space
-  double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0;
+  double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0, strained_scale_ = 0;
 
   HessianPattern pattern_;
   bool pattern_is_current_ = false;

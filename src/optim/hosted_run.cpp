@@ -1,50 +1,62 @@
 #include "optim/hosted_run.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
 namespace {
 
-constexpr double kWorthAnAttempt = 0.5;  // an attempt has to halve the gradient to earn another
+constexpr double kWorthAnAttempt = 0.5;  // an attempt has to halve the gradient to count as a gain
+constexpr int kMaxWithoutGain = 3;       // attempts in a row
 constexpr int kMaxRefused = 200;         // a library that cannot find back to finite energies is stopped
+
+double positive_or_one(double value) { return value > 0 ? value : 1; }
 
 }  // namespace
 
 HostedRun::HostedRun(Monitor& monitor, const Vector& q) : monitor_(monitor) {
-  last_.q = q;
+  last_.q = accepted_.q = q;
   last_.energy = monitor_.gradient(last_.q, last_.g);
-  accepted_.q = q;
-  report(last_);
+  report();
 }
 
-double HostedRun::evaluate(const Vector& q, Vector& g) {
+bool HostedRun::begin_attempt() {
+  if (status_) return false;
+  const double gradient = accepted_.g.norm();
+  attempts_without_gain_ = gradient < kWorthAnAttempt * gradient_at_attempt_ ? 0 : attempts_without_gain_ + 1;
+  if (attempts_without_gain_ > kMaxWithoutGain) return false;
+  const Vector& q = accepted_.q;
+  const double extent = q.maxCoeff() - q.minCoeff();
+  length_ = positive_or_one(attempts_ == 0 ? 0.01 * extent : std::min(last_step_, extent));
+  energy_ = positive_or_one(length_ * accepted_.g.lpNorm<Eigen::Infinity>());
+  origin_ = accepted_;
+  gradient_at_attempt_ = gradient;
+  last_z_.resize(0);
+  refused_ = 0;
+  ++attempts_;
+  return true;
+}
+
+double HostedRun::evaluate(const Vector& z, Vector& gradient) {
   if (!status_ && monitor_.is_out_of_time()) status_ = Status::TimeLimit;
-  if (status_ || !q.allFinite()) {
-    g.setZero(q.size());
+  if (status_ || !z.allFinite() || !evaluate_last(z)) {
+    gradient.setZero(z.size());
     if (++refused_ > kMaxRefused && !status_) status_ = Status::LineSearchFailed;
     return kInfinity;
   }
-  last_.q = q;
-  last_.energy = monitor_.gradient(last_.q, last_.g);
-  if (!std::isfinite(last_.energy) || !last_.g.allFinite()) {
-    last_.energy = kInfinity;
-    g.setZero(q.size());
-    if (++refused_ > kMaxRefused) status_ = Status::LineSearchFailed;
-    return kInfinity;
-  }
   refused_ = 0;
-  g = last_.g;
-  return base_ ? 0.5 * (last_.g + base_->g).dot(last_.q - base_->q) : last_.energy;
+  gradient = last_.g * (length_ / energy_);
+  const double change =
+      attempts_ > 1 ? 0.5 * (last_.g + origin_.g).dot(last_.q - origin_.q) : last_.energy - origin_.energy;
+  return change / energy_;
 }
 
-bool HostedRun::accept(const Vector& q) {
+bool HostedRun::accept(const Vector& z) {
   if (status_) return false;
-  if (q == accepted_.q) return true;
-  if (q != last_.q) {
-    last_.q = q;
-    last_.energy = monitor_.gradient(last_.q, last_.g);
+  const bool is_known = z.size() == last_z_.size() && z == last_z_;
+  if (is_known || evaluate_last(z)) {
+    if (last_.q != accepted_.q) report();
   }
-  report(last_);
   return !status_;
 }
 
@@ -52,23 +64,22 @@ bool HostedRun::accept_if_better() {
   if (status_) return false;
   const double change = last_.energy - accepted_.energy;
   const double noise = monitor_.energy_noise(accepted_.energy);
-  if (change < -noise || (change <= noise && last_.g.norm() < accepted_.g.norm())) report(last_);
+  if (change < -noise || (change <= noise && last_.g.norm() < accepted_.g.norm())) report();
   return !status_;
 }
 
-bool HostedRun::begin_attempt() {
-  const double gradient = accepted_.g.norm();
-  if (status_ || (attempts_ > 1 && !(gradient < kWorthAnAttempt * gradient_at_attempt_))) return false;
-  if (attempts_ > 0) base_ = accepted_;
-  ++attempts_;
-  gradient_at_attempt_ = gradient;
-  refused_ = 0;
-  return true;
+bool HostedRun::evaluate_last(const Vector& z) {
+  last_z_ = z;
+  last_.q = origin_.q + length_ * z;
+  last_.energy = monitor_.gradient(last_.q, last_.g);
+  return std::isfinite(last_.energy) && last_.g.allFinite();
 }
 
-void HostedRun::report(const Evaluation& evaluation) {
-  status_ = monitor_.accept(evaluation.q, evaluation.energy, evaluation.g);
-  if (status_ != Status::NonFinite) accepted_ = evaluation;
+void HostedRun::report() {
+  status_ = monitor_.accept(last_.q, last_.energy, last_.g);
+  if (status_ == Status::NonFinite) return;
+  last_step_ = (last_.q - accepted_.q).lpNorm<Eigen::Infinity>();
+  accepted_ = last_;
 }
 
 }  // namespace coapt

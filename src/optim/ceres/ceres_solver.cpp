@@ -18,8 +18,8 @@ class HostedFunction final : public ceres::FirstOrderFunction {
   int NumParameters() const override { return size_; }
 
   // False = "cannot be evaluated here": the line search then shortens its step.
-  bool Evaluate(const double* q, double* cost, double* gradient) const override {
-    *cost = run_.evaluate(ConstVectorMap(q, size_), g_);
+  bool Evaluate(const double* z, double* cost, double* gradient) const override {
+    *cost = run_.evaluate(ConstVectorMap(z, size_), g_);
     if (!std::isfinite(*cost)) return false;
     if (gradient != nullptr) Eigen::Map<Vector>(gradient, size_) = g_;
     return true;
@@ -33,14 +33,14 @@ class HostedFunction final : public ceres::FirstOrderFunction {
 
 class IterateReport final : public ceres::IterationCallback {
  public:
-  IterateReport(HostedRun& run, const Vector& q) : run_(run), q_(q) {}
+  IterateReport(HostedRun& run, const Vector& z) : run_(run), z_(z) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return run_.accept(q_) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+    return run_.accept(z_) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
   }
 
  private:
   HostedRun& run_;
-  const Vector& q_;  // Ceres writes every accepted iterate here
+  const Vector& z_;  // Ceres writes every accepted iterate here
 };
 
 class SolverCeres final : public Solver {
@@ -50,13 +50,13 @@ class SolverCeres final : public Solver {
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     HostedRun run(monitor, q);
     while (run.begin_attempt()) {
-      q = run.q();
-      IterateReport report(run, q);
+      Vector z = Vector::Zero(q.size());
+      IterateReport report(run, z);
       ceres::GradientProblemSolver::Options options = silent_options();
       options.callbacks.push_back(&report);
       ceres::GradientProblemSolver::Summary summary;
       const ceres::GradientProblem problem(new HostedFunction(run, static_cast<int>(q.size())));
-      ceres::Solve(options, problem, q.data(), &summary);
+      ceres::Solve(options, problem, z.data(), &summary);
     }
     q = run.q();
     return run.status().value_or(Status::LineSearchFailed);
@@ -68,7 +68,7 @@ class SolverCeres final : public Solver {
     options.line_search_direction_type = ceres::LBFGS;
     options.line_search_type = ceres::WOLFE;
     options.function_tolerance = 0;  // relative to an energy whose zero is arbitrary
-    options.gradient_tolerance = 0;  // absolute: knows nothing of our units
+    options.gradient_tolerance = 0;
     options.parameter_tolerance = 0;
     options.max_num_iterations = std::numeric_limits<int>::max();
     options.logging_type = ceres::SILENT;

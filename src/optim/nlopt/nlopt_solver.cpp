@@ -16,9 +16,10 @@ class SolverNlopt final : public Solver {
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     HostedRun run(monitor, q);
+    bool is_lead = true;
     while (run.begin_attempt()) {
-      attempt(nlopt::LD_TNEWTON_PRECOND_RESTART, run);
-      if (!run.status()) attempt(nlopt::LD_LBFGS, run);
+      attempt(is_lead ? nlopt::LD_TNEWTON_PRECOND_RESTART : nlopt::LD_LBFGS, run);
+      is_lead = !is_lead;
     }
     q = run.q();
     return run.status().value_or(Status::LineSearchFailed);
@@ -26,24 +27,23 @@ class SolverNlopt final : public Solver {
 
  private:
   static void attempt(nlopt::algorithm algorithm, HostedRun& run) {
-    const Vector start = run.q();
-    std::vector<double> q(start.data(), start.data() + start.size());
-    nlopt::opt optimiser(algorithm, static_cast<unsigned>(q.size()));
+    std::vector<double> z(static_cast<size_t>(run.q().size()), 0.0);
+    nlopt::opt optimiser(algorithm, static_cast<unsigned>(z.size()));
     optimiser.set_min_objective(&evaluate, &run);
     try {
       double energy = 0;
-      optimiser.optimize(q, energy);
+      optimiser.optimize(z, energy);
     } catch (const nlopt::forced_stop&) {  // the monitor's word; run.status() has it
     } catch (const nlopt::roundoff_limited&) {
     } catch (const std::runtime_error&) {  // NLopt's bare FAILURE: its line search is at its end
     }
   }
 
-  static double evaluate(const std::vector<double>& q, std::vector<double>& gradient, void* context) {
+  static double evaluate(const std::vector<double>& z, std::vector<double>& gradient, void* context) {
     HostedRun& run = *static_cast<HostedRun*>(context);
-    const auto size = static_cast<Eigen::Index>(q.size());
+    const auto size = static_cast<Eigen::Index>(z.size());
     Vector g;
-    const double energy = run.evaluate(Eigen::Map<const Vector>(q.data(), size), g);
+    const double energy = run.evaluate(Eigen::Map<const Vector>(z.data(), size), g);
     if (!gradient.empty()) Eigen::Map<Vector>(gradient.data(), size) = g;
     if (energy < kInfinity) run.accept_if_better();
     if (run.status()) throw nlopt::forced_stop();
