@@ -25,3 +25,11 @@ function(coapt_room target)
   target_sources(${target} PRIVATE ${ARG_SOURCES}
                            PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
 endfunction()
+
+# coapt_precompile(<target> <headers>): where the build asks for it. Never for includes to rely on; the
+# release preset builds without.
+function(coapt_precompile target)
+  if(COAPT_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
