@@ -2,9 +2,10 @@
 
     real_valve.py COAPT SHARED_DATA_FOLDER frozen|field|follower
 
-Exit code 77, "skipped", where the data is not there. The leaflets get one linear modulus, 0.05 MPa, which fits
-the published closed surface best; the bounds on the distance are the measured ones with room for another
-equilibrium (1.31, 1.11 and 0.74 mm). The valve's own material is nonlinear, so the distance measures the law.
+Exit code 77, "skipped", where the data is not there. The leaflets get one linear modulus, 0.05 MPa: of 0.03,
+0.05, 0.1 and 0.2 MPa (frozen and follower pressure) the nearest to the published closed surface among those
+that converge within half a minute. The bounds on the mean distance are the measured ones (1.31, 1.11 and 0.74 mm)
+with room for another equilibrium; the real material is nonlinear, so the distance measures the law.
 """
 import json
 import math
