@@ -41,8 +41,8 @@ std::unique_ptr<Objective> valve_objective(int triangles, bool bare, Load load) 
 
   std::vector<std::unique_ptr<EnergyTerm>> terms;
   if (bare) {
-    terms.push_back(std::make_unique<ElementTerm<BareLoop>>("bare", corners,
-                                                            std::vector<BareLoop::Rest>(t.cols())));
+    terms.push_back(
+        std::make_unique<ElementTerm<BareLoop>>("bare", corners, std::vector<BareLoop::Rest>(t.cols())));
   } else {
     std::vector<CstStVK::Rest> rest;
     for (int k = 0; k < t.cols(); ++k)

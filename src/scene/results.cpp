@@ -155,8 +155,7 @@ VtpSurface vtp_surface(const Model& model, const Fields& fields) {
 }  // namespace
 
 std::string pressure_route(const Model& model, const Result& result) {
-  if (model.objective->has_circulatory_force())
-    return "follower pressure on a rim that moves: " + result.route;
+  if (!result.route.empty()) return "follower pressure on a rim that moves: " + result.route;
   for (const auto& term : model.objective->terms()) {
     if (term->type() != "load_pressure") continue;
     if (term->stencils().width == 1) return "frozen: dead forces of the pressure on the reference shape";

@@ -103,10 +103,10 @@ class CommandTest(unittest.TestCase):
 
     def test_an_interrupt_saves_the_best_state(self):
         for number in [signal.SIGINT, signal.SIGTERM]:
-            scene = self.generate("mitral", "--triangles", 10000)
+            scene = self.generate("mitral", "--triangles", 20000)
             process = subprocess.Popen([COAPT, "solve", str(scene), "--tolerance", "1e-14"],
                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            time.sleep(1.5)
+            time.sleep(1.0)
             process.send_signal(number)
             output = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 1, output)
