@@ -114,7 +114,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   split(nodal_gradient_, *g);
   if (counts_.gradient + counts_.hessian == 0) {
     first_scale_ = largest_column_norm(nodal_gradient_);
-    strained_scale_ = strained_force();
+    if (load_scale_ == 0) strained_scale_ = strained_force();
   }
   return energy;
 }

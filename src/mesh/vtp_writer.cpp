@@ -78,10 +78,12 @@ class VtpDocument {
     xml_ += "</Array>\n";
   }
 
-  std::string finish() {
+  void write(const std::filesystem::path& path) const {
     if (coding_ == MeshCoding::Binary)
-      xml_ += "<AppendedData encoding=\"raw\">\n_" + appended_ + "\n</AppendedData>\n";
-    return xml_ + "</VTKFile>\n";
+      formats::write_whole(
+          path, {xml_, "<AppendedData encoding=\"raw\">\n_", appended_, "\n</AppendedData>\n</VTKFile>\n"});
+    else
+      formats::write_whole(path, {xml_, "</VTKFile>\n"});
   }
 
  private:
@@ -152,12 +154,14 @@ std::vector<VtpArray> cell_arrays(const VtpSurface& surface, const std::string& 
 
 template <class Cells>
 void add_cells(VtpDocument& out, const std::string& kind, const Cells& cells) {
-  const std::vector<std::int64_t> corners(cells.data(), cells.data() + cells.size());
-  std::vector<std::int64_t> offsets;
-  for (Eigen::Index c = 1; c <= cells.cols(); ++c) offsets.push_back(c * cells.rows());
+  const std::vector<std::int32_t> corners(cells.data(), cells.data() + cells.size());
+  std::vector<std::int32_t> offsets;
+  offsets.reserve(static_cast<size_t>(cells.cols()));
+  for (Eigen::Index c = 1; c <= cells.cols(); ++c)
+    offsets.push_back(static_cast<std::int32_t>(c * cells.rows()));
   out.line("<" + kind + ">");
-  out.numbers("connectivity", "Int64", 1, corners);
-  out.numbers("offsets", "Int64", 1, offsets);
+  out.numbers("connectivity", "Int32", 1, corners);
+  out.numbers("offsets", "Int32", 1, offsets);
   out.line("</" + kind + ">");
 }
 
@@ -197,7 +201,7 @@ void write_vtp(const std::filesystem::path& path, const VtpSurface& surface, Mes
   add_cells(out, "Polys", surface.triangles);
   out.line("</Piece>");
   out.line("</PolyData>");
-  formats::write_whole(path, out.finish());
+  out.write(path);
 }
 
 }  // namespace coapt

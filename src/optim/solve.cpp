@@ -9,8 +9,8 @@
 namespace coapt {
 namespace {
 
-constexpr int kMaxRounds = 60;  // renewals of a load without potential
-constexpr int kMaxRoundsWithoutGain = 6;
+constexpr int kMaxRounds = 100;  // renewals of a load without potential
+constexpr int kMaxRoundsWithoutGain = 12;
 constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
 
 std::string number(double value) {

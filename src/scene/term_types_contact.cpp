@@ -7,8 +7,8 @@
 namespace coapt {
 namespace {
 
-constexpr double kRangePerEdge = 0.6;  // default range over mean edge length
-constexpr double kMargin = 6;          // default capacity over applied pressure
+constexpr double kRangePerEdge = 0.5;  // default range over mean edge length
+constexpr double kMargin = 10;         // default capacity over applied pressure
 
 TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
@@ -51,7 +51,7 @@ std::vector<TermType> contact_term_types() {
                           .dimension = kLength,
                           .min = 0,
                           .excludes_min = true,
-                          .doc = "Distance at which the repulsion begins; default: 0.6 mean edge lengths."},
+                          .doc = "Distance at which the repulsion begins; default: 0.5 mean edge lengths."},
                          {.name = "exponent",
                           .kind = KeyKind::Integer,
                           .fallback = "3",
@@ -62,7 +62,7 @@ std::vector<TermType> contact_term_types() {
                           .dimension = kForcePerVolume,
                           .min = 0,
                           .excludes_min = true,
-                          .doc = "Energy density of coincident facets; default: enough to carry six times "
+                          .doc = "Energy density of coincident facets; default: enough to carry ten times "
                                  "the greatest pressure load."},
                          {.name = "quadrature",
                           .kind = KeyKind::Integer,

@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
+#include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/oracles.hpp"
 #include "support/term_suite.hpp"
@@ -211,13 +212,40 @@ TEST(LoadPressure, TrueResidualIsThatOfTheExactForce) {
   for (int v = 1; v < exact.cols(); ++v) largest = std::max(largest, exact.col(v).norm());
   reference = std::max(reference, largest);
   for (const double moved : {0.0, 0.3}) {
-    objective.renew(q + Vector::Constant(q.size(), moved));
+    objective.hold_dead(q + Vector::Constant(q.size(), moved));
     EXPECT_NEAR(objective.true_residual(q), largest / reference, 1e-12);
   }
-  objective.renew(q);
+  objective.hold_dead(q);
   Vector g;
   objective.gradient(q, g);  // at the point of renewal the potential's force is the exact one
   EXPECT_LT((g + objective.unknowns(exact)).norm(), 1e-13 * g.norm());
+}
+
+// Along the path the gradient is that of the exact force, and the energy its work.
+TEST(LoadPressure, PathWorkGivesTheExactForceAndItsWorkAlongAStep) {
+  const OpenSurface open;
+  Objective objective(open.mesh.vertices, nothing_fixed(open.mesh.vertices), terms_of(open.term()));
+  const Vector q0 = objective.unknowns(open.mesh.vertices), q1 = objective.unknowns(open.x);
+  objective.follow_path(q0);
+  const auto exact = [&](const Vector& q) {
+    return objective.unknowns(direct_pressure_forces(objective.positions(q), open.mesh.triangles, kPressure));
+  };
+  Vector g;
+  const double start = objective.gradient(q0, g);
+  EXPECT_LT((g + exact(q0)).norm(), 1e-14);
+  const double end = objective.gradient(q1, g);
+  EXPECT_LT((g + exact(q1)).norm(), 1e-14);
+  // The exact force is quadratic along a straight step: Simpson's rule gives its work exactly, the
+  // trapezoid for the remainder alone comes close for a small one.
+  const Vector d = q1 - q0;
+  for (const double h : {1e-2, 1e-3}) {
+    const Vector q = q0 + h * d;
+    const double work = h / 6 * (exact(q0) + 4 * exact(q0 + 0.5 * h * d) + exact(q)).dot(d);
+    EXPECT_NEAR((start - objective.gradient(q, g)) / work, 1, 10 * h * h);
+  }
+  objective.gradient(q1, g);
+  objective.advance(q1);  // the energy is continuous where the path goes on
+  EXPECT_NEAR(objective.gradient(q1, g), end, 1e-14);
 }
 
 TEST(LoadPressure, BreaksNoBalanceOfForcesOnAnOpenSurface) {

@@ -153,7 +153,7 @@ TEST(SurfaceDistance, RefusesAnEmptySurface) {
 }
 
 TEST(SurfaceDistance, SeesHowFarTheTricuspidLeafletsMove) {
-  COAPT_NEED_DATA("data/trivalve11-healthy/leaflets_open.obj");
+  if (!is_shared("data/trivalve11-healthy/leaflets_open.obj")) GTEST_SKIP() << kDataNotFound;
   const TriangleMesh open = read_mesh(shared_path("data/trivalve11-healthy/leaflets_open.obj")).mesh;
   const TriangleMesh closed =
       read_mesh(shared_path("data/trivalve11-healthy/leaflets_closed_reference.obj")).mesh;

@@ -79,7 +79,7 @@ TEST(Intersections, LeavesOutTrianglesThatShareAVertex) {
 }
 
 TEST(Intersections, AgreeWithTheCountsStatedForTheGivenValves) {
-  COAPT_NEED_DATA("data/trivalve11-healthy");
+  if (!is_shared("data/trivalve11-healthy")) GTEST_SKIP() << kDataNotFound;
   const auto count = [](const std::string& name) {
     const TriangleMesh mesh = read_mesh(shared_path("data/" + name)).mesh;
     return intersecting_pairs(mesh.vertices, mesh.triangles).size();

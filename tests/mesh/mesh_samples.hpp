@@ -68,8 +68,7 @@ inline std::filesystem::path shared_path(const std::string& name) {
   return std::filesystem::path(COAPT_SHARED_DIR) / name;
 }
 
-}  // namespace coapt
+inline bool is_shared(const std::string& name) { return std::filesystem::exists(shared_path(name)); }
+inline constexpr const char* kDataNotFound = "skipped: data not found";
 
-// Ends the test where the given data are not beside the project.
-#define COAPT_NEED_DATA(name) \
-  if (!std::filesystem::exists(coapt::shared_path(name))) GTEST_SKIP() << "skipped: data not found"
+}  // namespace coapt

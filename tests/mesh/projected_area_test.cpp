@@ -39,7 +39,7 @@ UncoveredArea orifice(const std::string& folder, const std::string& mesh_name,
 }
 
 TEST(ProjectedArea, OfTheClosedTricuspidReferenceIsAsStated) {
-  COAPT_NEED_DATA("data/trivalve11-healthy/valve.json");
+  if (!is_shared("data/trivalve11-healthy/valve.json")) GTEST_SKIP() << kDataNotFound;
   const UncoveredArea seen =
       orifice("data/trivalve11-healthy", "leaflets_closed_reference.obj", "valve.json");
   RecordProperty("area", std::to_string(seen.area));
@@ -51,7 +51,7 @@ TEST(ProjectedArea, OfTheClosedTricuspidReferenceIsAsStated) {
 }
 
 TEST(ProjectedArea, OfThePressurisedMitralReferenceIsAsStated) {
-  COAPT_NEED_DATA("data/mitral-ct-normal1/valve_n128.json");
+  if (!is_shared("data/mitral-ct-normal1/valve_n128.json")) GTEST_SKIP() << kDataNotFound;
   const UncoveredArea seen =
       orifice("data/mitral-ct-normal1", "leaflets_pressurised_reference_n128.obj", "valve_n128.json");
   RecordProperty("area", std::to_string(seen.area));

@@ -131,7 +131,7 @@ TEST_P(EverySolver, SurvivesAnEvaluationThatBreaks) {
   for (const Breakage breakage : {Breakage::NotANumber, Breakage::Infinite, Breakage::Throws}) {
     Pull run(breakage);
     StopRule stop;
-    stop.max_seconds = 10;
+    stop.max_seconds = 100;
     const Result result = solve(*solver(), run.problem(), stop);
     EXPECT_NE(result.status, Status::Converged);  // the equilibrium lies beyond the break
     EXPECT_NE(result.status, Status::TimeLimit);

@@ -165,7 +165,7 @@ TEST_F(BuildTest, TakesTheContactStrengthFromThePressure) {
   const Model model = build_disc(R"([{"type": "contact_facet"}, {"type": "load_pressure", "value": "1 kPa"},
       {"type": "cst_stvk", "young": "1 MPa", "thickness": "1 mm"}])",
                                  held);
-  EXPECT_NEAR(model.contact_range, 0.6 * mean_edge_length(disc_.vertices, disc_.triangles), 1e-12);
+  EXPECT_NEAR(model.contact_range, 0.5 * mean_edge_length(disc_.vertices, disc_.triangles), 1e-12);
   EXPECT_NE(refusal(R"([{"type": "contact_facet"}, {"type": "surface_tension", "tension": "1 N/m"}])", held)
                 .find("terms[0].strength: missing"),
             std::string::npos);

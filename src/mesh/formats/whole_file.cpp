@@ -27,7 +27,7 @@ std::string read_whole(const std::filesystem::path& path) {
   return bytes;
 }
 
-void write_whole(const std::filesystem::path& path, std::string_view bytes) {
+void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> parts) {
   // Process and clock keep two writers of the same target apart.
   const auto ticks = std::chrono::steady_clock::now().time_since_epoch().count();
   std::filesystem::path part = path;
@@ -37,7 +37,8 @@ void write_whole(const std::filesystem::path& path, std::string_view bytes) {
     std::ofstream stream(part, std::ios::binary | std::ios::trunc);
     if (!stream)
       throw InputError(path.string() + ": cannot be written; check that the folder exists and is writable");
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    for (const std::string_view bytes : parts)
+      stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream) {
       std::filesystem::remove(part, error);

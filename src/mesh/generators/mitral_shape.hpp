@@ -24,10 +24,10 @@ struct MitralDimensions {
   double commissure_angle = 15;            // of a commissure, from the x axis towards anterior [degrees]
   double anterior_height_ratio = 0.83;     // height of the leaflets / anteroposterior diameter:
   double posterior_height_ratio = 0.53;    //   both at mid-leaflet,
-  double commissural_height_ratio = 0.28;  //   and at the commissures
+  double commissural_height_ratio = 0.34;  //   and at the commissures
   double hinge_angle = 55;         // of the open leaflet below the horizontal, at the annulus [degrees]
   double edge_angle = 76;          // the same at the free edge [degrees]
-  double tenting_height = 6;       // of the closed coaptation line below the annulus, mid-valve [mm]
+  double tenting_height = 5;       // of the closed coaptation line below the annulus, mid-valve [mm]
   double papillary_depth = 24;     // of the muscles' tips below the annulus plane [mm]
   double papillary_distance = 33;  // between the centres of the two groups of tips [mm]
   double papillary_offset = 2;     // of the tips from the annulus centre towards anterior [mm]
