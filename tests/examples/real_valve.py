@@ -4,7 +4,7 @@
 
 Exit code 77, "skipped", where the data is not there. The leaflets get one linear modulus, 0.05 MPa: of 0.03,
 0.05, 0.1 and 0.2 MPa (frozen and follower pressure) the nearest to the published closed surface among those
-that converge within half a minute. The bounds on the mean distance are the measured ones (1.31, 1.11 and 0.74 mm)
+that converge within half a minute. The bounds on the mean distance are the measured ones (1.31, 1.11 and 0.69 mm)
 with room for another equilibrium; the real material is nonlinear, so the distance measures the law.
 """
 import json
