@@ -82,16 +82,19 @@ std::vector<std::vector<int>> topological_neighbours(const Triangles& triangles,
   for (int t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) around[triangles(k, t)].push_back(t);
   std::vector<std::vector<int>> neighbours(triangles.cols());
+  const auto make_unique = [](std::vector<int>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  std::vector<int> ring;  // the facet's vertices and those joined to them by an edge
   for (int t = 0; t < triangles.cols(); ++t) {
-    std::vector<int>& all = neighbours[t];
+    ring.clear();
     for (int k = 0; k < 3; ++k)
       for (int adjacent : around[triangles(k, t)])
-        for (int c = 0; c < 3; ++c) {
-          const auto& further = around[triangles(c, adjacent)];
-          all.insert(all.end(), further.begin(), further.end());
-        }
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+        for (int c = 0; c < 3; ++c) ring.push_back(triangles(c, adjacent));
+    make_unique(ring);
+    for (int node : ring) neighbours[t].insert(neighbours[t].end(), around[node].begin(), around[node].end());
+    make_unique(neighbours[t]);
   }
   return neighbours;
 }

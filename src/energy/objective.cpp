@@ -8,6 +8,8 @@
 namespace coapt {
 namespace {
 
+constexpr double kBalanced = 1e-8;  // out-of-balance force over reaction of a prestressed reference state
+
 double largest_column_norm(const Points& vectors) {
   return vectors.cols() == 0 ? 0 : std::sqrt(vectors.colwise().squaredNorm().maxCoeff());
 }
@@ -26,6 +28,20 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
       free_count_ += 3 - static_cast<int>(fixed_.col(node).count());
     }
   nodal_gradient_.resize(3, x_.cols());
+  keep_prestress_reaction();
+}
+
+void Objective::keep_prestress_reaction() {
+  Points reaction = Points::Zero(3, node_count());
+  Sink sink(reaction.data());
+  for (const auto& term : terms_)
+    if (term->role() == TermRole::Internal) term->evaluate(x_, sink);
+  if (!reaction.allFinite()) return;
+  const Points none = Points::Zero(3, node_count());
+  const double unbalanced = largest_column_norm(fixed_.select(none, reaction));
+  reaction = fixed_.select(reaction, none);
+  // Only a prestress that is in equilibrium by itself is no measure of what the loads do.
+  if (unbalanced < kBalanced * largest_column_norm(reaction)) prestress_reaction_ = std::move(reaction);
 }
 
 Vector Objective::unknowns(const Points& x) const {
@@ -63,10 +79,12 @@ void Objective::renew_pattern() {
 void Objective::split(const Points& nodal, Vector& free_part) {
   free_part.resize(unknown_count());
   double reaction = 0;
+  const bool is_relative = load_scale_ > 0 && prestress_reaction_.size() != 0;
   for (int node = 0; node < node_count(); ++node) {
     Vec3 free = nodal.col(node), held = Vec3::Zero();
     for (int c = 0; c < 3; ++c)
       if (fixed_(c, node)) std::swap(free[c], held[c]);
+    if (is_relative) held -= prestress_reaction_.col(node);
     reaction = std::max(reaction, held.squaredNorm());
     if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
   }
@@ -99,7 +117,11 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   }
   bool loads_are_complete = false;
   const auto read_off_loads = [&] {
-    if (gradient != nullptr && !loads_are_complete) load_scale_ = largest_column_norm(nodal_gradient_);
+    if (gradient != nullptr && !loads_are_complete) {
+      double largest = 0;
+      for (int node : active_) largest = std::max(largest, nodal_gradient_.col(node).squaredNorm());
+      load_scale_ = std::sqrt(largest);
+    }
     loads_are_complete = true;
   };
   for (size_t k = 0; k < terms_.size(); ++k) {

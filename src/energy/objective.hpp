@@ -65,9 +65,11 @@ class Objective {
   // largest nodal norm of g over reference_force().
   double relative_residual(const Vector& g) const;
 
-  // Largest load or reaction of the last gradient evaluation [force]. A scene without loads has a scale
-  // too: never less than the internal forces of a strain of some 1e-6, so that a body at rest is found at
-  // rest in spite of round-off, and without supports at least the largest force of the first evaluation.
+  // Largest load or reaction of the last gradient evaluation [force]. Loads on wholly prescribed nodes do
+  // not count, and of reactions only what is added to those of a prestressed reference state, which would
+  // hide a load that is small beside the prestress. A scene without loads has a scale too: never less than
+  // the internal forces of a strain of some 1e-6, so that a body at rest is found at rest in spite of
+  // round-off, and without supports at least the largest force of the first evaluation.
   double reference_force() const;
 
   // --- Loads without a potential --------------------------------------------------------------------
@@ -104,6 +106,7 @@ class Objective {
   Points circulatory_force() const;  // at x_
   Points exact_gradient(const Vector& q);
   double strained_force() const;
+  void keep_prestress_reaction();
 
   Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
@@ -114,10 +117,11 @@ class Objective {
 
   enum class Circulatory { None, HeldDead, PathWork };
   Circulatory circulatory_ = Circulatory::None;
-  Points remainder_;       // circulatory force, 3 x node_count: held dead, or at the anchor of the path
-  Points anchor_;          // where the path has got to
-  double work_ = 0;        // of the circulatory force along the path so far
-  Points nodal_gradient_;  // work space
+  Points remainder_;           // circulatory force, 3 x node_count: held dead, or at the anchor of the path
+  Points anchor_;              // where the path has got to
+  double work_ = 0;            // of the circulatory force along the path so far
+  Points nodal_gradient_;      // work space
+  Points prestress_reaction_;  // of the reference state, at prescribed coordinates; empty: it has none
   double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0, strained_scale_ = 0;
 
   HessianPattern pattern_;

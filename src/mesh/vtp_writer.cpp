@@ -132,7 +132,7 @@ std::vector<VtpArray> cell_arrays(const VtpSurface& surface, const std::string& 
   const Eigen::Index lines = surface.lines.cols(), triangles = surface.triangles.cols();
   std::vector<VtpArray> cells;
   const auto blank = [&](const VtpArray& like) {
-    const double empty = like.integer ? -1 : kNaN;
+    const double empty = like.integer ? -1 : 0;
     return VtpArray{like.name, Eigen::MatrixXd::Constant(like.values.rows(), lines + triangles, empty),
                     like.integer};
   };

@@ -35,7 +35,7 @@ struct VtpSurface {
 };
 
 // In the file a cell array covers lines and triangles (in VTK's order: lines first). An array of the same
-// name in both lists becomes one; elsewhere the other kind of cell gets NaN, or -1 for whole numbers.
+// name in both lists becomes one; elsewhere the other kind of cell gets 0, or -1 for whole numbers.
 // Binary: raw appended data, little or big endian as the machine, 64-bit sizes. Ascii: inline text.
 // The file appears under its name only when it is whole.
 // Throws InputError when the file cannot be written, when an array has a wrong number of columns, or when

@@ -47,6 +47,7 @@ class SolverBfgs final : public Solver {
   explicit SolverBfgs(const BfgsOptions& options) : options_(options) {}
 
   std::string_view name() const override { return "bfgs"; }
+  bool follows_path() const override { return true; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     if (q.size() > options_.max_unknowns)

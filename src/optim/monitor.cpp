@@ -9,6 +9,7 @@ namespace {
 constexpr double kEnergyNoise = 1e-12;  // relative to the energy
 constexpr double kWorkNoise = 1e-14;    // relative to force times extent
 constexpr int kPatience = 1000;         // iterates without gain
+constexpr double kRunaway = 1e4;        // growth of the unknowns' extent that no equilibrium explains
 
 template <typename Evaluate>
 double guarded(Vector& g, Eigen::Index size, const Evaluate& evaluate) {
@@ -75,6 +76,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   last_ = q;
   objective_.advance(q);
   extent_ = q.size() == 0 ? 0 : q.maxCoeff() - q.minCoeff();
+  if (first_extent_ == 0) first_extent_ = extent_;
   trace_.push_back(now);
 
   if (observer_ && !observer_(now, q)) {
@@ -84,10 +86,16 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   if (now.residual <= tolerance_) return Status::Converged;
   if (is_out_of_time()) return Status::TimeLimit;
   if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;
-  if (energy < best_energy_ - energy_noise(energy) || now.residual < 0.9 * best_residual_)
+  // Small gains add up: they are measured from the last iterate that counted as one.
+  if (energy < best_energy_ - energy_noise(energy) || now.residual < 0.9 * best_residual_) {
     last_gain_ = iterations_;
-  best_energy_ = std::min(best_energy_, energy);
-  best_residual_ = std::min(best_residual_, now.residual);
+    best_energy_ = std::min(best_energy_, energy);
+    best_residual_ = std::min(best_residual_, now.residual);
+  }
+  if (extent_ > kRunaway * first_extent_) {
+    ran_away_ = true;
+    return Status::Stalled;
+  }
   if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
   return std::nullopt;
 }

@@ -39,6 +39,7 @@ class Monitor {
   int round() const { return round_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
+  bool has_run_away() const { return ran_away_; }  // the unknowns grew without bound
   double seconds() const { return wall_seconds() - start_; }
   long factorisations() const { return factorisations_; }
   std::vector<Iteration> take_trace() { return std::move(trace_); }
@@ -57,7 +58,8 @@ class Monitor {
   bool cancelled_ = false;
   long factorisations_ = 0;
   Vector last_;
-  double extent_ = 0;  // of the unknowns [length]
+  double extent_ = 0, first_extent_ = 0;  // of the unknowns [length]
+  bool ran_away_ = false;
   std::vector<Iteration> trace_;
   PhaseTimes phases_;
 };

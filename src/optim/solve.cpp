@@ -29,17 +29,17 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
     return solver.minimize(objective, q, monitor);
   }
   Vector best = q;
-  double best_residual = kInfinity, last_residual = kInfinity, contraction = kNaN;
+  double best_residual = kInfinity, gained_residual = kInfinity;
+  double last_residual = kInfinity, contraction = kNaN;
   int without_gain = 0;
   for (int round = 0; round < kMaxRounds; ++round) {
     objective.hold_dead(q);
     const double residual = objective.true_residual(q);
+    without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
+    if (without_gain == 0) gained_residual = residual;
     if (residual < best_residual) {
-      without_gain = residual < 0.9 * best_residual ? 0 : without_gain + 1;
       best_residual = residual;
       best = q;
-    } else {
-      ++without_gain;
     }
     if (round > 0) contraction = residual / last_residual;
     last_residual = residual;
@@ -59,23 +59,31 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
 }
 
 std::string sentence(const Result& result, double tolerance, const std::string& note) {
+  const std::string wanted = " (tolerance " + number(tolerance) + ")";
   const std::string at = " at residual " + number(result.residual);
+  std::string text;
   switch (result.status) {
     case Status::Converged:
-      return "converged" + at + " (tolerance " + number(tolerance) + ")";
+      text = "converged" + at + wanted;
+      break;
     case Status::IterationLimit:
-      return "stopped at the iteration limit" + at;
+      text = "stopped at the iteration limit" + at;
+      break;
     case Status::TimeLimit:
-      return "stopped at the time limit" + at;
+      text = "stopped at the time limit" + at;
+      break;
     case Status::Cancelled:
-      return "cancelled" + at + "; the last accepted state was kept";
+      text = "cancelled" + at + "; the last accepted state was kept";
+      break;
     case Status::NonFinite:
-      return "the energy or its gradient is not finite; the last finite state was kept";
+      text = "the energy or its gradient is not finite; the last finite state was kept";
+      break;
     case Status::LineSearchFailed:
     case Status::Stalled:
-      return "stalled" + at + " (tolerance " + number(tolerance) + ")" + (note.empty() ? "" : ": " + note);
+      text = "stalled" + at + wanted;
+      break;
   }
-  return "";
+  return note.empty() ? text : text + ": " + note;
 }
 
 }  // namespace
@@ -111,7 +119,8 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   Status status = Status::Converged;
   std::string note;
   const int steps = problem.motion.positions ? std::max(1, problem.motion.steps) : 1;
-  for (int step = 1; step <= steps; ++step) {
+  int step = 1;
+  for (; step <= steps; ++step) {
     if (problem.motion.positions)
       objective.prescribe(problem.motion.positions(static_cast<double>(step) / steps));
     const bool is_last = step == steps;
@@ -119,11 +128,17 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
         settle(solver, objective, result.q, monitor,
                is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance), result.rounds, note);
     if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
-        status == Status::NonFinite)
+        status == Status::NonFinite || monitor.has_run_away())
       break;
   }
-  // A run that was cut short is still judged, and saved, at the end of the path.
-  if (problem.motion.positions) objective.prescribe(problem.motion.positions(1));
+  // A run that was cut short is judged, and kept, where it had got to.
+  const bool is_on_the_way = step < steps;
+  if (monitor.has_run_away())
+    note =
+        "no equilibrium was found, the shape grows without bound: a part is not held, or the load is too "
+        "much for it";
+  else if (is_on_the_way)
+    note = "step " + std::to_string(step) + " of " + std::to_string(steps) + " of the prescribed motion";
 
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
@@ -138,14 +153,17 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   if (objective.has_circulatory_force()) objective.hold_dead(result.q);
   result.terms = objective.breakdown(result.q);
   for (const TermReport& term : result.terms) result.energy += term.energy;
-  if (result.residual <= stop.tolerance && status != Status::Cancelled)
+  if (result.residual <= stop.tolerance && status != Status::Cancelled && !is_on_the_way)
     status = Status::Converged;
   else if (status == Status::Converged || status == Status::LineSearchFailed)
     status = Status::Stalled;
   result.status = status;
+  result.iterations = monitor.iterations();
+  if (status == Status::Converged && result.iterations == 0)
+    note = objective.free_count() == 0 ? "no coordinate is free: there is nothing to solve"
+                                       : "the start is an equilibrium already";
   result.message = sentence(result, stop.tolerance, note);
 
-  result.iterations = monitor.iterations();
   result.evaluations = {objective.counts().value - counts_before.value,
                         objective.counts().gradient - counts_before.gradient,
                         objective.counts().hessian - counts_before.hessian};

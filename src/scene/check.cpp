@@ -27,6 +27,8 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
 // The mesh that a scene names, even where the rest of the scene cannot be used: the user wants to hear
 // about both at once.
 void check_named_mesh(const std::filesystem::path& scene_file, CheckReport& report) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(scene_file, unreadable)) return;
   std::ifstream in(scene_file);
   const std::string text(std::istreambuf_iterator<char>(in), {});
   const auto json = nlohmann::json::parse(text, nullptr, false, true);
@@ -34,7 +36,7 @@ void check_named_mesh(const std::filesystem::path& scene_file, CheckReport& repo
   const auto file = json["mesh"].find("file");
   if (file == json["mesh"].end() || !file->is_string()) return;
   const std::filesystem::path path = scene_file.parent_path() / file->get<std::string>();
-  if (!std::filesystem::exists(path)) return;  // the scene's own defect
+  if (!std::filesystem::is_regular_file(path, unreadable)) return;  // the scene's own defect
   try {
     const MeshFile mesh = read_mesh(path);
     append(report.warnings, mesh.warnings);

@@ -35,9 +35,9 @@ void check_options(const ImportOptions& options) {
   check("chord_young", options.chord_young);
   if (!options.pressure.empty()) check("pressure", options.pressure);
   const std::string& model = options.pressure_model;
-  if (model != "follower" && model != "volume" && model != "frozen" && model != "field")
+  if (model != "follower" && model != "frozen" && model != "field")
     defects.push_back("pressure model: read \"" + model +
-                      "\"; expected one of follower, volume, frozen, field");
+                      "\"; a valve's free edge moves, so it takes one of follower, frozen, field");
   if (options.contact != "none" && options.contact != "facet")
     defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, facet");
   if (!defects.empty()) throw InputError(defects);

@@ -109,10 +109,12 @@ std::string metrics_csv(const Report& report) {
   return out.str();
 }
 
-// A field of the mesh vertices over all nodes: the points of the networks get NaN.
+// A distance at the mesh vertices over all nodes; -1 where it has no meaning (points of the networks) or no
+// facet was found within reach. Readers trip over NaN.
 Eigen::MatrixXd over_nodes(const Vector& of_vertices, Eigen::Index node_count) {
-  Eigen::MatrixXd row = Eigen::MatrixXd::Constant(1, node_count, kNaN);
-  row.leftCols(of_vertices.size()) = of_vertices.transpose();
+  Eigen::MatrixXd row = Eigen::MatrixXd::Constant(1, node_count, -1);
+  for (Eigen::Index v = 0; v < of_vertices.size(); ++v)
+    if (std::isfinite(of_vertices[v])) row(0, v) = of_vertices[v];
   return row;
 }
 
@@ -221,7 +223,7 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
   write_vtp(folder / "closed.vtp", vtp_surface(model, report.fields));
   TriangleMesh closed = model.mesh;
   closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
-  write_mesh(folder / "closed.obj", closed);
+  if (closed.triangle_count() > 0) write_mesh(folder / "closed.obj", closed);
   formats::write_whole(folder / "trace.csv", trace_csv(report.result));
   formats::write_whole(folder / "metrics.csv", metrics_csv(report));
   // Last: where it is, the others are.

@@ -28,8 +28,9 @@ StopRule stop_rule(const Scene& scene, const RunOptions& options) {
   stop.max_iterations = scene.solver.max_iterations;
   const double seconds = options.max_seconds.value_or(scene.solver.max_seconds);
   stop.max_seconds = seconds > 0 ? seconds : kInfinity;
-  if (!(stop.tolerance > 0) || !std::isfinite(stop.tolerance))
-    throw InputError("tolerance must be a positive number");
+  if (!(stop.tolerance > 0 && stop.tolerance <= 1))
+    throw InputError("--tolerance: must be above 0 and at most 1, a residual relative to the largest force");
+  if (std::isnan(seconds)) throw InputError("--max-seconds: must be a number of seconds");
   return stop;
 }
 
@@ -45,13 +46,13 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   report.solver = options.solver.empty() ? scene.solver.type : options.solver;
   const std::unique_ptr<Solver> solver = make_solver(solvers, report.solver, scene);
   const StopRule stop = stop_rule(scene, options);
+  run.model = build(scene);
+  Model& model = run.model;
+  // Only now: a scene that is refused leaves no folder behind.
   if (options.writes) {
     run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
     prepare_result_folder(run.folder);
   }
-
-  run.model = build(scene);
-  Model& model = run.model;
   report.scene_file = scene.file.filename().string();
   report.tolerance = stop.tolerance;
   report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);

@@ -57,10 +57,9 @@ void check_surface(const Scene& scene, Model& model, std::vector<std::string>& d
       defects.push_back(message);
       continue;
     }
-    // Said more exactly by the two functions below; the offset is removed.
-    const bool is_said_elsewhere = defect.kind == MeshDefectKind::IsolatedVertex ||
-                                   defect.kind == MeshDefectKind::SeveralComponents ||
-                                   defect.kind == MeshDefectKind::LargeOffset;
+    // Said more exactly by the two functions below.
+    const bool is_said_elsewhere =
+        defect.kind == MeshDefectKind::IsolatedVertex || defect.kind == MeshDefectKind::SeveralComponents;
     if (!is_said_elsewhere) model.warnings.push_back(message);
   }
 }

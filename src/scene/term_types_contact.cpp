@@ -8,7 +8,7 @@ namespace coapt {
 namespace {
 
 constexpr double kRangePerEdge = 0.5;  // default range over mean edge length
-constexpr double kMargin = 10;         // default capacity over applied pressure
+constexpr double kMargin = 60;         // default capacity over applied pressure
 
 TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
@@ -35,7 +35,9 @@ TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   try {
     return make_contact_facet(spec.name, model.X, model.mesh.triangles, options);
   } catch (const InputError& error) {
-    throw InputError(p.where() + ": " + error.what());
+    std::vector<std::string> defects = error.defects();
+    for (std::string& defect : defects) defect = p.where() + ": " + defect;
+    throw InputError(std::move(defects));
   }
 }
 
@@ -56,13 +58,13 @@ std::vector<TermType> contact_term_types() {
                           .kind = KeyKind::Integer,
                           .fallback = "3",
                           .min = 2,
-                          .max = 20,
+                          .max = 16,
                           .doc = "How steeply it rises; the stiffness is continuous from 3 on."},
                          {.name = "strength",
                           .dimension = kForcePerVolume,
                           .min = 0,
                           .excludes_min = true,
-                          .doc = "Energy density of coincident facets; default: enough to carry ten times "
+                          .doc = "Energy density of coincident facets; default: enough to carry sixty times "
                                  "the greatest pressure load."},
                          {.name = "quadrature",
                           .kind = KeyKind::Integer,

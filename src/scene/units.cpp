@@ -46,9 +46,9 @@ struct Prefix {
   int exponent;
 };
 
-constexpr std::array kPrefixes{Prefix{"G", 9},  Prefix{"M", 6},       Prefix{"k", 3},      Prefix{"h", 2},
-                               Prefix{"d", -1}, Prefix{"c", -2},      Prefix{"m", -3},     Prefix{"u", -6},
-                               Prefix{"n", -9}, Prefix{"\u00b5", -6}, Prefix{"\u03bc", -6}};
+constexpr std::array kPrefixes{Prefix{"T", 12}, Prefix{"G", 9},  Prefix{"M", 6},       Prefix{"k", 3},
+                               Prefix{"h", 2},  Prefix{"d", -1}, Prefix{"c", -2},      Prefix{"m", -3},
+                               Prefix{"u", -6}, Prefix{"n", -9}, Prefix{"\u00b5", -6}, Prefix{"\u03bc", -6}};
 
 struct NamedDimension {
   Dimension dimension;

@@ -155,9 +155,9 @@ BAD_MODELS = {
 }
 
 # Folders, empty, that the command makes before it has read the mesh.
-MADE_TOO_EARLY = {"result"}
+MADE_TOO_EARLY = set()
 # Meshes to warn of that are handled in silence: the origin is moved, so that no digit is lost.
-SILENT = {"far_offset_1e7"}
+SILENT = set()
 
 
 def coapt(*arguments):

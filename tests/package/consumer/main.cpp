@@ -15,7 +15,8 @@ int main() {
   const Triangles& t = mesh.triangles;
 
   FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
-  for (int node : boundary_loops(t)[0]) fixed.col(node).setConstant(true);
+  const std::vector<std::vector<int>> rims = boundary_loops(t);
+  for (int node : rims[0]) fixed.col(node).setConstant(true);
 
   std::vector<CstStVK::Rest> rest;
   for (int k = 0; k < t.cols(); ++k)
