@@ -78,17 +78,19 @@ void Objective::renew_pattern() {
 // The free part of a nodal gradient becomes the unknowns' gradient; the rest is the reactions.
 void Objective::split(const Points& nodal, Vector& free_part) {
   free_part.resize(unknown_count());
-  double reaction = 0;
+  double reaction = 0, whole_reaction = 0;
   const bool is_relative = load_scale_ > 0 && prestress_reaction_.size() != 0;
   for (int node = 0; node < node_count(); ++node) {
     Vec3 free = nodal.col(node), held = Vec3::Zero();
     for (int c = 0; c < 3; ++c)
       if (fixed_(c, node)) std::swap(free[c], held[c]);
+    whole_reaction = std::max(whole_reaction, held.squaredNorm());
     if (is_relative) held -= prestress_reaction_.col(node);
     reaction = std::max(reaction, held.squaredNorm());
     if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
   }
   reaction_scale_ = std::sqrt(reaction);
+  whole_reaction_scale_ = std::sqrt(whole_reaction);
 }
 
 double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h,

@@ -4,6 +4,7 @@
 #include "energy/hessian_pattern.hpp"
 #include "energy/term.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +73,9 @@ class Objective {
   // round-off, and without supports at least the largest force of the first evaluation.
   double reference_force() const;
 
+  // The same with the whole reactions, prestress included [force]: what round-off is measured against.
+  double largest_force() const { return std::max(reference_force(), whole_reaction_scale_); }
+
   // --- Loads without a potential --------------------------------------------------------------------
   bool has_circulatory_force() const;
 
@@ -122,7 +126,8 @@ class Objective {
   double work_ = 0;            // of the circulatory force along the path so far
   Points nodal_gradient_;      // work space
   Points prestress_reaction_;  // of the reference state, at prescribed coordinates; empty: it has none
-  double load_scale_ = 0, reaction_scale_ = 0, first_scale_ = 0, strained_scale_ = 0;
+  double load_scale_ = 0, reaction_scale_ = 0, whole_reaction_scale_ = 0;
+  double first_scale_ = 0, strained_scale_ = 0;
 
   HessianPattern pattern_;
   bool pattern_is_current_ = false;

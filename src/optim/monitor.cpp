@@ -49,7 +49,7 @@ double Monitor::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>&
 bool Monitor::is_out_of_time() const { return seconds() >= stop_.max_seconds; }
 
 double Monitor::energy_noise(double energy) const {
-  return kEnergyNoise * std::abs(energy) + kWorkNoise * objective_.reference_force() * extent_;
+  return kEnergyNoise * std::abs(energy) + kWorkNoise * objective_.largest_force() * extent_;
 }
 
 void Monitor::begin_round(int round, double tolerance) {

@@ -13,7 +13,9 @@ class Outcome:
     def __init__(self, folder: pathlib.Path):
         self.closed, displacement = read_points(folder / "closed.vtp")
         self.start = [[c - d for c, d in zip(p, u)] for p, u in zip(self.closed, displacement)]
-        faces = (line.split()[1:4] for line in (folder / "closed.obj").read_text().splitlines() if line[:2] == "f ")
+        surface = folder / "closed.obj"  # a scene without a mesh has none
+        lines = surface.read_text().splitlines() if surface.exists() else []
+        faces = (line.split()[1:4] for line in lines if line[:2] == "f ")
         self.triangles = [[int(corner.split("/")[0]) - 1 for corner in face] for face in faces]
 
     def node(self, start: list[float]) -> int:
