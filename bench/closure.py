@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Times whole closures of the generated mitral valve with the command itself and prints a Markdown table.
 
     bench/closure.py [path of coapt] [--runs N]
