@@ -25,7 +25,7 @@ void print_value(const char* label, const std::optional<double>& value, const ch
   if (!value) return;
   std::printf("  %-22s ", label);
   std::printf(format, *value);
-  std::printf(" %s\n", unit);
+  std::printf("%s%s\n", unit[0] == 0 ? "" : " ", unit);
 }
 
 void print_reference(const ReferenceDistance& distance) {
