@@ -8,6 +8,7 @@ namespace coapt {
 namespace {
 
 constexpr double kRangePerEdge = 0.5;  // default range over mean edge length
+constexpr double kSafeCapacity = 2;    // below this times the pressure, moving sheets may pass
 constexpr double kMargin = 60;         // default capacity over applied pressure
 
 TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
@@ -27,10 +28,11 @@ TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
                                        : contact_facet_strength(model.applied_pressure, options.range,
                                                                 options.exponent, kMargin);
   const double capacity = contact_facet_capacity(options.strength, options.range, options.exponent);
-  if (capacity < model.applied_pressure)
+  if (capacity < kSafeCapacity * model.applied_pressure)
     model.warnings.push_back(
         p.where("strength") + ": two sheets can be pressed through each other: the contact carries " +
-        std::to_string(capacity) + " MPa, the load is " + std::to_string(model.applied_pressure) + " MPa.");
+        std::to_string(capacity) + " MPa, the load is " + std::to_string(model.applied_pressure) +
+        " MPa; leave strength out, or make the first at least twice the second.");
   model.contact_range = std::max(model.contact_range, options.range);
   try {
     return make_contact_facet(spec.name, model.X, model.mesh.triangles, options);
