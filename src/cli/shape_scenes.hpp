@@ -8,7 +8,7 @@
 namespace coapt::cli {
 
 struct ShapeOptions {
-  int triangles = 2500;          // of the catenary: links; wanted, the shape takes the nearest count
+  int triangles = 2500;          // wanted; the catenary has none and always 40 links
   std::string contact = "none";  // none or facet
   std::string pressure;          // follower, volume or frozen; empty: what suits the shape
 };
