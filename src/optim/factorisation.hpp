@@ -1,0 +1,54 @@
+// A sparse direct factorisation behind one interface, so that solvers do not know whose it is.
+#pragma once
+
+#include "core/types.hpp"
+
+#include <Eigen/SparseCore>
+
+#include <functional>
+#include <memory>
+#include <string_view>
+
+namespace coapt {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+// Numbers of negative and of positive pivots of A = L D L^T: by Sylvester's law those of the eigenvalues.
+struct Inertia {
+  int negative = 0;
+  int zero = 0;  // pivots that are exactly zero or not finite: the factorisation says nothing about these
+  int positive = 0;
+};
+
+// Matrices are symmetric and given by their lower triangle, whole 3x3 blocks of nodes (see HessianPattern):
+// the ordering works on the graph of nodes, a ninth of the entries.
+class Factorisation {
+ public:
+  virtual ~Factorisation() = default;
+  virtual std::string_view name() const = 0;  // "cholmod", "eigen"
+
+  // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
+  virtual void analyse(const SparseMatrix& lower) = 0;
+
+  // Cholesky factorisation. Returns false, leaving no factor, when the matrix is not positive definite.
+  // Pre: the pattern of the last analyse(). Allocates nothing after the first call for a pattern.
+  virtual bool factorise(const SparseMatrix& lower) = 0;
+
+  // x = A^-1 b with the last factor. Pre: factorise() returned true. Allocates nothing after the first call.
+  virtual void solve(const Vector& b, Vector& x) = 0;
+
+  // Square of the smallest over that of the largest diagonal entry of the last factor: an upper bound of the
+  // inverse condition number, zero for a singular matrix. Pre: factorise() returned true.
+  virtual double pivot_ratio() const = 0;
+
+  // Inertia by L D L^T without pivoting for size; discards the Cholesky factor. Works for an indefinite
+  // matrix unless a leading minor vanishes, which a small shift of the diagonal avoids.
+  virtual Inertia inertia(const SparseMatrix& lower) = 0;
+};
+
+using FactorisationFactory = std::function<std::unique_ptr<Factorisation>()>;
+
+// Eigen's simplicial factorisation: always there.
+std::unique_ptr<Factorisation> make_eigen_factorisation();
+
+}  // namespace coapt
