@@ -23,6 +23,18 @@ concept ElementKernel = requires(const typename K::Rest& rest, const Eigen::Vect
   { K::kRole } -> std::convertible_to<TermRole>;
 };
 
+// A kernel that knows a positive semidefinite Hessian in closed form:
+//   evaluate_projected  as evaluate, all derivatives wanted, with that Hessian
+// Without it the negative eigenvalues of the element's matrix are found numerically, which costs ten times
+// the rest. A load whose indefinite part is to stay may give its exact Hessian here.
+template <class K>
+concept ProjectsItself = ElementKernel<K> &&
+    requires(const typename K::Rest& rest, const Eigen::Vector<double, 3 * K::kNodes>& x,
+             Eigen::Vector<double, 3 * K::kNodes>* g,
+             Eigen::Matrix<double, 3 * K::kNodes, 3 * K::kNodes>* H) {
+  { K::evaluate_projected(rest, x, g, H) } -> std::same_as<double>;
+};
+
 template <ElementKernel K>
 class ElementTerm final : public EnergyTerm {
  public:
@@ -63,14 +75,26 @@ class ElementTerm final : public EnergyTerm {
     for (int a = 0; a < K::kNodes; ++a) sink.add_gradient(nodes[a], g.template segment<3>(3 * a));
   }
 
+  static double evaluate_projected(const typename K::Rest& rest, const ElementVector& x, ElementVector& g,
+                                   ElementMatrix& h) {
+    if constexpr (ProjectsItself<K>) {
+      return K::evaluate_projected(rest, x, &g, &h);
+    } else {
+      const double energy = K::evaluate(rest, x, &g, &h);
+      project_psd(h);
+      return energy;
+    }
+  }
+
   double evaluate_with_hessian(const Points& x, Sink& sink) const {
+    const bool projects = sink.projection() == Projection::PositiveSemidefinite;
     double energy = 0;
     ElementVector g;
     ElementMatrix h;
     const int* nodes = stencils_.nodes.data();
     for (size_t e = 0; e < rest_.size(); ++e, nodes += K::kNodes) {
-      energy += K::evaluate(rest_[e], gather(x, nodes), &g, &h);
-      if (sink.projection() == Projection::PositiveSemidefinite) project_psd(h);
+      energy += projects ? evaluate_projected(rest_[e], gather(x, nodes), g, h)
+                         : K::evaluate(rest_[e], gather(x, nodes), &g, &h);
       scatter(g, nodes, sink);
       const long offset = static_cast<long>(e) * K::kNodes * K::kNodes;
       for (int a = 0; a < K::kNodes; ++a)

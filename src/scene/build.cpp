@@ -152,7 +152,6 @@ void name_sets(const Scene& scene, Assembly& assembly) {
   for (auto& [name, nodes] : named) model.sets[name] = std::move(nodes);
 }
 
-// Contact last: its default strength comes from the loads.
 std::vector<TermPointer> build_terms(const Scene& scene, const FixedMask& fixed, Assembly& assembly) {
   Model& model = assembly.model;
   BuildContext context{model, fixed, assembly.networks,
@@ -160,10 +159,10 @@ std::vector<TermPointer> build_terms(const Scene& scene, const FixedMask& fixed,
                          return selected_nodes(selection, model, where);
                        }};
   std::vector<TermPointer> terms;
-  for (const bool is_contact_turn : {false, true})
+  for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
       const TermType& type = *find_term_type(spec.type);
-      if ((type.role == TermRole::Contact) != is_contact_turn) continue;
+      if (type.stage != stage) continue;
       try {
         terms.push_back(type.build(spec, context));
       } catch (const InputError& error) {

@@ -28,6 +28,8 @@ struct MembraneProperties {
   double poisson = 0;
   double thickness = 0;  // [mm]
   double prestress = 0;  // resultant [N/mm]
+  bool relaxes = false;  // a tension field: wrinkles instead of being compressed
+  double residual = 0;   // then: fraction of the compressive stiffness that is left
 };
 
 // Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions).

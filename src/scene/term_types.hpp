@@ -36,10 +36,15 @@ struct BuildContext {
 
 using TermPointer = std::unique_ptr<EnergyTerm>;
 
+// Terms are built stage by stage, whatever their order in the file: some need what others add to the model.
+enum class BuildStage { First, AfterMembrane, AfterLoads };
+inline constexpr BuildStage kBuildStages[] = {BuildStage::First, BuildStage::AfterMembrane,
+                                              BuildStage::AfterLoads};
+
 struct TermType {
-  std::string name;                    // of `type` in the scene
-  TermRole role = TermRole::Internal;  // contact is built last: it needs the applied pressure
-  std::string summary;                 // one sentence
+  std::string name;  // of `type` in the scene
+  BuildStage stage = BuildStage::First;
+  std::string summary;  // one sentence
   ObjectSpec spec;
   // Rules between keys; one text per defect, without file and place. May be empty.
   std::function<std::vector<std::string>(const Parameters&)> check;
@@ -53,7 +58,8 @@ const std::vector<TermType>& term_types();
 const TermType* find_term_type(const std::string& name);
 
 // The entries by family, each in its own file.
-std::vector<TermType> membrane_term_types();  // cst_stvk, surface_tension
+std::vector<TermType> membrane_term_types();  // cst_stvk, cst_tension_field, surface_tension
+std::vector<TermType> bending_term_types();   // bending
 std::vector<TermType> line_term_types();      // cable, tether_cubic
 std::vector<TermType> load_term_types();      // load_field, load_pressure
 std::vector<TermType> contact_term_types();   // contact_facet

@@ -48,7 +48,7 @@ TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
 std::vector<TermType> contact_term_types() {
   return {
       {.name = "contact_facet",
-       .role = TermRole::Contact,
+       .stage = BuildStage::AfterLoads,  // its default strength comes from the applied pressure
        .summary = "Smoothed repulsion of facets that come close (Burlina et al. 2010); a finite barrier, so "
                   "intersections are counted in the result.",
        .spec = {.keys = {{.name = "range",

@@ -112,7 +112,6 @@ TermPointer build_pressure(const TermSpec& spec, BuildContext& context) {
 std::vector<TermType> load_term_types() {
   return {
       {.name = "load_field",
-       .role = TermRole::Load,
        .summary = "Nodal forces that keep their size and direction: a fixed direction, toward a line, or "
                   "gravity (Burlina et al. 2010).",
        .spec = {.keys = {{.name = "direction",
@@ -147,7 +146,6 @@ std::vector<TermType> load_term_types() {
        .check = check_field,
        .build = build_field},
       {.name = "load_pressure",
-       .role = TermRole::Load,
        .summary = "Uniform pressure on the surface.",
        .spec =
            {.keys = {{.name = "value", .dimension = kPressure, .required = true, .doc = "The pressure."},

@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
+#include "energy/kernels/cst_tension_field.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "scene/term_types.hpp"
 
@@ -30,23 +31,48 @@ void note_membrane(const TermSpec& spec, const std::vector<int>& triangles,
                              "stress in the results is that of the last.");
 }
 
-TermPointer build_stvk(const TermSpec& spec, BuildContext& context) {
-  const Parameters& p = spec.parameters;
-  const MembraneProperties properties{p.number("young"), p.number("poisson"), p.number_or("thickness", 0),
-                                      p.number("prestress")};
+// One element of the kernel for each triangle of the region; `rest_of` makes it from the corners at rest.
+template <typename Kernel, typename RestOf>
+TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const MembraneProperties& properties,
+                           const RestOf& rest_of) {
   const TriangleMesh& mesh = context.model.mesh;
-  const std::vector<int> triangles = region_triangles(p, mesh);
-  std::vector<CstStVK::Rest> rest;
+  const std::vector<int> triangles = region_triangles(spec.parameters, mesh);
+  std::vector<typename Kernel::Rest> rest;
   rest.reserve(triangles.size());
   const Points& X = context.model.X;
   for (const int t : triangles) {
     const Eigen::Vector3i corner = mesh.triangles.col(t);
-    rest.push_back(CstStVK::rest(X.col(corner[0]), X.col(corner[1]), X.col(corner[2]), properties.young,
-                                 properties.poisson, properties.thickness, properties.prestress));
+    rest.push_back(rest_of(X.col(corner[0]), X.col(corner[1]), X.col(corner[2])));
   }
   note_membrane(spec, triangles, properties, context.model);
-  return std::make_unique<ElementTerm<CstStVK>>(spec.name, corner_nodes(mesh.triangles, triangles),
-                                                std::move(rest));
+  return std::make_unique<ElementTerm<Kernel>>(spec.name, corner_nodes(mesh.triangles, triangles),
+                                               std::move(rest));
+}
+
+MembraneProperties elastic_properties(const Parameters& p) {
+  MembraneProperties m;
+  m.young = p.number("young");
+  m.poisson = p.number("poisson");
+  m.thickness = p.number_or("thickness", 0);
+  m.prestress = p.number("prestress");
+  return m;
+}
+
+TermPointer build_stvk(const TermSpec& spec, BuildContext& context) {
+  const MembraneProperties m = elastic_properties(spec.parameters);
+  return build_membrane<CstStVK>(spec, context, m, [&](const Vec3& X0, const Vec3& X1, const Vec3& X2) {
+    return CstStVK::rest(X0, X1, X2, m.young, m.poisson, m.thickness, m.prestress);
+  });
+}
+
+TermPointer build_tension_field(const TermSpec& spec, BuildContext& context) {
+  MembraneProperties m = elastic_properties(spec.parameters);
+  m.relaxes = true;
+  m.residual = spec.parameters.number("residual_stiffness");
+  return build_membrane<CstTensionField>(
+      spec, context, m, [&](const Vec3& X0, const Vec3& X1, const Vec3& X2) {
+        return CstTensionField::rest(X0, X1, X2, m.young, m.poisson, m.thickness, m.prestress, m.residual);
+      });
 }
 
 std::vector<std::string> check_stvk(const Parameters& p) {
@@ -57,6 +83,51 @@ std::vector<std::string> check_stvk(const Parameters& p) {
   if (young == 0 && p.number("prestress") == 0)
     defects.push_back("young and prestress are both zero; one must be greater");
   return defects;
+}
+
+// The keys of every elastic membrane. With a modulus of zero only prestress is left, which not all laws
+// allow.
+std::vector<KeySpec> elastic_keys(bool allows_zero_young) {
+  const KeySpec young{.name = "young",
+                      .dimension = kPressure,
+                      .required = true,
+                      .min = 0,
+                      .excludes_min = !allows_zero_young,
+                      .doc = allows_zero_young
+                                 ? "Young's modulus; zero for a membrane held by its prestress alone."
+                                 : "Young's modulus."};
+  const KeySpec thickness{
+      .name = "thickness",
+      .dimension = kLength,
+      .required = !allows_zero_young,
+      .min = 0,
+      .excludes_min = true,
+      .doc = allows_zero_young ? "Thickness at rest; needed where young is not zero." : "Thickness at rest."};
+  return {young,
+          {.name = "poisson",
+           .fallback = "0.45",
+           .min = -1,
+           .max = 0.4999,
+           .excludes_min = true,
+           .doc = "Poisson's ratio; 0.4999 for a nearly incompressible membrane."},
+          thickness,
+          {.name = "prestress",
+           .dimension = kForcePerLength,
+           .fallback = "0",
+           .min = 0,
+           .doc = "Isotropic stress resultant in the reference shape."},
+          region_key()};
+}
+
+std::vector<KeySpec> tension_field_keys() {
+  std::vector<KeySpec> keys = elastic_keys(false);
+  keys.insert(keys.end() - 1, {.name = "residual_stiffness",
+                               .fallback = "0",
+                               .min = 0,
+                               .max = 1,
+                               .doc = "Fraction of the compressive stiffness that is left where the membrane "
+                                      "is wrinkled or slack; 1 is cst_stvk."});
+  return keys;
 }
 
 TermPointer build_surface_tension(const TermSpec& spec, BuildContext& context) {
@@ -74,30 +145,15 @@ std::vector<TermType> membrane_term_types() {
       {.name = "cst_stvk",
        .summary = "Elastic membrane, St. Venant-Kirchhoff in plane stress, on constant-strain triangles; it "
                   "resists compression too.",
-       .spec = {.keys = {{.name = "young",
-                          .dimension = kPressure,
-                          .required = true,
-                          .min = 0,
-                          .doc = "Young's modulus; zero for a membrane held by its prestress alone."},
-                         {.name = "poisson",
-                          .fallback = "0.45",
-                          .min = -1,
-                          .max = 0.4999,
-                          .excludes_min = true,
-                          .doc = "Poisson's ratio; 0.4999 for a nearly incompressible membrane."},
-                         {.name = "thickness",
-                          .dimension = kLength,
-                          .min = 0,
-                          .excludes_min = true,
-                          .doc = "Thickness at rest; needed where young is not zero."},
-                         {.name = "prestress",
-                          .dimension = kForcePerLength,
-                          .fallback = "0",
-                          .min = 0,
-                          .doc = "Isotropic stress resultant in the reference shape."},
-                         region_key()}},
+       .spec = {.keys = elastic_keys(true)},
        .check = check_stvk,
        .build = build_stvk},
+      {.name = "cst_tension_field",
+       .summary = "Elastic membrane that wrinkles instead of being compressed (tension field: taut, wrinkled "
+                  "or slack), on constant-strain triangles; like cst_stvk where it is taut.",
+       .spec = {.keys = tension_field_keys()},
+       .check = {},
+       .build = build_tension_field},
       {.name = "surface_tension",
        .summary = "Film of constant isotropic tension; its equilibria without pressure are minimal surfaces.",
        .spec = {.keys = {{.name = "tension",

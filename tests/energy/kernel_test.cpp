@@ -5,7 +5,7 @@
 #include "energy/kernels/facet_volume.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/kernels/tether_cubic.hpp"
-#include "support/meshes.hpp"
+#include "membrane_patch.hpp"
 #include "support/oracles.hpp"
 #include "support/term_suite.hpp"
 
@@ -15,13 +15,6 @@ namespace coapt {
 namespace {
 
 constexpr double kYoung = 2.0, kPoisson = 0.35, kThickness = 0.4;
-
-// A small irregular patch out of the plane.
-TriangleMesh patch() {
-  TriangleMesh mesh = grid_mesh(2, 2);
-  mesh.vertices = shaken(mesh.vertices, 0.08, 3);
-  return mesh;
-}
 
 TermCase membrane_case(const std::string& label, const Eigen::Matrix3d& deformation, double prestress) {
   const TriangleMesh mesh = patch();
@@ -48,14 +41,6 @@ TermCase membrane_case(const std::string& label, const Eigen::Matrix3d& deformat
 oracle::StVenantKirchhoff membrane_oracle(double prestress) {
   const TriangleMesh mesh = patch();
   return {mesh.triangles, mesh.vertices, kYoung, kPoisson, kThickness, prestress};
-}
-
-Eigen::Matrix3d deformation(double f11, double f12, double f22) {
-  Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
-  f(0, 0) = f11;
-  f(0, 1) = f12;
-  f(1, 1) = f22;
-  return f;
 }
 
 TEST(CstStVK, PassesTheSuiteStretched) {

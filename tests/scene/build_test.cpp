@@ -1,6 +1,8 @@
 #include "scene/build.hpp"
 
 #include "core/error.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/bending.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/temporary_folder.hpp"
@@ -60,6 +62,53 @@ TEST_F(BuildTest, MakesADiscReadyToSolve) {
   Vector g;
   model.objective->gradient(model.q0, g);
   EXPECT_GT(g.norm(), 0);
+}
+
+const EnergyTerm* find_term(const Model& model, std::string_view type) {
+  for (const auto& term : model.objective->terms())
+    if (term->type() == type) return term.get();
+  return nullptr;
+}
+
+constexpr const char* kTensionField =
+    R"({"type": "cst_tension_field", "young": "1 MPa", "poisson": 0.5e-12, "thickness": "1 mm"})";
+
+TEST_F(BuildTest, GivesEveryInnerEdgeThePlateStiffnessOfItsMembraneWhateverTheOrderOfTerms) {
+  const std::string bending = R"({"type": "bending"})", membrane = kTensionField;
+  for (const std::string& terms : {bending + "," + membrane, membrane + "," + bending}) {
+    const Model model = build_disc("[" + terms + "]", kHeldRim);
+    const auto* hinges = dynamic_cast<const ElementTerm<BendingHinge>*>(find_term(model, "bending"));
+    ASSERT_NE(hinges, nullptr);
+    const int rim = static_cast<int>(model.sets.at("boundary").size());
+    EXPECT_EQ(static_cast<int>(hinges->rest().size()), (3 * disc_.triangle_count() - rim) / 2);
+    const int* n = hinges->stencils().nodes.data();
+    const auto expected = BendingHinge::rest(model.X.col(n[0]), model.X.col(n[1]), model.X.col(n[2]),
+                                             model.X.col(n[3]), 1.0 / 12);
+    EXPECT_NEAR(hinges->rest()[0].stiffness, expected.stiffness, 1e-12);
+    EXPECT_TRUE(model.membrane[0].relaxes);
+  }
+}
+
+TEST_F(BuildTest, TakesBendingFromTheSceneWhereItSaysSo) {
+  const auto stiffness = [&](const std::string& keys) {
+    const Model model = build_disc(R"([{"type": "bending")" + keys + "}," + kTensionField + "]", kHeldRim);
+    return dynamic_cast<const ElementTerm<BendingHinge>&>(*find_term(model, "bending")).rest()[0].stiffness;
+  };
+  const double physical = stiffness("");
+  EXPECT_NEAR(stiffness(R"(, "stiffness": "1 N mm")") / physical, 12, 1e-10);
+  EXPECT_NEAR(stiffness(R"(, "thickness": "2 mm")") / physical, 8, 1e-10);
+  EXPECT_NEAR(stiffness(R"(, "scale": 0.1)") / physical, 0.1, 1e-12);
+}
+
+TEST_F(BuildTest, RefusesBendingWithoutAStiffness) {
+  EXPECT_NE(refusal(R"([{"type": "bending"}, {"type": "surface_tension", "tension": "1 N/m"}])", kHeldRim)
+                .find("no membrane term gives a modulus and a thickness"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"([{"type": "bending", "stiffness": "1 N mm", "thickness": "1 mm"}, )" +
+                        std::string(kTensionField) + "]",
+                    kHeldRim)
+                .find("has no meaning beside stiffness"),
+            std::string::npos);
 }
 
 TEST_F(BuildTest, SolvesTheDiscToARoundedDome) {

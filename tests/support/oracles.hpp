@@ -24,8 +24,42 @@ T power(const T& a, int n) {
   return result;
 }
 
-// St. Venant-Kirchhoff with prestress from the lengths of the three sides alone: the Green strain along a
-// side of rest length L and current length l is (l^2/L^2 - 1)/2 and three of them give the whole tensor.
+// Green strain of a triangle from the lengths of its three sides alone: along a side of rest length L and
+// current length l it is (l^2/L^2 - 1)/2, and three of them give the whole tensor.
+template <typename T>
+struct TriangleStrain {
+  double area;  // at rest
+  T trace, determinant;
+};
+
+template <typename T>
+TriangleStrain<T> triangle_strain(const Points& X, const Eigen::Vector3i& c,
+                                  const std::vector<AutoVec<T>>& x) {
+  // Planar coordinates of the rest triangle by the law of cosines.
+  const double a = (X.col(c[1]) - X.col(c[0])).norm(), b = (X.col(c[2]) - X.col(c[0])).norm();
+  const double cosine = (X.col(c[1]) - X.col(c[0])).dot(X.col(c[2]) - X.col(c[0])) / (a * b);
+  const double px = b * cosine, py = b * std::sqrt(1 - cosine * cosine);
+  // Side s with rest vector (sx, sy): (l^2 - L^2)/2 = E11 sx^2 + E22 sy^2 + 2 E12 sx sy.
+  const double side[3][2] = {{a, 0}, {px, py}, {px - a, py}};
+  const AutoVec<T> current[3] = {x[c[1]] - x[c[0]], x[c[2]] - x[c[0]], x[c[2]] - x[c[1]]};
+  Eigen::Matrix3d system;
+  std::array<T, 3> stretch;
+  for (int s = 0; s < 3; ++s) {
+    system.row(s) << side[s][0] * side[s][0], side[s][1] * side[s][1], 2 * side[s][0] * side[s][1];
+    const double rest_squared = side[s][0] * side[s][0] + side[s][1] * side[s][1];
+    stretch[s] = times(0.5, T(dot(current[s], current[s]) - T(rest_squared)));
+  }
+  const Eigen::Matrix3d solve = system.inverse();
+  std::array<T, 3> E;  // E11, E22, E12
+  for (int k = 0; k < 3; ++k) {
+    E[k] = T(0.0);
+    for (int s = 0; s < 3; ++s) E[k] = T(E[k] + times(solve(k, s), stretch[s]));
+  }
+  const T product = E[0] * E[1], shear = squared(E[2]);
+  return {0.5 * a * py, T(E[0] + E[1]), T(product - shear)};
+}
+
+// St. Venant-Kirchhoff with prestress: h E/(2(1-nu^2)) (tr(E)^2 - 2 (1-nu) det(E)) + s tr(E) per area.
 struct StVenantKirchhoff {
   Triangles triangles;
   Points X;
@@ -34,41 +68,93 @@ struct StVenantKirchhoff {
   template <typename T>
   T operator()(const std::vector<AutoVec<T>>& x) const {
     T energy = T(0.0);
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t) energy = T(energy + element(triangles.col(t), x));
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      const TriangleStrain<T> strain = triangle_strain(X, triangles.col(t), x);
+      energy = T(energy + times(strain.area, density(strain)));
+    }
+    return energy;
+  }
+
+  template <typename T>
+  T density(const TriangleStrain<T>& e) const {
+    const T elastic = times(0.5 * thickness * young / (1 - poisson * poisson),
+                            T(squared(e.trace) - times(2 * (1 - poisson), e.determinant)));
+    return T(elastic + times(prestress, e.trace));
+  }
+};
+
+// The relaxed law by its definition: for each principal pair the least energy over the shortening that
+// wrinkles hide, which is stationary in the minor strain where that is hidden, and in both where slack.
+// A fraction `residual` of the full law is kept.
+struct TensionField {
+  StVenantKirchhoff full;
+  double residual = 0;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index t = 0; t < full.triangles.cols(); ++t) {
+      const TriangleStrain<T> strain = triangle_strain(full.X, full.triangles.col(t), x);
+      const T relaxed = times(1 - residual, density(strain));
+      energy = T(energy + times(strain.area, T(relaxed + times(residual, full.density(strain)))));
+    }
     return energy;
   }
 
  private:
   template <typename T>
-  T element(const Eigen::Vector3i& c, const std::vector<AutoVec<T>>& x) const {
-    // Planar coordinates of the rest triangle by the law of cosines.
-    const double a = (X.col(c[1]) - X.col(c[0])).norm(), b = (X.col(c[2]) - X.col(c[0])).norm();
-    const double cosine = (X.col(c[1]) - X.col(c[0])).dot(X.col(c[2]) - X.col(c[0])) / (a * b);
-    const double px = b * cosine, py = b * std::sqrt(1 - cosine * cosine);
-    const double area = 0.5 * a * py;
-    // Side s with rest vector (sx, sy): (l^2 - L^2)/2 = E11 sx^2 + E22 sy^2 + 2 E12 sx sy.
-    const double side[3][2] = {{a, 0}, {px, py}, {px - a, py}};
-    const AutoVec<T> current[3] = {x[c[1]] - x[c[0]], x[c[2]] - x[c[0]], x[c[2]] - x[c[1]]};
-    Eigen::Matrix3d system;
-    std::array<T, 3> stretch;
-    for (int s = 0; s < 3; ++s) {
-      system.row(s) << side[s][0] * side[s][0], side[s][1] * side[s][1], 2 * side[s][0] * side[s][1];
-      const double rest_squared = side[s][0] * side[s][0] + side[s][1] * side[s][1];
-      stretch[s] = times(0.5, T(dot(current[s], current[s]) - T(rest_squared)));
+  T density(const TriangleStrain<T>& e) const {
+    using std::sqrt;
+    const double modulus = full.thickness * full.young / (1 - full.poisson * full.poisson), nu = full.poisson;
+    const double s = full.prestress / modulus;
+    const T mean = times(0.5, e.trace);
+    const T square = T(squared(mean) - e.determinant);
+    const T radius = T(sqrt(square));
+    const T major = T(mean + radius), minor = T(mean - radius);
+    if (number(minor) + nu * number(major) + s > 0) return full.density(e);
+    // The minor strain m at which the stress across the major direction M vanishes: m + nu M + s = 0.
+    const T hidden = T(T(-s) - times(nu, major));
+    const double slack = -s / (1 + nu);  // both strains of the stress-free sheet
+    if (number(major) > slack)
+      return full.density(TriangleStrain<T>{1, T(major + hidden), T(major * hidden)});
+    return full.density(TriangleStrain<T>{1, T(2 * slack), T(slack * slack)});
+  }
+};
+
+// Hinges (edge, edge, corner, corner) by the angle between the two facets' normals.
+struct Hinges {
+  Points X;
+  Eigen::Matrix4Xi nodes;
+  double stiffness;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    std::vector<AutoVec<double>> rest;
+    for (Eigen::Index v = 0; v < X.cols(); ++v) rest.push_back(plain(X.col(v)));
+    T energy = T(0.0);
+    for (Eigen::Index k = 0; k < nodes.cols(); ++k) {
+      const Vec3 e = X.col(nodes(1, k)) - X.col(nodes(0, k));
+      const double areas = 0.5 * (e.cross(X.col(nodes(2, k)) - X.col(nodes(0, k))).norm() +
+                                  e.cross(X.col(nodes(3, k)) - X.col(nodes(0, k))).norm());
+      const T fold = T(angle(nodes.col(k), x) - T(angle(nodes.col(k), rest)));
+      energy = T(energy + times(0.5 * stiffness * e.squaredNorm() / areas, squared(fold)));
     }
-    const Eigen::Matrix3d solve = system.inverse();
-    std::array<T, 3> E;  // E11, E22, E12
-    for (int k = 0; k < 3; ++k) {
-      E[k] = T(0.0);
-      for (int s = 0; s < 3; ++s) E[k] = T(E[k] + times(solve(k, s), stretch[s]));
-    }
-    // Energy per area h E/(2(1-nu^2)) (tr(E)^2 - 2 (1-nu) det(E)) + s tr(E).
-    const T trace = T(E[0] + E[1]);
-    const T product = E[0] * E[1], shear = squared(E[2]);
-    const T determinant = T(product - shear);
-    const T elastic = times(0.5 * thickness * young / (1 - poisson * poisson),
-                            T(squared(trace) - times(2 * (1 - poisson), determinant)));
-    return times(area, T(elastic + times(prestress, trace)));
+    return energy;
+  }
+
+ private:
+  // Away from 0 and pi, where the arc cosine has no derivative.
+  template <typename T>
+  T angle(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x) const {
+    using std::acos;
+    const AutoVec<T> left = cross(AutoVec<T>(x[n[1]] - x[n[0]]), AutoVec<T>(x[n[2]] - x[n[1]])),
+                     right = cross(AutoVec<T>(x[n[0]] - x[n[1]]), AutoVec<T>(x[n[3]] - x[n[0]]));
+    const T lengths = T(norm(left) * norm(right)), along = dot(left, right);
+    const T cosine = T(along / lengths);
+    const T size = T(acos(cosine));
+    const T side =
+        dot(left, AutoVec<T>(x[n[3]] - x[n[1]]));  // height of the last corner over the first facet
+    return number(side) < 0 ? size : times(-1, size);
   }
 };
 

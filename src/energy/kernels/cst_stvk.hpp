@@ -8,10 +8,8 @@
 // Source: Bonet & Wood 2008, chapter 6. Never throws.
 #pragma once
 
-#include "core/types.hpp"
+#include "energy/kernels/cst.hpp"
 #include "energy/term.hpp"
-
-#include <Eigen/Dense>
 
 namespace coapt {
 
@@ -31,58 +29,53 @@ struct CstStVK {
   // Pre: the rest triangle is not degenerate (the mesh check refuses those).
   static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, double young, double poisson,
                    double thickness, double prestress = 0) {
-    const Vec3 e1 = X1 - X0, e2 = X2 - X0;
-    const Vec3 t1 = e1.normalized();
-    const Vec3 t2 = e1.cross(e2).cross(e1).normalized();
-    Eigen::Matrix2d edges;
-    edges << e1.dot(t1), e2.dot(t1), 0, e2.dot(t2);
-    const double area = 0.5 * e1.cross(e2).norm();
-    return {edges.inverse(), area * thickness * young * poisson / (1 - poisson * poisson),
-            area * thickness * young / (2 * (1 + poisson)), area * prestress};
+    const CstShape shape = cst_shape(X0, X1, X2);
+    return {shape.inverse, shape.area * thickness * young * poisson / (1 - poisson * poisson),
+            shape.area * thickness * young / (2 * (1 + poisson)), shape.area * prestress};
   }
 
-  static double evaluate(const Rest& rest, const Eigen::Vector<double, 9>& x, Eigen::Vector<double, 9>* g,
-                         Eigen::Matrix<double, 9, 9>* H) {
-    const Vec3 d1 = x.segment<3>(3) - x.segment<3>(0), d2 = x.segment<3>(6) - x.segment<3>(0);
-    const Eigen::Matrix2d& w = rest.shape;
-    const Vec3 f1 = d1 * w(0, 0) + d2 * w(1, 0), f2 = d1 * w(0, 1) + d2 * w(1, 1);  // columns of F
-    const double e11 = 0.5 * (f1.dot(f1) - 1), e22 = 0.5 * (f2.dot(f2) - 1), e12 = 0.5 * f1.dot(f2);
-    const double trace = e11 + e22;
-    const double energy = rest.mu * (e11 * e11 + e22 * e22 + 2 * e12 * e12) +
-                          0.5 * rest.lambda * trace * trace + rest.prestress * trace;
-    if (g == nullptr) return energy;
-
-    // Stress (times A h) and its force on the two edge vectors.
-    const double s11 = rest.lambda * trace + 2 * rest.mu * e11 + rest.prestress;
-    const double s22 = rest.lambda * trace + 2 * rest.mu * e22 + rest.prestress;
-    const double s12 = 2 * rest.mu * e12;
-    const Vec3 p1 = f1 * s11 + f2 * s12, p2 = f1 * s12 + f2 * s22;
-    const Vec3 g1 = p1 * w(0, 0) + p2 * w(0, 1), g2 = p1 * w(1, 0) + p2 * w(1, 1);
-    g->segment<3>(0) = -g1 - g2;
-    g->segment<3>(3) = g1;
-    g->segment<3>(6) = g2;
-    if (H == nullptr) return energy;
-
-    // B = dE/dx in Voigt order (E11, E22, 2 E12); H = B^T D B + (w_a . S w_b) I.
-    Eigen::Matrix<double, 3, 2> grads;  // shape gradient of each node
-    grads << -w(0, 0) - w(1, 0), -w(0, 1) - w(1, 1), w(0, 0), w(0, 1), w(1, 0), w(1, 1);
-    Eigen::Matrix<double, 3, 9> B;
-    for (int a = 0; a < 3; ++a) {
-      B.block<1, 3>(0, 3 * a) = grads(a, 0) * f1.transpose();
-      B.block<1, 3>(1, 3 * a) = grads(a, 1) * f2.transpose();
-      B.block<1, 3>(2, 3 * a) = grads(a, 1) * f1.transpose() + grads(a, 0) * f2.transpose();
-    }
-    Eigen::Matrix3d D;
+  static double energy(const Rest& rest, const CstStrain& e) {
+    const double trace = e.e11 + e.e22;
+    return rest.mu * (e.e11 * e.e11 + e.e22 * e.e22 + 2 * e.e12 * e.e12) + 0.5 * rest.lambda * trace * trace +
+           rest.prestress * trace;
+  }
+  static CstStress stress(const Rest& rest, const CstStrain& e) {
+    const double mean = rest.lambda * (e.e11 + e.e22) + rest.prestress;
+    return {mean + 2 * rest.mu * e.e11, mean + 2 * rest.mu * e.e22, 2 * rest.mu * e.e12};
+  }
+  static CstTangent tangent(const Rest& rest) {
     const double diagonal = rest.lambda + 2 * rest.mu;
-    D << diagonal, rest.lambda, 0, rest.lambda, diagonal, 0, 0, 0, rest.mu;
-    H->noalias() = B.transpose() * (D * B);
-    Eigen::Matrix2d S;
-    S << s11, s12, s12, s22;
-    const Eigen::Matrix3d geometric = grads * S * grads.transpose();
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        for (int c = 0; c < 3; ++c) (*H)(3 * a + c, 3 * b + c) += geometric(a, b);
-    return energy;
+    return {diagonal, diagonal, rest.lambda, rest.mu};
+  }
+
+  static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    const CstFrame frame = cst_frame(rest.shape, x);
+    return evaluate(rest, frame, cst_strain(frame), g, H);
+  }
+
+  // The same where frame and strain are known.
+  static double evaluate(const Rest& rest, const CstFrame& frame, const CstStrain& e, CstVector* g,
+                         CstMatrix* H) {
+    if (g == nullptr) return energy(rest, e);
+    const CstStress s = stress(rest, e);
+    cst_gradient(frame, s, *g);
+    if (H != nullptr) cst_hessian(frame, s, tangent(rest), *H);
+    return energy(rest, e);
+  }
+
+  // With the negative eigenvalues of d2W/dF2 set to zero.
+  static double evaluate_projected(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    const CstFrame frame = cst_frame(rest.shape, x);
+    const CstStrain e = cst_strain(frame);
+    const CstStress s = stress(rest, e);
+    cst_gradient(frame, s, *g);
+    if (s.s11 + s.s22 >= 0 && s.s11 * s.s22 >= s.s12 * s.s12) {  // tension both ways
+      cst_hessian(frame, s, tangent(rest), *H);
+    } else {
+      const CstPrincipal p = cst_principal(e);
+      cst_hessian_projected(turned(frame, p), stress(rest, {p.major, p.minor, 0}), tangent(rest), *H);
+    }
+    return energy(rest, e);
   }
 };
 
