@@ -67,13 +67,25 @@ HessianPattern::HessianPattern(const std::vector<std::unique_ptr<EnergyTerm>>& t
   std::vector<char> masked(3 * block_count, 0);
   for (size_t node = 0; node < block.size(); ++node)
     for (int c = 0; c < 3; ++c)
-      if (block[node] >= 0 && fixed(c, static_cast<Eigen::Index>(node))) masked[3 * block[node] + c] = 1;
+      if (block[node] >= 0 && fixed(c, static_cast<Eigen::Index>(node))) {
+        masked[3 * block[node] + c] = 1;
+        masked_.push_back(3 * block[node] + c);
+      }
   for (int column = 0; column < zero_.outerSize(); ++column)
     for (int k = zero_.outerIndexPtr()[column]; k < zero_.outerIndexPtr()[column + 1]; ++k) {
       const int row = zero_.innerIndexPtr()[k];
       if (!masked[row] && !masked[column]) continue;
       (row == column ? masked_one_ : masked_zero_).push_back(k);
     }
+}
+
+BlockSlot HessianPattern::slot(int block_row, int block_column) const {
+  if (block_row < block_column || block_column < 0) return {};
+  const int first = zero_.outerIndexPtr()[3 * block_column],
+            last = zero_.outerIndexPtr()[3 * block_column + 1];
+  const int* rows = zero_.innerIndexPtr();
+  const auto found = std::lower_bound(rows + first, rows + last, 3 * block_row) - rows;
+  return {static_cast<int>(found), last - first};
 }
 
 void HessianPattern::mask(Eigen::SparseMatrix<double>& h) const {

@@ -25,12 +25,19 @@ class HessianPattern {
   // Slots of one term, width * width for each element, as Sink wants them.
   const BlockSlot* slots(size_t term) const { return slots_[term].data(); }
 
+  // Place of one block of unknowns; base < 0 above the diagonal. Pre: below it, an element couples the two.
+  BlockSlot slot(int block_row, int block_column) const;
+
   // Replaces rows and columns of prescribed coordinates by unit ones.
   void mask(Eigen::SparseMatrix<double>& h) const;
+
+  // The prescribed coordinates among the unknowns.
+  const std::vector<int>& masked() const { return masked_; }
 
  private:
   Eigen::SparseMatrix<double> zero_;
   std::vector<std::vector<BlockSlot>> slots_;  // per term
+  std::vector<int> masked_;                    // unknowns
   std::vector<int> masked_zero_, masked_one_;  // positions in the values
 };
 

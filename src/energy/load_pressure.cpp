@@ -67,7 +67,7 @@ class LoadPressureFollower final : public EnergyTerm {
         triangles_(triangles),
         rims_(std::move(rims)),
         rest_{p, Vec3(X.rowwise().mean())} {
-    set_fans(X);
+    set_fans({});
   }
 
   std::string_view type() const override { return FacetVolume::kType; }
@@ -97,19 +97,47 @@ class LoadPressureFollower final : public EnergyTerm {
       }
   }
 
-  bool renew(const Points& x) override {
-    set_fans(x);
-    return true;
+  void add_circulatory_tangent(const Points& x, std::vector<TangentBlock>& blocks) const override {
+    const Vec3& o = rest_.origin;
+    const double sixth = rest_.pressure / 6;
+    // d(u x v)/du = -[v x], d(u x v)/dv = [u x]
+    for (const auto& rim : rims_)
+      for (size_t k = 0; k < rim.size(); ++k) {
+        const int a = rim[k], b = rim[(k + 1) % rim.size()];
+        const Eigen::Matrix3d by_a = -sixth * cross_matrix(x.col(b) - o);
+        const Eigen::Matrix3d by_b = sixth * cross_matrix(x.col(a) - o);
+        for (const int row : {a, b}) {
+          blocks.push_back({row, a, by_a});
+          blocks.push_back({row, b, by_b});
+        }
+      }
+    for (int t = 0; t < fans_.cols(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int b = fans_((k + 1) % 3, t), c = fans_((k + 2) % 3, t);
+        blocks.push_back({fans_(k, t), b, sixth * cross_matrix(x.col(c) - o)});
+        blocks.push_back({fans_(k, t), c, -sixth * cross_matrix(x.col(b) - o)});
+      }
   }
 
- private:
-  void set_fans(const Points& x) {
+  bool renew(const Points& x) override {
     std::vector<int> fan_corners;
     for (const auto& rim : rims_) {
       if (rim.size() < 3) continue;
       const std::vector<int> fan = corner_list(close_rim(x, rim));
       fan_corners.insert(fan_corners.end(), fan.begin(), fan.end());
     }
+    set_fans(fan_corners);
+    return true;
+  }
+
+  bool simplify() override {
+    if (fans_.cols() == 0) return false;
+    set_fans({});
+    return true;
+  }
+
+ private:
+  void set_fans(const std::vector<int>& fan_corners) {
     fans_ = Eigen::Map<const Triangles>(fan_corners.data(), 3, static_cast<int>(fan_corners.size() / 3));
     std::vector<int> corners = corner_list(triangles_);
     corners.insert(corners.end(), fan_corners.begin(), fan_corners.end());
@@ -120,7 +148,7 @@ class LoadPressureFollower final : public EnergyTerm {
   Triangles triangles_;
   std::vector<std::vector<int>> rims_;  // those that move, in the direction of the facets
   FacetVolume::Rest rest_;
-  Triangles fans_;
+  Triangles fans_;                                  // none until renew()
   std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans
 };
 

@@ -58,6 +58,16 @@ Points Objective::positions(const Vector& q) const {
   return x;
 }
 
+void Objective::scale(double load, double stiffness) {
+  load_factor_ = load;
+  stiffness_factor_ = stiffness;
+}
+
+double Objective::pour(const EnergyTerm& term, Sink sink) const {
+  sink.set_factor(factor(term));
+  return factor(term) * term.evaluate(x_, sink);
+}
+
 void Objective::prescribe(const Points& x) { x_ = fixed_.select(x, x_); }
 
 void Objective::prepare(const Vector& q) {
@@ -85,7 +95,7 @@ void Objective::split(const Points& nodal, Vector& free_part) {
     for (int c = 0; c < 3; ++c)
       if (fixed_(c, node)) std::swap(free[c], held[c]);
     whole_reaction = std::max(whole_reaction, held.squaredNorm());
-    if (is_relative) held -= prestress_reaction_.col(node);
+    if (is_relative) held -= stiffness_factor_ * prestress_reaction_.col(node);
     reaction = std::max(reaction, held.squaredNorm());
     if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
   }
@@ -113,9 +123,8 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
     energy = -remainder_.cwiseProduct(x_).sum();
     if (gradient != nullptr) nodal_gradient_ = -remainder_;
   } else if (circulatory_ == Circulatory::PathWork) {
-    const Points force = circulatory_force();
-    energy = -work_ - 0.5 * (remainder_ + force).cwiseProduct(x_ - anchor_).sum();
-    if (gradient != nullptr) nodal_gradient_ = -force;
+    energy = -work_ - path_work();
+    if (gradient != nullptr) nodal_gradient_ = -force_;
   }
   bool loads_are_complete = false;
   const auto read_off_loads = [&] {
@@ -128,11 +137,15 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   };
   for (size_t k = 0; k < terms_.size(); ++k) {
     if (terms_[k]->role() != TermRole::Load) read_off_loads();
-    Sink sink = h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection) : Sink(gradient);
-    energy += terms_[k]->evaluate(x_, sink);
+    energy += pour(*terms_[k], h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection)
+                                            : Sink(gradient));
   }
   read_off_loads();
-  if (h != nullptr) pattern_.mask(*h);
+  if (h != nullptr) {
+    skew_.clear();
+    if (circulatory_ == Circulatory::PathWork) add_circulatory_tangent(*h);
+    pattern_.mask(*h);
+  }
   if (gradient == nullptr) return energy;
 
   split(nodal_gradient_, *g);
@@ -196,10 +209,49 @@ bool Objective::has_circulatory_force() const {
                      [](const auto& term) { return term->has_circulatory_force(); });
 }
 
-Points Objective::circulatory_force() const {
-  Points force = Points::Zero(3, node_count());
-  for (const auto& term : terms_) term->add_circulatory_force(x_, force);
-  return force;
+void Objective::circulatory_force(const Points& x, Points& force) const {
+  force.setZero(3, node_count());
+  for (const auto& term : terms_) term->add_circulatory_force(x, force);
+  force *= load_factor_;
+}
+
+double Objective::path_work() {
+  middle_ = 0.5 * (anchor_ + x_);
+  circulatory_force(middle_, force_);
+  double work = 4 * force_.cwiseProduct(x_ - anchor_).sum();
+  circulatory_force(x_, force_);
+  work += (remainder_ + force_).cwiseProduct(x_ - anchor_).sum();
+  return work / 6;
+}
+
+// The tangent K of the gradient is split in halves: (K + K^T) / 2 goes into the Hessian, the skew rest is
+// kept.
+void Objective::add_circulatory_tangent(Eigen::SparseMatrix<double>& h) {
+  for (const auto& term : terms_) term->add_circulatory_tangent(x_, skew_);
+  std::erase_if(skew_, [&](TangentBlock& block) {
+    block.row = block_[block.row];
+    block.column = block_[block.column];
+    block.value *= -0.5 * load_factor_;  // the gradient is minus the force
+    return block.row < 0 || block.column < 0;
+  });
+  const auto add = [&](int row, int column, const Eigen::Matrix3d& value) {
+    const BlockSlot slot = pattern_.slot(row, column);
+    if (slot.base < 0) return;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) h.valuePtr()[slot.base + c * slot.stride + r] += value(r, c);
+  };
+  for (const TangentBlock& block : skew_) {
+    add(block.row, block.column, block.value);
+    add(block.column, block.row, block.value.transpose());
+  }
+}
+
+void Objective::add_skew_product(const Vector& v, Vector& product) const {
+  for (const TangentBlock& block : skew_) {
+    product.segment<3>(3 * block.row) += block.value * v.segment<3>(3 * block.column);
+    product.segment<3>(3 * block.column) -= block.value.transpose() * v.segment<3>(3 * block.row);
+  }
+  for (const int unknown : pattern_.masked()) product[unknown] = 0;
 }
 
 void Objective::hold_dead(const Vector& q) {
@@ -207,13 +259,15 @@ void Objective::hold_dead(const Vector& q) {
   for (const auto& term : terms_)
     if (term->has_circulatory_force() && term->renew(x_)) pattern_is_current_ = false;
   circulatory_ = Circulatory::HeldDead;
-  remainder_ = circulatory_force();
+  circulatory_force(x_, remainder_);
 }
 
 void Objective::follow_path(const Vector& q) {
   prepare(q);
+  for (const auto& term : terms_)
+    if (term->simplify()) pattern_is_current_ = false;
   circulatory_ = Circulatory::PathWork;
-  remainder_ = circulatory_force();
+  circulatory_force(x_, remainder_);
   anchor_ = x_;
   work_ = 0;
 }
@@ -221,18 +275,18 @@ void Objective::follow_path(const Vector& q) {
 void Objective::advance(const Vector& q) {
   if (circulatory_ != Circulatory::PathWork) return;
   prepare(q);
-  const Points force = circulatory_force();
-  work_ += 0.5 * (remainder_ + force).cwiseProduct(x_ - anchor_).sum();
-  remainder_ = force;
+  work_ += path_work();
+  std::swap(remainder_, force_);
   anchor_ = x_;
 }
 
 Points Objective::exact_gradient(const Vector& q) {
   prepare(q);
   Points g = Points::Zero(3, node_count());
-  Sink sink(g.data());
-  for (const auto& term : terms_) term->evaluate(x_, sink);
-  return g - circulatory_force();
+  for (const auto& term : terms_) pour(*term, Sink(g.data()));
+  Points force;
+  circulatory_force(x_, force);
+  return g - force;
 }
 
 double Objective::true_residual(const Vector& q) {
@@ -248,12 +302,11 @@ std::vector<TermReport> Objective::breakdown(const Vector& q) {
   std::vector<TermReport> reports;
   for (const auto& term : terms_) {
     nodal_gradient_.setZero();
-    Sink sink(nodal_gradient_.data());
-    const double energy = term->evaluate(x_, sink);
+    const double energy = pour(*term, Sink(nodal_gradient_.data()));
     if (term->has_circulatory_force()) {
       Points force = Points::Zero(3, node_count());
       term->add_circulatory_force(x_, force);
-      nodal_gradient_ -= force;
+      nodal_gradient_ -= load_factor_ * force;
     }
     reports.push_back({term->name(), std::string(term->type()), energy, largest_column_norm(nodal_gradient_),
                        term->counters()});
@@ -269,14 +322,11 @@ Points Objective::reactions(const Vector& q) {
 Balance Objective::balance(const Vector& q) {
   const Points support = reactions(q);
   Points load = Points::Zero(3, node_count());
-  Sink sink(load.data());
-  for (const auto& term : terms_) {
-    if (term->role() != TermRole::Load) continue;
-    term->evaluate(x_, sink);
-    Points force = Points::Zero(3, node_count());
-    term->add_circulatory_force(x_, force);
-    load -= force;
-  }
+  for (const auto& term : terms_)
+    if (term->role() == TermRole::Load) pour(*term, Sink(load.data()));
+  Points circulatory;
+  circulatory_force(x_, circulatory);
+  load -= circulatory;
   load = -load;  // the force on the nodes is minus the gradient of the potential
   const Vec3 centre = x_.cols() == 0 ? Vec3::Zero() : Vec3(x_.rowwise().mean());
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();

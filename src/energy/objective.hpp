@@ -50,6 +50,10 @@ class Objective {
   Vector unknowns(const Points& x) const;
   Points positions(const Vector& q) const;
 
+  // Factors on all loads and on all other energies, for continuation; 1 from the start. Load and stiffness
+  // scaled alike leave an equilibrium where it is.
+  void scale(double load, double stiffness);
+
   // Moves the prescribed coordinates to those of x; free coordinates of x are ignored.
   void prescribe(const Points& x);
 
@@ -83,10 +87,16 @@ class Objective {
   //   Held dead: the remainder keeps its value at q, and evaluations belong to a true potential. Terms
   //   may choose that potential anew.
   //   Path work: the gradient is the exact out-of-balance force, and the energy counts the work of the
-  //   remainder along the way from q (trapezoidal rule), so that it falls along any step that the force
-  //   drives. It is a merit for a line search from q, not a function of the position alone.
+  //   remainder along the way from q (Simpson's rule, exact for pressure along a straight step), so that it
+  //   falls along any step that the force drives. It is a merit for a line search from q, not a function of
+  //   the position alone. The Hessian is the symmetric part of the exact tangent.
   void hold_dead(const Vector& q);
   void follow_path(const Vector& q);
+
+  // Adds the product of v with the skew part of the exact tangent at the last Hessian evaluation, which that
+  // Hessian lacks. Nothing to add unless the path is followed.
+  bool has_skew_tangent() const { return !skew_.empty(); }
+  void add_skew_product(const Vector& v, Vector& product) const;
 
   // Goes on from q: call it at each accepted iterate. The energy is continuous there. Does nothing unless
   // the path is followed.
@@ -105,9 +115,15 @@ class Objective {
  private:
   double evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h, Projection projection);
   void prepare(const Vector& q);
+  double factor(const EnergyTerm& term) const {
+    return term.role() == TermRole::Load ? load_factor_ : stiffness_factor_;
+  }
+  double pour(const EnergyTerm& term, Sink sink) const;  // scaled energy and derivatives at x_
   void renew_pattern();
   void split(const Points& nodal, Vector& free);
-  Points circulatory_force() const;  // at x_
+  void circulatory_force(const Points& x, Points& force) const;
+  double path_work();  // from anchor_ to x_; leaves the force at x_ in force_
+  void add_circulatory_tangent(Eigen::SparseMatrix<double>& h);
   Points exact_gradient(const Vector& q);
   double strained_force() const;
   void keep_prestress_reaction();
@@ -118,14 +134,17 @@ class Objective {
   std::vector<int> active_;                         // node of each block of unknowns
   std::vector<int> block_;                          // block of each node, -1 = wholly prescribed
   int free_count_ = 0;
+  double load_factor_ = 1, stiffness_factor_ = 1;
 
   enum class Circulatory { None, HeldDead, PathWork };
   Circulatory circulatory_ = Circulatory::None;
-  Points remainder_;           // circulatory force, 3 x node_count: held dead, or at the anchor of the path
-  Points anchor_;              // where the path has got to
-  double work_ = 0;            // of the circulatory force along the path so far
-  Points nodal_gradient_;      // work space
-  Points prestress_reaction_;  // of the reference state, at prescribed coordinates; empty: it has none
+  Points remainder_;       // circulatory force, 3 x node_count: held dead, or at the anchor of the path
+  Points anchor_;          // where the path has got to
+  Points force_, middle_;  // work space
+  std::vector<TangentBlock> skew_;  // half the tangent of the gradient, by blocks of unknowns
+  double work_ = 0;                 // of the circulatory force along the path so far
+  Points nodal_gradient_;           // work space
+  Points prestress_reaction_;       // of the reference state, at prescribed coordinates; empty: it has none
   double load_scale_ = 0, reaction_scale_ = 0, whole_reaction_scale_ = 0;
   double first_scale_ = 0, strained_scale_ = 0;
 

@@ -34,11 +34,15 @@ class Sink {
   bool wants_hessian() const { return hessian_ != nullptr; }
   Projection projection() const { return projection_; }
 
+  // Everything that is poured in from now on is multiplied by this factor (continuation in load or
+  // stiffness).
+  void set_factor(double factor) { factor_ = factor; }
+
   void add_gradient(int node, const Vec3& g) {
     double* to = gradient_ + 3 * static_cast<long>(node);
-    to[0] += g[0];
-    to[1] += g[1];
-    to[2] += g[2];
+    to[0] += factor_ * g[0];
+    to[1] += factor_ * g[1];
+    to[2] += factor_ * g[2];
   }
 
   // Adds the block of one element's local nodes (a, b); element_offset = element * width * width.
@@ -48,7 +52,7 @@ class Sink {
     if (slot.base < 0) return;
     double* to = hessian_ + slot.base;
     for (int c = 0; c < 3; ++c)
-      for (int r = 0; r < 3; ++r) to[c * slot.stride + r] += block(r, c);
+      for (int r = 0; r < 3; ++r) to[c * slot.stride + r] += factor_ * block(r, c);
   }
 
  private:
@@ -56,6 +60,7 @@ class Sink {
   double* hessian_ = nullptr;
   const BlockSlot* slots_ = nullptr;
   Projection projection_ = Projection::None;
+  double factor_ = 1;
 };
 
 }  // namespace coapt

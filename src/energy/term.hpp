@@ -32,6 +32,12 @@ struct TermCounters {
   long searches = 0;    // contact: how often the list was renewed
 };
 
+// One 3x3 block of the derivative of nodal forces: how the force on node `row` changes with node `column`.
+struct TangentBlock {
+  int row = 0, column = 0;
+  Eigen::Matrix3d value;  // [force/length]
+};
+
 class EnergyTerm {
  public:
   explicit EnergyTerm(std::string name) : name_(std::move(name)) {}
@@ -62,9 +68,16 @@ class EnergyTerm {
   // Adds the exact force minus the force of the potential to `force` (3 x node_count).
   virtual void add_circulatory_force(const Points& /*x*/, Points& /*force*/) const {}
 
-  // Chooses the potential anew for positions near x, to make the remainder vary as little as possible.
-  // Returns whether the stencils changed.
+  // Appends the blocks of the derivative of add_circulatory_force() with respect to x. Every block couples
+  // nodes that share an element of stencils().
+  virtual void add_circulatory_tangent(const Points& /*x*/, std::vector<TangentBlock>& /*blocks*/) const {}
+
+  // Chooses the potential anew. Both return whether the stencils changed.
+  //   renew: for positions near x, to make the remainder vary as little as possible (for solvers that hold
+  //          the remainder dead)
+  //   simplify: the one with the fewest elements (for solvers that take the remainder as it is)
   virtual bool renew(const Points& /*x*/) { return false; }
+  virtual bool simplify() { return false; }
 
   virtual TermCounters counters() const { return {stencils().count(), 0, 0}; }
 

@@ -1,9 +1,12 @@
 #include "optim/bfgs.hpp"
+#include "optim/carry_along.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
+#include "optim/newton.hpp"
 #include "optim/solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace coapt {
@@ -118,11 +121,19 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   result.q = problem.q0;
   Status status = Status::Converged;
   std::string note;
-  const int steps = problem.motion.positions ? std::max(1, problem.motion.steps) : 1;
+  const Continuation& continuation = problem.continuation;
+  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
+                              continuation.stiffness_steps});
   int step = 1;
   for (; step <= steps; ++step) {
-    if (problem.motion.positions)
-      objective.prescribe(problem.motion.positions(static_cast<double>(step) / steps));
+    const double t = static_cast<double>(step) / steps;
+    if (problem.motion.positions) {
+      const Points x = problem.motion.positions(t);
+      result.q = carried_along(objective, result.q, x);
+      objective.prescribe(x);
+    }
+    objective.scale(continuation.load_steps > 1 ? t : 1,
+                    continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
     const bool is_last = step == steps;
     status =
         settle(solver, objective, result.q, monitor,
@@ -131,14 +142,16 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
         status == Status::NonFinite || monitor.has_run_away())
       break;
   }
-  // A run that was cut short is judged, and kept, where it had got to.
+  // A run that was cut short is judged, with the full load, and kept, where it had got to.
+  objective.scale(1, 1);
   const bool is_on_the_way = step < steps;
   if (monitor.has_run_away())
     note =
         "no equilibrium was found, the shape grows without bound: a part is not held, or the load is too "
         "much for it";
   else if (is_on_the_way)
-    note = "step " + std::to_string(step) + " of " + std::to_string(steps) + " of the prescribed motion";
+    note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
+           " of the prescribed motion or of the continuation";
 
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
@@ -176,7 +189,9 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
 }
 
 SolverTable built_in_solvers() {
-  return {{"lbfgs", [] { return make_lbfgs(); }}, {"bfgs", [] { return make_bfgs(); }}};
+  return {{"lbfgs", [] { return make_lbfgs(); }},
+          {"bfgs", [] { return make_bfgs(); }},
+          {"newton", [] { return make_newton(); }}};
 }
 
 }  // namespace coapt

@@ -69,10 +69,19 @@ struct MotionPath {
   std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
 };
 
+// Ways to the full problem by easier ones. All advance together with the prescribed motion, in as many steps
+// as the one that wants most.
+struct Continuation {
+  int load_steps = 1;          // equal steps of all loads; 1: the full load at once
+  int stiffness_steps = 1;     // steps of all other energies, in equal ratios; 1: the full stiffness at once
+  double first_stiffness = 1;  // factor before the first step
+};
+
 struct Problem {
   Objective& objective;
   Vector q0;
-  MotionPath motion;
+  MotionPath motion = {};
+  Continuation continuation = {};
 };
 
 struct Result {

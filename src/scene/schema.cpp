@@ -56,7 +56,7 @@ KeySpec solver_key() {
           .object = {.keys = {{.name = "type",
                                .kind = KeyKind::Choice,
                                .fallback = "\"lbfgs\"",
-                               .choices = {"lbfgs", "bfgs", "ceres", "nlopt"},
+                               .choices = {"newton", "lbfgs", "bfgs", "ceres", "nlopt"},
                                .doc = "The method; ceres and nlopt need a build that has them."},
                               {.name = "tolerance",
                                .fallback = "1e-6",

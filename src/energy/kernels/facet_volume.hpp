@@ -11,6 +11,13 @@
 
 namespace coapt {
 
+// The matrix of u -> v x u.
+inline Eigen::Matrix3d cross_matrix(const Vec3& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return m;
+}
+
 struct FacetVolume {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "load_pressure";
@@ -43,11 +50,10 @@ struct FacetVolume {
     return sixth * r[0].dot(r12);
   }
 
- private:
-  static Eigen::Matrix3d cross_matrix(const Vec3& v) {
-    Eigen::Matrix3d m;
-    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-    return m;
+  // Exact: on inner edges the facets' indefinite parts cancel, which a projection of each would spoil.
+  static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 9>& x,
+                                   Eigen::Vector<double, 9>* g, Eigen::Matrix<double, 9, 9>* H) {
+    return evaluate(rest, x, g, H);
   }
 };
 
