@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(coapt_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/coapt)
 
-foreach(target IN ITEMS coapt coapt_ceres coapt_nlopt)
+foreach(target IN ITEMS coapt coapt_cholmod coapt_ceres coapt_nlopt)
   if(TARGET ${target})
     install(TARGETS ${target} EXPORT coaptTargets
             ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -22,4 +22,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/coaptConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/coaptConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/coaptConfig.cmake ${PROJECT_BINARY_DIR}/coaptConfigVersion.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindOpenBLAS.cmake
         DESTINATION ${coapt_config_dir})

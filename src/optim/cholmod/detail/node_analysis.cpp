@@ -1,0 +1,82 @@
+#include "optim/cholmod/detail/node_analysis.hpp"
+
+#include "core/error.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <new>
+#include <numeric>
+
+namespace coapt::detail {
+namespace {
+
+cholmod_sparse view(NodeGraph& graph) {
+  cholmod_sparse pattern{};
+  pattern.nrow = pattern.ncol = graph.size();
+  pattern.nzmax = graph.row.size();
+  pattern.p = graph.start.data();
+  pattern.i = graph.row.data();
+  pattern.stype = -1;
+  pattern.itype = CHOLMOD_INT;
+  pattern.xtype = CHOLMOD_PATTERN;
+  pattern.dtype = CHOLMOD_DOUBLE;
+  pattern.sorted = pattern.packed = 1;
+  return pattern;
+}
+
+int* new_array(size_t size, cholmod_common& common) {
+  auto* array = static_cast<int*>(cholmod_malloc(size, sizeof(int), &common));
+  if (array == nullptr) throw std::bad_alloc();
+  return array;
+}
+
+// Every column of the node factor stands for three of the factor, every entry for a full 3x3 block.
+cholmod_factor* expand(const cholmod_factor& nodes, cholmod_common& common) {
+  if (9 * nodes.xsize > static_cast<size_t>(std::numeric_limits<int>::max()))
+    throw InputError("factorisation: the factor has " + std::to_string(9 * nodes.xsize) +
+                     " entries, more than 32-bit indices can count");
+  cholmod_factor* factor = cholmod_allocate_factor(3 * nodes.n, &common);
+  if (factor == nullptr) throw std::bad_alloc();
+  factor->ordering = CHOLMOD_NATURAL;
+  factor->is_ll = factor->is_super = factor->is_monotonic = 1;
+  factor->nsuper = nodes.nsuper;
+  factor->ssize = 3 * nodes.ssize;
+  factor->xsize = 9 * nodes.xsize;
+  factor->maxcsize = 9 * nodes.maxcsize;
+  factor->maxesize = 3 * nodes.maxesize;
+
+  const auto scaled = [&](const void* from, size_t size, int scale) {
+    int* to = new_array(size, common);
+    const int* source = static_cast<const int*>(from);
+    std::transform(source, source + size, to, [&](int value) { return scale * value; });
+    return to;
+  };
+  factor->super = scaled(nodes.super, nodes.nsuper + 1, 3);
+  factor->pi = scaled(nodes.pi, nodes.nsuper + 1, 3);
+  factor->px = scaled(nodes.px, nodes.nsuper + 1, 9);
+  int* rows = new_array(factor->ssize, common);
+  factor->s = rows;
+  const int* node_rows = static_cast<const int*>(nodes.s);
+  for (size_t k = 0; k < nodes.ssize; ++k)
+    for (int c = 0; c < 3; ++c) *rows++ = 3 * node_rows[k] + c;
+  return factor;
+}
+
+}  // namespace
+
+cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& order,
+                              cholmod_common& common) {
+  common.nmethods = 1;
+  common.method[0].ordering = ordering;
+  common.postorder = 1;
+  cholmod_sparse pattern = view(graph);
+  const auto release = [&](cholmod_factor* factor) { cholmod_free_factor(&factor, &common); };
+  const std::unique_ptr<cholmod_factor, decltype(release)> nodes(cholmod_analyze(&pattern, &common), release);
+  if (nodes == nullptr) throw std::bad_alloc();
+  const int* permutation = static_cast<const int*>(nodes->Perm);
+  order.assign(permutation, permutation + graph.size());
+  return expand(*nodes, common);
+}
+
+}  // namespace coapt::detail

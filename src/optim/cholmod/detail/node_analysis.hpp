@@ -1,0 +1,17 @@
+// Symbolic factorisation on the graph of nodes, a ninth of the matrix, carried over to the unknowns.
+#pragma once
+
+#include "optim/permuted_matrix.hpp"
+
+#include <cholmod.h>
+#include <vector>
+
+namespace coapt::detail {
+
+// order: to be filled with the node that comes k-th; postordered, so that supernodes are contiguous.
+// Returns a supernodal factor without values for the matrix of unknowns in that order. Throws InputError if
+// it has more entries than CHOLMOD's 32-bit indices can count.
+cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& order,
+                              cholmod_common& common);
+
+}  // namespace coapt::detail
