@@ -1,26 +1,28 @@
 // Bending of a sheet, lumped in the hinge between two triangles.
-//   W = k/2 (theta - theta0)^2,   k = D |e|^2 / (A1 + A2)
-// theta the signed angle between the facets' normals (positive on a ridge), theta0 that at rest, |e| length
-// of the common edge and A1, A2 areas of the facets at rest, D plate stiffness [force x length]. A sheet
-// rolled to a cylinder so has, on the average over directions, the energy D/2 kappa^2 per area of plate
-// theory; on regular meshes it has exactly that (docs/theory.md tells what was measured on irregular ones).
-// The law is linear in theta rather than in 2 tan(theta/2), which would lock an edge long before two sheets
-// meet in a sharp fold and make one facet's fold dominate the stiffness. theta - theta0 is taken in [-pi,
-// pi]: W is continuous everywhere, with a kink where the fold is half a turn from rest (through the sheet
-// itself). Nodes: the edge x0 x1, then the corners opposite, x2 in the facet (x0, x1, x2) and x3 in (x1, x0,
-// x3). A facet without height has no normal: the hinge then has no moment and keeps a finite energy. Sources:
-// Grinspun et al. 2003 (hinges), Seung & Nelson 1988 (the factor), Tamstorf & Grinspun 2013 (that the Hessian
-// has a closed form; the one below is our own derivation). Never throws.
+//   W = k/2 |a1 - R a2|^2,   k = D |e|^2 / (A1 + A2),   a_i = n_i / (2 A_i)
+// n1 = e x s1 and n2 = s2 x e the facets' normals with twice their current areas, A_i the areas at rest, R the
+// rotation about the edge by the rest angle theta0, |e| the edge's length at rest, D plate stiffness
+// [force x length]. With J_i = |a_i| the facets' area ratios and theta the fold (positive on a ridge) this is
+//   W = k ( (J1 - J2)^2/2 + J1 J2 (1 - cos(theta - theta0)) ),
+// so that a sheet rolled without stretch to a cylinder has, on the average over directions, the energy
+// D/2 kappa^2 per area of plate theory (docs/theory.md tells what was measured on irregular meshes).
+// Why not the angle itself: where a membrane that bears no compression gathers, its facets lose their area and
+// an angle loses its meaning; its gradient, one over the height, then grows without bound. This law is a
+// polynomial but for |e|: finite with all its derivatives wherever the nodes are, also for facets without area
+// and at a fold of half a turn. Its price is (J1 - J2)^2, a stiffness of D against gradients of stretch, which
+// is of the order of the terms (thickness over length, squared) that plate theory leaves out anyway.
+// Nodes: the edge x0 x1, then the corners opposite: x2 in the facet (x0, x1, x2) and x3 in (x1, x0, x3).
+// Sources: Grinspun et al. 2003 (hinges), Seung & Nelson 1988 (|n1 - n2|^2 and the factor); area-weighted
+// normals and rest angle are our own. Never throws.
 #pragma once
 
 #include "core/types.hpp"
+#include "energy/kernels/cross_matrix.hpp"
 #include "energy/term.hpp"
 
 #include <Eigen/Dense>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace coapt {
 
@@ -33,129 +35,132 @@ struct BendingHinge {
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
   struct Rest {
-    double stiffness = 0;  // k [force x length]
-    double angle = 0;      // theta0
+    double stiffness = 0;      // k [force x length]
+    double angle = 0;          // theta0
+    double area1 = 0, area2 = 0;  // twice the areas of the facets [length^2]
   };
 
   // stiffness: D. Pre: the facets are not degenerate at rest (the mesh check refuses those).
   static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& X3, double stiffness) {
     const Vec3 e = X1 - X0;
-    const double areas = 0.5 * (e.cross(X2 - X0).norm() + e.cross(X3 - X0).norm());
-    return {stiffness * e.squaredNorm() / areas, angle(X0, X1, X2, X3)};
+    const double area1 = e.cross(X2 - X0).norm(), area2 = e.cross(X3 - X0).norm();
+    return {2 * stiffness * e.squaredNorm() / (area1 + area2), angle(X0, X1, X2, X3), area1, area2};
   }
 
-  // theta in [-pi, pi]; 0 where a facet has no area.
+  // theta in [-pi, pi]; 0 where a facet has no area. The sine comes from the height of x3 over the first
+  // facet: exact to the rounding of the coordinates in a nearly flat sheet.
   static double angle(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
-    const Vec3 e = x1 - x0, a = x2 - x0, b = x3 - x0;
-    return angle(e.norm(), e.cross(a), b.cross(e), b);
+    const Vec3 e = x1 - x0, n1 = e.cross(x2 - x0), n2 = (x3 - x0).cross(e);
+    return std::atan2(-e.norm() * n1.dot(x3 - x0), n1.dot(n2));
   }
 
   static double evaluate(const Rest& rest, const Vector12& x, Vector12* g, Matrix12* H) {
-    return evaluate(rest, x, g, H, true);
-  }
-
-  // Without the curvature of the angle itself: k grad(theta) grad(theta)^T.
-  static double evaluate_projected(const Rest& rest, const Vector12& x, Vector12* g, Matrix12* H) {
     return evaluate(rest, x, g, H, false);
   }
 
+  // With the positive part of the normals' own curvature in closed form, and without that of the rest angle.
+  static double evaluate_projected(const Rest& rest, const Vector12& x, Vector12* g, Matrix12* H) {
+    return evaluate(rest, x, g, H, true);
+  }
+
  private:
-  // n1, n2: normals of any length. The sine comes from the height of x3 over the first facet, b . n1: exact
-  // to the rounding of the coordinates in a nearly flat sheet, where a cross product of normals would not be.
-  static double angle(double edge, const Vec3& n1, const Vec3& n2, const Vec3& b) {
-    return std::atan2(-edge * n1.dot(b), n1.dot(n2));
-  }
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;  // by the edge vectors e, s1, s2
 
-  // One facet seen from the hinge, whose corners move the angle by c_a n / h.
-  struct Facet {
-    Vec3 normal, across;  // unit; across: in the facet, from the edge to the opposite corner
-    double height = 0;
-    double c[3];  // x0, x1, opposite corner
-  };
-
-  // Below this height, relative to the edges, the direction of the normal is round-off.
-  static constexpr double kFlatness = 1e-12;
-
-  static bool is_degenerate(const Vec3& normal, const Vec3& e, const Vec3& side) {
-    const double longest = std::max(e.squaredNorm(), side.squaredNorm());
-    return normal.norm() <= kFlatness * longest;
-  }
-
-  // turn: 1 for the facet on the left of the edge, -1 on the right.
-  static Facet facet(const Vec3& normal, const Vec3& direction, double edge, const Vec3& side, double turn) {
-    Facet f;
-    const double length = normal.norm();
-    f.normal = normal / length;
-    f.height = length / edge;
-    f.across = turn * f.normal.cross(direction);
-    const double t = side.dot(direction) / edge;
-    f.c[0] = 1 - t;
-    f.c[1] = t;
-    f.c[2] = -1;
-    return f;
-  }
-
-  static double evaluate(const Rest& rest, const Vector12& x, Vector12* g, Matrix12* H, bool is_exact) {
-    const Vec3 x0 = x.segment<3>(0);
-    const Vec3 e = x.segment<3>(3) - x0, a = x.segment<3>(6) - x0, b = x.segment<3>(9) - x0;
-    const Vec3 n1 = e.cross(a), n2 = b.cross(e);
-    if (is_degenerate(n1, e, a) || is_degenerate(n2, e, b)) {
-      if (g != nullptr) g->setZero();
-      if (H != nullptr) H->setZero();
-      return 0.5 * rest.stiffness * rest.angle * rest.angle;
-    }
-    const double edge = e.norm();
-    double fold = angle(edge, n1, n2, b) - rest.angle;
-    if (std::abs(fold) > std::numbers::pi) fold -= std::copysign(2 * std::numbers::pi, fold);
-    const double energy = 0.5 * rest.stiffness * fold * fold;
+  static double evaluate(const Rest& rest, const Vector12& x, Vector12* g, Matrix12* H, bool is_projected) {
+    const Vec3 e = x.segment<3>(3) - x.segment<3>(0), s1 = x.segment<3>(6) - x.segment<3>(0),
+               s2 = x.segment<3>(9) - x.segment<3>(0);
+    const Vec3 n1 = e.cross(s1), n2 = s2.cross(e);
+    const Vec3 a1 = n1 / rest.area1, a2 = n2 / rest.area2;
+    // k |a1 - R a2|^2 / 2 = k |a1 - a2|^2 / 2 + k (1 - cos theta0) a1.a2 + k sin theta0 |e| det / (4 A1 A2)
+    const double half_sine = std::sin(0.5 * rest.angle);
+    const double k = rest.stiffness, kc = 2 * k * half_sine * half_sine;
+    const double ks = k * std::sin(rest.angle) / (rest.area1 * rest.area2);
+    const double edge = e.norm(), det = n1.dot(s2);
+    const Vec3 difference = a1 - a2;
+    const double energy = 0.5 * k * difference.squaredNorm() + kc * a1.dot(a2) + ks * edge * det;
     if (g == nullptr) return energy;
 
-    const Vec3 direction = e / edge;
-    const Facet facets[2] = {facet(n1, direction, edge, a, 1), facet(n2, direction, edge, b, -1)};
-    Vector12 slope;  // of theta
-    const Vec3 q1 = facets[0].normal / facets[0].height, q2 = facets[1].normal / facets[1].height;
-    slope.segment<3>(0) = facets[0].c[0] * q1 + facets[1].c[0] * q2;
-    slope.segment<3>(3) = facets[0].c[1] * q1 + facets[1].c[1] * q2;
-    slope.segment<3>(6) = -q1;
-    slope.segment<3>(9) = -q2;
-    const double moment = rest.stiffness * fold;
-    *g = moment * slope;
+    const Vec3 v1 = (k * difference + kc * a2) / rest.area1;   // dW/dn1 without the last part
+    const Vec3 v2 = (-k * difference + kc * a1) / rest.area2;  // dW/dn2
+    const Vec3 direction = edge > 0 ? Vec3(e / edge) : Vec3::Zero();
+    const Vec3 by_e = s1.cross(s2), by_s1 = s2.cross(e), by_s2 = n1;  // of det
+    const Vec3 ge = s1.cross(v1) + v2.cross(s2) + ks * (det * direction + edge * by_e);
+    const Vec3 g1 = v1.cross(e) + ks * edge * by_s1, g2 = e.cross(v2) + ks * edge * by_s2;
+    g->segment<3>(0) = -(ge + g1 + g2);
+    g->segment<3>(3) = ge;
+    g->segment<3>(6) = g1;
+    g->segment<3>(9) = g2;
     if (H == nullptr) return energy;
-    H->noalias() = (rest.stiffness * slope) * slope.transpose();
-    if (!is_exact) return energy;
-    add_curvature(facets[0], direction, edge, moment, 6, *H);
-    add_curvature(facets[1], direction, edge, moment, 9, *H);
+
+    Matrix9 h;
+    const Eigen::Matrix3d E = cross_matrix(e), S1 = cross_matrix(s1), S2 = cross_matrix(s2);
+    add_squares(rest, k, kc, E, S1, S2, h);
+    add_normal_curvature(v1, 3, 1, is_projected, h);
+    add_normal_curvature(v2, 6, -1, is_projected, h);
+    if (!is_projected && ks != 0) {
+      const double c = ks * edge;
+      Eigen::Vector<double, 9> slope;
+      slope << by_e, by_s1, by_s2;
+      const Eigen::Matrix<double, 3, 9> rows = ks * direction * slope.transpose();
+      h.topRows<3>() += rows;
+      h.leftCols<3>() += rows.transpose();
+      if (edge > 0)
+        h.block<3, 3>(0, 0) +=
+            (ks * det / edge) * (Eigen::Matrix3d::Identity() - direction * direction.transpose());
+      h.block<3, 3>(0, 3) -= c * S2;
+      h.block<3, 3>(3, 0) += c * S2;
+      h.block<3, 3>(0, 6) += c * S1;
+      h.block<3, 3>(6, 0) -= c * S1;
+      h.block<3, 3>(3, 6) -= c * E;
+      h.block<3, 3>(6, 3) += c * E;
+    }
+    expand(h, *H);
     return energy;
   }
 
-  // Adds `moment` times the share of one facet in the Hessian of theta. With n the normal, m across, d along
-  // the edge, h the height, epsilon = (-1, 1, 0) and c as above, the derivative of c_a n/h by corner b is
-  //   (c_a c_b/h^2) (m n^T + n m^T) - (c_a eps_b d n^T + eps_a c_b n d^T)/(h |e|) + eps_a eps_b n m^T/|e|^2.
-  // The last is taken symmetrically: the skew parts of the two facets cancel.
-  static void add_curvature(const Facet& f, const Vec3& direction, double edge, double moment, int opposite,
-                            Matrix12& H) {
-    const Eigen::Matrix3d mn = f.across * f.normal.transpose();
-    const Eigen::Matrix3d bend = moment * (mn + mn.transpose());
-    const Eigen::Matrix3d twist = (moment / (f.height * edge)) * (direction * f.normal.transpose());
-    const double per_height = 1 / (f.height * f.height), per_edge = 0.5 / (edge * edge);
-    const auto block = [&](int a, int b) { return H.block<3, 3>(a, b); };
-    const double c0 = f.c[0], c1 = f.c[1];
-    const Eigen::Matrix3d twist_sum = twist + twist.transpose();
-    block(0, 0) += (c0 * c0 * per_height + per_edge) * bend + c0 * twist_sum;
-    block(3, 3) += (c1 * c1 * per_height + per_edge) * bend - c1 * twist_sum;
-    block(opposite, opposite) += per_height * bend;
-    // a = x1, b = x0: eps_a = 1, eps_b = -1.
-    const Eigen::Matrix3d edge_block =
-        (c0 * c1 * per_height - per_edge) * bend + c1 * twist - c0 * twist.transpose();
-    block(3, 0) += edge_block;
-    block(0, 3) += edge_block.transpose();
-    // a = opposite, c_a = -1, eps_a = 0.
-    const Eigen::Matrix3d to_first = (-c0 * per_height) * bend - twist;
-    const Eigen::Matrix3d to_second = (-c1 * per_height) * bend + twist;
-    block(opposite, 0) += to_first;
-    block(0, opposite) += to_first.transpose();
-    block(opposite, 3) += to_second;
-    block(3, opposite) += to_second.transpose();
+  // k |da1 - da2|^2 + 2 kc da1.da2, positive semidefinite for kc <= k: with a1' = (-[s1], [e], 0) / area1 and
+  // a2' = ([s2], 0, -[e]) / area2 by (e, s1, s2), and kc a1.a2 split so.
+  static void add_squares(const Rest& rest, double k, double kc, const Eigen::Matrix3d& E,
+                          const Eigen::Matrix3d& S1, const Eigen::Matrix3d& S2, Matrix9& h) {
+    const double k11 = k / (rest.area1 * rest.area1), k22 = k / (rest.area2 * rest.area2),
+                 k12 = (kc - k) / (rest.area1 * rest.area2);
+    // Products of cross matrices: [u][v] = v u^T - (u.v) I; transposes change the sign.
+    const Eigen::Matrix3d EE = E * E, ES1 = E * S1, ES2 = E * S2, S1S2 = S1 * S2;
+    const Eigen::Matrix3d cross = k12 * (S1S2 + S1S2.transpose());
+    h.block<3, 3>(0, 0) = -k11 * S1 * S1 - k22 * S2 * S2 + cross;
+    h.block<3, 3>(3, 3) = -k11 * EE;
+    h.block<3, 3>(6, 6) = -k22 * EE;
+    h.block<3, 3>(3, 6) = k12 * EE;
+    h.block<3, 3>(6, 3) = k12 * EE;
+    h.block<3, 3>(3, 0) = k11 * ES1 - k12 * ES2;
+    h.block<3, 3>(6, 0) = k22 * ES2 - k12 * ES1;
+    h.block<3, 3>(0, 3) = h.block<3, 3>(3, 0).transpose();
+    h.block<3, 3>(0, 6) = h.block<3, 3>(6, 0).transpose();
+  }
+
+  // v.n'' of the normal n = turn e x s: blocks -turn [v] and its transpose, with the eigenvalues |v| and -|v|,
+  // each twice.
+  static void add_normal_curvature(const Vec3& v, int s, double turn, bool is_projected, Matrix9& h) {
+    Eigen::Matrix3d block = -turn * cross_matrix(v);
+    if (is_projected) {
+      const double length = v.norm();
+      if (length == 0) return;
+      block *= 0.5;
+      const Eigen::Matrix3d across = 0.5 * (length * Eigen::Matrix3d::Identity() - v * v.transpose() / length);
+      h.block<3, 3>(0, 0) += across;
+      h.block<3, 3>(s, s) += across;
+    }
+    h.block<3, 3>(0, s) += block;
+    h.block<3, 3>(s, 0) += block.transpose();
+  }
+
+  // From the edge vectors, all of which start at x0, to the nodes.
+  static void expand(const Matrix9& h, Matrix12& H) {
+    H.bottomRightCorner<9, 9>() = h;
+    const Eigen::Matrix<double, 3, 9> sum = -(h.topRows<3>() + h.middleRows<3>(3) + h.bottomRows<3>());
+    H.topRightCorner<3, 9>() = sum;
+    H.bottomLeftCorner<9, 3>() = sum.transpose();
+    H.topLeftCorner<3, 3>() = -(sum.leftCols<3>() + sum.middleCols<3>(3) + sum.rightCols<3>());
   }
 };
 

@@ -5,18 +5,12 @@
 // force is the exact follower pressure; on an open rim it is not (see load_pressure.hpp). Never throws.
 #pragma once
 
+#include "energy/kernels/cross_matrix.hpp"
 #include "energy/term.hpp"
 
 #include <Eigen/Dense>
 
 namespace coapt {
-
-// The matrix of u -> v x u.
-inline Eigen::Matrix3d cross_matrix(const Vec3& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-  return m;
-}
 
 struct FacetVolume {
   static constexpr int kNodes = 3;
