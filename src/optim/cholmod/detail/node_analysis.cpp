@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <new>
@@ -70,6 +71,10 @@ cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& 
   common.nmethods = 1;
   common.method[0].ordering = ordering;
   common.postorder = 1;
+  // Merging of supernodes by their columns, here nodes, and the share of zeros that it may bring in. Measured
+  // on valves of 625 to 40,000 triangles, with and without bending.
+  std::copy_n(std::array<size_t, 3>{2, 8, 24}.data(), 3, common.nrelax);
+  std::copy_n(std::array<double, 3>{0.6, 0.2, 0.05}.data(), 3, common.zrelax);
   cholmod_sparse pattern = view(graph);
   const auto release = [&](cholmod_factor* factor) { cholmod_free_factor(&factor, &common); };
   const std::unique_ptr<cholmod_factor, decltype(release)> nodes(cholmod_analyze(&pattern, &common), release);
