@@ -36,18 +36,20 @@ struct FacetVolume {
       H->setZero();
       for (int a = 0; a < 3; ++a) {  // d(r_b x r_c)/dr_b = -[r_c x], d(r_b x r_c)/dr_c = [r_b x]
         const int b = (a + 1) % 3, c = (a + 2) % 3;
-        H->block<3, 3>(3 * a, 3 * b) = -sixth * cross_matrix(r[c]);
-        H->block<3, 3>(3 * a, 3 * c) = sixth * cross_matrix(r[b]);
+        add_cross_matrix(sixth * r[c], 3 * b, 3 * a, *H);
       }
     }
     return sixth * r[0].dot(r12);
   }
 
  private:
-  static Eigen::Matrix3d cross_matrix(const Vec3& v) {
-    Eigen::Matrix3d m;
-    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-    return m;
+  // [v x] at (row, column) and its transpose across the diagonal.
+  static void add_cross_matrix(const Vec3& v, int row, int column, Eigen::Matrix<double, 9, 9>& H) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      H(row + i, column + j) = H(column + j, row + i) = -v[k];
+      H(row + j, column + i) = H(column + i, row + j) = v[k];
+    }
   }
 };
 
