@@ -13,7 +13,7 @@ namespace coapt::cli {
 namespace {
 
 struct Arguments {
-  std::string what, folder, contact = "none", pressure;
+  std::string what, folder, contact = "none", pressure, membrane = "tension_field";
   int triangles = 2500;
   unsigned seed = 0;
 };
@@ -24,6 +24,12 @@ void add_common_options(CLI::App& command, Arguments& arguments) {
       ->check(CLI::IsMember({"none", "facet"}))
       ->capture_default_str();
   command
+      .add_option("--membrane", arguments.membrane,
+                  "Leaflets of a valve: a tension field with bending, or for comparison one that resists "
+                  "compression")
+      ->check(CLI::IsMember({"tension_field", "stvk"}))
+      ->capture_default_str();
+  command
       .add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")
       ->check(CLI::IsMember({"follower", "frozen", "volume", "field"}));
 }
@@ -31,6 +37,7 @@ void add_common_options(CLI::App& command, Arguments& arguments) {
 ImportOptions import_options(const Arguments& arguments) {
   ImportOptions options;
   options.contact = arguments.contact;
+  options.membrane = arguments.membrane;
   if (!arguments.pressure.empty()) options.pressure_model = arguments.pressure;
   return options;
 }

@@ -33,20 +33,36 @@ Eigen::Vector2d principal_values(const Eigen::Matrix2d& m) {
   return {mean + radius, mean - radius};
 }
 
+// A membrane of zero thickness or modulus carries its prestress alone, and is taut.
+void add_stress(const Model& model, int t, Fields& fields) {
+  const MembraneProperties& m = model.membrane[static_cast<size_t>(t)];
+  const Eigen::Vector3i c = model.mesh.triangles.col(t);
+  MembraneRegime& regime = fields.regime[static_cast<size_t>(t)];
+  if (m.young == 0 || m.thickness == 0) {
+    fields.principal_stress.col(t).setConstant(m.thickness > 0 ? m.prestress / m.thickness : 0);
+    regime = m.prestress > 0 ? MembraneRegime::Taut : MembraneRegime::Slack;
+    return;
+  }
+  const Vec3 X0 = model.X.col(c[0]), X1 = model.X.col(c[1]), X2 = model.X.col(c[2]);
+  const CstTensionField::Rest rest = CstTensionField::rest(X0, X1, X2, m.young, m.poisson, m.thickness,
+                                                           m.prestress, m.relaxes ? m.residual : 1);
+  CstVector x;
+  x << fields.x.col(c[0]), fields.x.col(c[1]), fields.x.col(c[2]);
+  fields.principal_stress.col(t) =
+      CstTensionField::principal_stress(rest, x) / (cst_shape(X0, X1, X2).area * m.thickness);
+  regime = CstTensionField::regime(rest, x);
+}
+
 void add_strain_and_stress(const Model& model, Fields& fields) {
   const Triangles& triangles = model.mesh.triangles;
   const bool has_membrane = !model.membrane.empty();
   fields.principal_strain.resize(2, triangles.cols());
   fields.principal_stress.resize(2, has_membrane ? triangles.cols() : 0);
+  fields.regime.resize(has_membrane ? static_cast<size_t>(triangles.cols()) : 0);
   for (int t = 0; t < triangles.cols(); ++t) {
     const Eigen::Vector2d green = principal_values(green_strain(model.X, fields.x, triangles.col(t)));
     fields.principal_strain.col(t) = (1 + 2 * green.array()).max(0).sqrt() - 1;
-    if (!has_membrane) continue;
-    const MembraneProperties& m = model.membrane[t];
-    const double prestress = m.thickness > 0 ? m.prestress / m.thickness : 0;
-    fields.principal_stress.col(t) =
-        (m.young / (1 - m.poisson * m.poisson) * m.poisson * green.sum() + prestress) +
-        (m.young / (1 + m.poisson) * green.array());
+    if (has_membrane) add_stress(model, t, fields);
   }
 }
 

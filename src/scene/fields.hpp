@@ -2,25 +2,29 @@
 // a reference, force in each line.
 #pragma once
 
+#include "energy/kernels/cst_tension_field.hpp"
 #include "scene/model.hpp"
 
 namespace coapt {
 
 struct Fields {
-  Points x;                           // positions, 3 x node_count, relative to the model's origin [mm]
-  Points displacement;                // x - X, 3 x node_count [mm]
-  Eigen::Matrix2Xd principal_strain;  // engineering strain (stretch - 1), largest first, per triangle
-  Eigen::Matrix2Xd principal_stress;  // second Piola-Kirchhoff [MPa], largest first, per triangle; no
-                                      // columns for a model without membrane properties
-  Vector gap;                         // per mesh vertex, see vertex_gaps [mm]
-  std::vector<char> is_contact;       // per mesh vertex: gap <= contact_distance
-  double contact_distance = 0;        // [mm]
-  Vector reference_distance;          // per mesh vertex [mm]; empty without a reference
-  Vector line_force;                  // tension of each line of the model [N]; negative for compression
+  Points x;                            // positions, 3 x node_count, relative to the model's origin [mm]
+  Points displacement;                 // x - X, 3 x node_count [mm]
+  Eigen::Matrix2Xd principal_strain;   // engineering strain (stretch - 1), largest first, per triangle
+  Eigen::Matrix2Xd principal_stress;   // second Piola-Kirchhoff [MPa], largest first, per triangle; no
+                                       // columns for a model without membrane properties
+  std::vector<MembraneRegime> regime;  // per triangle; empty for a model without membrane properties
+  Vector gap;                          // per mesh vertex, see vertex_gaps [mm]
+  std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance
+  double contact_distance = 0;         // [mm]
+  Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
+  Vector line_force;                   // tension of each line of the model [N]; negative for compression
 };
 
 // Strains are those of the constant-strain triangle from X to x; stresses follow from the model's membrane
-// properties by the law of cst_stvk (energy/kernels/cst_stvk.hpp), the prestress included.
+// properties by the law of the membrane term (energy/kernels/cst_stvk.hpp, cst_tension_field.hpp), the
+// prestress included. The regime of a membrane that resists compression is that in which a tension field
+// would be.
 Fields compute_fields(const Model& model, const Points& x);
 
 // Distance from each vertex to the nearest facet that is not its own neighbourhood: facets with a corner

@@ -40,6 +40,8 @@ void check_options(const ImportOptions& options) {
                       "\"; a valve's free edge moves, so it takes one of follower, frozen, field");
   if (options.contact != "none" && options.contact != "facet")
     defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, facet");
+  if (options.membrane != "tension_field" && options.membrane != "stvk")
+    defects.push_back("membrane: read \"" + options.membrane + "\"; expected one of tension_field, stvk");
   if (!defects.empty()) throw InputError(defects);
 }
 
@@ -89,9 +91,15 @@ std::string boundary_text(const Valve& valve) {
 std::string terms_text(const Valve& valve, const ImportOptions& options) {
   const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
   std::vector<std::string> terms;
-  terms.push_back("    { \"type\": \"cst_stvk\", \"name\": \"leaflets\", \"young\": " +
-                  quoted(options.young) + ", \"poisson\": " + digits(options.poisson) +
+  const bool relaxes = options.membrane == "tension_field";
+  terms.push_back("    { \"type\": " + quoted("cst_" + options.membrane) +
+                  ", \"name\": \"leaflets\", \"young\": " + quoted(options.young) +
+                  ", \"poisson\": " + digits(options.poisson) +
                   ",\n      \"thickness\": " + quoted(digits(thickness) + " mm") + " }");
+  if (relaxes)
+    terms.push_back(
+        "    // Plate stiffness of the same sheet: it decides how the wrinkled parts lie.\n"
+        "    { \"type\": \"bending\" }");
   if (!valve.chords.chords.empty())
     terms.push_back(
         "    // Tension only; rest lengths and cross-sections come from the network.\n"

@@ -10,7 +10,8 @@
 namespace coapt {
 
 struct ImportOptions {
-  std::string young = "1 MPa";  // of the leaflets, as written into the scene
+  std::string membrane = "tension_field";  // tension_field with bending, or stvk for comparison
+  std::string young = "1 MPa";             // of the leaflets, as written into the scene
   double poisson = 0.45;
   std::string chord_young = "40 MPa";       // Hammer et al. 2011
   std::string pressure = "";                // empty: the valve's, else 120 mmHg

@@ -113,6 +113,20 @@ void measure_annulus(const Model& model, const Fields& fields, const std::vector
   metrics.tenting_height_mm = tenting_height(frame, model, fields);
 }
 
+void measure_regimes(const Model& model, const Fields& fields, Metrics& metrics) {
+  if (fields.regime.empty()) return;
+  const auto area_in = [&](MembraneRegime regime) {
+    double area = 0;
+    for (int t = 0; t < model.mesh.triangle_count(); ++t)
+      if (fields.regime[static_cast<size_t>(t)] == regime)
+        area += area_vector(model.X, model.mesh.triangles.col(t)).norm();
+    return area;
+  };
+  metrics.taut_area_mm2 = area_in(MembraneRegime::Taut);
+  metrics.wrinkled_area_mm2 = area_in(MembraneRegime::Wrinkled);
+  metrics.slack_area_mm2 = area_in(MembraneRegime::Slack);
+}
+
 void measure_lines(const Fields& fields, Metrics& metrics) {
   if (fields.line_force.size() == 0) return;
   metrics.max_chord_force_n = fields.line_force.maxCoeff();
@@ -134,6 +148,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields) {
     metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
   }
   measure_lines(fields, metrics);
+  measure_regimes(model, fields, metrics);
 
   const auto annulus = model.sets.find("annulus");
   const bool has_annulus = annulus != model.sets.end() && annulus->second.size() >= 3;
@@ -176,6 +191,10 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
        m.tenting_height_mm},
       {"leaflet_area_open_mm2", "mm2", "area of the reference mesh", false, m.leaflet_area_open_mm2},
       {"leaflet_area_closed_mm2", "mm2", "area of the closed mesh", false, m.leaflet_area_closed_mm2},
+      {"taut_area_mm2", "mm2", "reference area of the membrane in tension both ways", false, m.taut_area_mm2},
+      {"wrinkled_area_mm2", "mm2", "reference area of the membrane in tension one way", false,
+       m.wrinkled_area_mm2},
+      {"slack_area_mm2", "mm2", "reference area of the membrane without tension", false, m.slack_area_mm2},
       {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
        m.max_principal_strain},
       {"max_chord_force_n", "N", "greatest tension of a chord or cable", false, m.max_chord_force_n},

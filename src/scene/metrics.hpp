@@ -20,7 +20,8 @@ struct Metrics {
   std::optional<double> tenting_height_mm;  // greatest depth of the coaptation line below the annulus plane
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
-  std::optional<double> max_principal_strain;  // stretch - 1
+  std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
+  std::optional<double> max_principal_strain;                              // stretch - 1
   std::optional<double> max_chord_force_n;
   std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;

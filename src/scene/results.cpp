@@ -137,6 +137,10 @@ VtpSurface vtp_surface(const Model& model, const Fields& fields) {
   surface.triangle_arrays = {{"principal_strain_1", fields.principal_strain.row(0), false},
                              {"principal_strain_2", fields.principal_strain.row(1), false}};
   if (fields.principal_stress.cols() > 0) {
+    Eigen::MatrixXd regime(1, model.mesh.triangle_count());
+    for (Eigen::Index t = 0; t < regime.cols(); ++t)
+      regime(0, t) = static_cast<double>(fields.regime[static_cast<size_t>(t)]);
+    surface.triangle_arrays.push_back({"regime", regime, true});
     surface.triangle_arrays.push_back({"principal_stress_1_mpa", fields.principal_stress.row(0), false});
     surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
   }

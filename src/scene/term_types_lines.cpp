@@ -154,11 +154,12 @@ std::vector<TermType> line_term_types() {
                                .excludes_min = true,
                                .doc = "Cross-section; default: that of each chord of the network."},
                               {.name = "smoothing",
-                               .fallback = "0",
+                               .fallback = "0.002",
                                .min = 0,
                                .max = 1,
                                .doc = "Elongation, as a fraction of the rest length, over which the onset of "
-                                      "tension is rounded."}},
+                                      "tension is rounded; the sharp kink of 0 costs "
+                                      "iterations."}},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
        .check = [](const Parameters& p) -> std::vector<std::string> {

@@ -165,6 +165,38 @@ TEST(Fields, GivePrincipalStretchAndStressOfABiaxialPatch) {
   }
 }
 
+// A strip drawn out and free to wrinkle across, one triangle pair left at rest and one gone slack.
+TEST(Fields, GiveTheRelaxedStressAndTheRegimeOfATensionField) {
+  Model model = model_of(square(1, 8));
+  model.membrane.assign(8, {.young = 1000, .poisson = 0.3, .thickness = 1, .relaxes = true});
+  const auto stretched = [&](double along, double across) {
+    Points x = model.X;
+    x.row(0) *= along;
+    x.row(1) *= across;
+    return x;
+  };
+  const struct {
+    double along, across;
+    MembraneRegime regime;
+  } cases[] = {{1.2, 1.1, MembraneRegime::Taut},
+               {1.2, 0.7, MembraneRegime::Wrinkled},
+               {0.9, 0.8, MembraneRegime::Slack}};
+  for (const auto& c : cases) {
+    const Points x = stretched(c.along, c.across);
+    const Fields fields = compute_fields(model, x);
+    const Metrics metrics = measure_at(model, x);
+    EXPECT_EQ(fields.regime, std::vector<MembraneRegime>(8, c.regime));
+    EXPECT_NEAR(metrics.taut_area_mm2.value(), c.regime == MembraneRegime::Taut ? 1 : 0, 1e-12);
+    EXPECT_NEAR(metrics.wrinkled_area_mm2.value(), c.regime == MembraneRegime::Wrinkled ? 1 : 0, 1e-12);
+    EXPECT_NEAR(metrics.slack_area_mm2.value(), c.regime == MembraneRegime::Slack ? 1 : 0, 1e-12);
+  }
+  const Fields wrinkled = compute_fields(model, stretched(1.2, 0.7));
+  EXPECT_NEAR(wrinkled.principal_stress(0, 3), 1000 * 0.5 * (1.44 - 1), 1e-10);
+  EXPECT_NEAR(wrinkled.principal_stress(1, 3), 0, 1e-12);
+  model.membrane.assign(8, {1000, 0.3, 1, 0});
+  EXPECT_LT(compute_fields(model, stretched(1.2, 0.7)).principal_stress(1, 3), -100);
+}
+
 TEST(Fields, GiveTheTensionOfTautAndSlackLines) {
   Model model;
   model.X.resize(3, 3);

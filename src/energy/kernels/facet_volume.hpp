@@ -5,7 +5,6 @@
 // force is the exact follower pressure; on an open rim it is not (see load_pressure.hpp). Never throws.
 #pragma once
 
-#include "energy/kernels/cross_matrix.hpp"
 #include "energy/term.hpp"
 
 #include <Eigen/Dense>
@@ -37,8 +36,7 @@ struct FacetVolume {
       H->setZero();
       for (int a = 0; a < 3; ++a) {  // d(r_b x r_c)/dr_b = -[r_c x], d(r_b x r_c)/dr_c = [r_b x]
         const int b = (a + 1) % 3, c = (a + 2) % 3;
-        H->block<3, 3>(3 * a, 3 * b) = -sixth * cross_matrix(r[c]);
-        H->block<3, 3>(3 * a, 3 * c) = sixth * cross_matrix(r[b]);
+        add_cross_matrix(sixth * r[c], 3 * b, 3 * a, *H);
       }
     }
     return sixth * r[0].dot(r12);
@@ -48,6 +46,16 @@ struct FacetVolume {
   static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 9>& x,
                                    Eigen::Vector<double, 9>* g, Eigen::Matrix<double, 9, 9>* H) {
     return evaluate(rest, x, g, H);
+  }
+
+ private:
+  // [v x] at (row, column) and its transpose across the diagonal.
+  static void add_cross_matrix(const Vec3& v, int row, int column, Eigen::Matrix<double, 9, 9>& H) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      H(row + i, column + j) = H(column + j, row + i) = -v[k];
+      H(row + j, column + i) = H(column + i, row + j) = v[k];
+    }
   }
 };
 

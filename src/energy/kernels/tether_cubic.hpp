@@ -34,6 +34,12 @@ struct TetherCubic {
     expand_axial(law, difference, l, g, H);
     return law.energy;
   }
+
+  // Force and stiffness are never negative, so neither is the exact Hessian.
+  static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 6>& x,
+                                   Eigen::Vector<double, 6>* g, Eigen::Matrix<double, 6, 6>* H) {
+    return evaluate(rest, x, g, H);
+  }
 };
 
 }  // namespace coapt
