@@ -1,162 +1,33 @@
 #include "scene/build.hpp"
 
 #include "core/error.hpp"
-#include "mesh/mesh_io.hpp"
-#include "scene/node_selection.hpp"
-#include "scene/prescribed_motion.hpp"
+#include "scene/groundwork.hpp"
 #include "scene/supports.hpp"
 #include "scene/term_types.hpp"
-#include "scene/valve_json.hpp"
-
-#include <algorithm>
-#include <set>
 
 namespace coapt {
 namespace {
 
-// Everything that is gathered on the way to a model.
-struct Assembly {
+// What the groundwork knows of the model.
+Model begun(const Groundwork& ground) {
   Model model;
-  std::vector<std::string> defects;
-  std::map<std::string, PlacedNetwork> networks;  // by path
-  std::map<std::string, Points> points;           // named positions, in the frame of the files [mm]
-
-  void keep(const InputError& error) {
-    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
-  }
-  void stop_on_defects() const {
-    if (!defects.empty()) throw InputError(defects);
-  }
-  void warn(const std::vector<std::string>& sentences) {
-    model.warnings.insert(model.warnings.end(), sentences.begin(), sentences.end());
-  }
-};
-
-TriangleMesh read_scaled(const std::filesystem::path& path, double scale, Assembly& assembly) {
-  MeshFile file = read_mesh(path);
-  file.mesh.vertices *= scale;
-  assembly.warn(file.warnings);
-  return std::move(file.mesh);
+  model.origin = ground.model.origin;
+  model.X = ground.model.X;
+  model.mesh = ground.model.mesh;
+  model.sets = ground.model.sets;
+  model.closed_reference = ground.model.closed_reference;
+  model.warnings = ground.model.warnings;
+  return model;
 }
 
-void read_surface(const Scene& scene, Assembly& assembly) {
-  if (!scene.mesh) return;
-  try {
-    assembly.model.mesh = read_scaled(scene.mesh->file, scene.mesh->scale, assembly);
-  } catch (const InputError& error) {
-    assembly.keep(error);
-  }
-}
-
-void read_reference(const Scene& scene, Assembly& assembly) {
-  if (!scene.closed_surface) return;
-  try {
-    assembly.model.closed_reference =
-        read_scaled(*scene.closed_surface, scene.closed_surface_scale, assembly);
-  } catch (const InputError& error) {
-    assembly.keep(error);
-  }
-}
-
-// Paths of the networks in the order in which the terms name them, each once.
-std::vector<std::string> network_paths(const Scene& scene) {
-  std::vector<std::string> paths;
-  for (const TermSpec& term : scene.terms) {
-    if (!term.parameters.has("network")) continue;
-    const std::string& path = term.parameters.text("network");
-    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
-  }
-  return paths;
-}
-
-// Reads the file of sets and the networks; the nodes of the networks follow those of the mesh.
-void read_valves(const Scene& scene, Assembly& assembly) {
-  std::vector<std::string> paths = network_paths(scene);
-  const size_t network_count = paths.size();
-  if (scene.mesh && scene.mesh->sets) paths.push_back(scene.mesh->sets->string());
-  Model& model = assembly.model;
-  std::map<std::string, std::vector<int>>& sets = model.sets;
-  int next = model.mesh.vertex_count();
-  std::vector<Points> blocks{model.mesh.vertices};
-  std::set<std::string> done;
-  for (size_t k = 0; k < paths.size(); ++k) {
-    if (!done.insert(paths[k]).second) continue;
-    try {
-      ValveFile file = read_valve(paths[k], ValveMeshes::Skip);
-      if (scene.mesh && assembly.defects.empty())
-        for (const std::string& defect : vertex_defects(file, paths[k], model.mesh.vertex_count()))
-          assembly.defects.push_back(defect);
-      if (scene.mesh)
-        for (const auto& [name, nodes] : file.sets)
-          if (nodes.empty() || *std::max_element(nodes.begin(), nodes.end()) < model.mesh.vertex_count())
-            sets[name] = nodes;
-      for (auto& [name, positions] : file.points) assembly.points.try_emplace(name, std::move(positions));
-      if (k >= network_count) continue;
-      ChordNetwork& network = file.valve.chords;
-      const int papillary = static_cast<int>(network.papillary.cols());
-      for (int node = 0; node < papillary; ++node) sets["papillary"].push_back(next + node);
-      for (int node = 0; node < network.junctions.cols(); ++node)
-        sets["junctions"].push_back(next + papillary + node);
-      blocks.push_back(network.papillary);
-      blocks.push_back(network.junctions);
-      assembly.networks[paths[k]] = {std::move(network), next, next + papillary};
-      next += papillary + static_cast<int>(blocks.back().cols());
-    } catch (const InputError& error) {
-      assembly.keep(error);
-    }
-  }
-  model.X.resize(3, next);
-  int column = 0;
-  for (const Points& block : blocks) {
-    model.X.middleCols(column, block.cols()) = block;
-    column += static_cast<int>(block.cols());
-  }
-}
-
-// Moves the nodes to zero where they lie so far from it that digits would be lost.
-void recentre(Assembly& assembly) {
-  Model& model = assembly.model;
-  if (model.X.cols() == 0) return;
-  const Vec3 centre = 0.5 * (model.X.rowwise().minCoeff() + model.X.rowwise().maxCoeff());
-  if (centre.norm() <= bounding_box_diagonal(model.X)) return;
-  model.origin = centre;
-  model.X.colwise() -= centre;
-  model.mesh.vertices.colwise() -= centre;
-  if (model.closed_reference) model.closed_reference->vertices.colwise() -= centre;
-}
-
-void name_sets(const Scene& scene, Assembly& assembly) {
-  Model& model = assembly.model;
-  const TriangleMesh& mesh = model.mesh;
-  std::vector<int>& all = model.sets["all"];
-  for (int node = 0; node < model.X.cols(); ++node) all.push_back(node);
-  std::vector<int> boundary;
-  for (const auto& loop : boundary_loops(mesh.triangles))
-    boundary.insert(boundary.end(), loop.begin(), loop.end());
-  if (mesh.triangle_count() > 0) model.sets["boundary"] = boundary;
-  for (size_t region = 0; region < mesh.region_names.size(); ++region) {
-    std::set<int> nodes;
-    for (int t = 0; t < mesh.triangle_count(); ++t)
-      if (mesh.regions[static_cast<size_t>(t)] == static_cast<int>(region))
-        for (int k = 0; k < 3; ++k) nodes.insert(mesh.triangles(k, t));
-    model.sets.try_emplace(mesh.region_names[region], nodes.begin(), nodes.end());
-  }
-  std::map<std::string, std::vector<int>> named;
-  for (const auto& [name, selection] : scene.sets) {
-    try {
-      named[name] = selected_nodes(selection, model, scene.file.string() + ": sets." + name);
-    } catch (const InputError& error) {
-      assembly.keep(error);
-    }
-  }
-  for (auto& [name, nodes] : named) model.sets[name] = std::move(nodes);
-}
-
-std::vector<TermPointer> build_terms(const Scene& scene, const FixedMask& fixed, Assembly& assembly) {
-  Model& model = assembly.model;
-  BuildContext context{model, fixed, assembly.networks,
-                       [&model](const NodeSelection& selection, const std::string& where) {
-                         return selected_nodes(selection, model, where);
+std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground, Model& model,
+                                     std::vector<std::string>& defects) {
+  BuildContext context{model, ground.prescribed.fixed, ground.networks,
+                       [&ground](const NodeSelection& selection, const std::string& where) {
+                         return selected_nodes(selection, ground, where);
+                       },
+                       [&ground](const NodeSelection* selection, const std::string& where) {
+                         return multiplicity(selection, ground, where);
                        }};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
@@ -166,7 +37,7 @@ std::vector<TermPointer> build_terms(const Scene& scene, const FixedMask& fixed,
       try {
         terms.push_back(type.build(spec, context));
       } catch (const InputError& error) {
-        assembly.keep(error);
+        defects.insert(defects.end(), error.defects().begin(), error.defects().end());
       }
     }
   return terms;
@@ -181,31 +52,20 @@ double mean_spacing(const Model& model) {
 
 }  // namespace
 
-Model build(const Scene& scene) {
-  Assembly assembly;
-  Model& model = assembly.model;
-  read_surface(scene, assembly);
-  read_reference(scene, assembly);
-  read_valves(scene, assembly);
-  assembly.stop_on_defects();
-  check_surface(scene, model, assembly.defects);
-  assembly.stop_on_defects();
-  recentre(assembly);
-  name_sets(scene, assembly);
+Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
 
-  const auto papillary = model.sets.find("papillary");
-  const bool has_anchors = papillary != model.sets.end() && !assembly.networks.empty();
-  Prescribed prescribed = prescribe(scene.boundary, has_anchors ? papillary->second : std::vector<int>{},
-                                    model, assembly.points, assembly.defects);
-  hold_isolated_nodes(model, assembly.networks, prescribed.fixed);
-  std::vector<TermPointer> terms = build_terms(scene, prescribed.fixed, assembly);
-  assembly.stop_on_defects();
+Model build(const Scene& scene, const Groundwork& ground) {
+  Model model = begun(ground);
+  const Prescribed& prescribed = ground.prescribed;
+  std::vector<std::string> defects = ground.defects;
+  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  if (!defects.empty()) throw InputError(defects);
   warn_of_unsupported_parts(model, terms, prescribed.fixed);
 
   model.motion = motion_path(prescribed, model.X, scene.motion_steps, mean_spacing(model));
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
   model.q0 = model.objective->unknowns(model.X);
-  return std::move(assembly.model);
+  return model;
 }
 
 }  // namespace coapt

@@ -6,10 +6,15 @@
 
 namespace coapt {
 
+struct Groundwork;
+
 // Reads the scene's files, checks the mesh, numbers the nodes, and builds motion, terms and objective.
 // What is doubtful but usable is said in Model::warnings: slack rest data, isolated vertices (prescribed, so
 // that they carry no unknowns), parts that no prescribed node holds.
 // Throws InputError with all defects that could be found, each naming its file or its place in the scene.
 Model build(const Scene& scene);
+
+// The same on nodes, sets and supports that are known already, those of a coarser mesh for instance.
+Model build(const Scene& scene, const Groundwork& ground);
 
 }  // namespace coapt

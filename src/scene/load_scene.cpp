@@ -82,6 +82,7 @@ SolverSpec solver_from(const Parameters& values) {
   solver.max_iterations = values.integer("max_iterations");
   solver.max_seconds = values.number_or("max_seconds", 0);
   solver.memory = values.integer("memory");
+  solver.cascade = values.flag("cascade");
   return solver;
 }
 

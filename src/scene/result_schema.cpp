@@ -94,6 +94,19 @@ Json reference_distance() {
       "distance between the solved surface and the closed surface that the scene names");
 }
 
+Json levels(const Json& statuses) {
+  return list(
+      object({{"triangles", count("of its mesh")},
+              {"iterations", count("accepted iterates")},
+              {"status", described({{"enum", statuses}}, "how it ended")},
+              {"residual", number("on its own mesh")},
+              {"wall_s", number("wall time with its making [s]")},
+              {"cpu_s", number("CPU time with its making [s]")}},
+             "one mesh"),
+      "meshes of the cascade, coarsest first, the scene's own last; their time is in `time`, the other "
+      "figures are those of the scene's own mesh");
+}
+
 Json counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
                  {"cable_elements", count("cables and tethers")},
@@ -144,6 +157,7 @@ std::string result_schema() {
                                  {"tolerance", number("on the residual")},
                                  {"route", text("how pressure was treated")}},
                                 "what was asked for")},
+              {"levels", levels(statuses), Need::Optional},
               {"warnings", list({{"type", "string"}}, "whole sentences")}},
              "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";

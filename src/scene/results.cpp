@@ -87,6 +87,18 @@ Json counters_json(const Model& model, const Result& result) {
           {"contact_searches", searches}};
 }
 
+Json levels_json(const std::vector<CascadeLevel>& levels) {
+  Json json = Json::array();
+  for (const CascadeLevel& level : levels)
+    json.push_back({{"triangles", level.triangles},
+                    {"iterations", level.iterations},
+                    {"status", status_name(level.status)},
+                    {"residual", number(level.residual)},
+                    {"wall_s", number(level.wall_s)},
+                    {"cpu_s", number(level.cpu_s)}});
+  return json;
+}
+
 std::string trace_csv(const Result& result) {
   std::ostringstream out;
   out.precision(10);
@@ -202,6 +214,7 @@ std::string result_json(const Model& model, const Report& report) {
   json["counters"] = counters_json(model, result);
   json["solver"] = {
       {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
+  if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
   json["warnings"] = report.warnings;
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,6 +1,7 @@
 // Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv.
 #pragma once
 
+#include "scene/cascade.hpp"
 #include "scene/metrics.hpp"
 #include "scene/reference_distance.hpp"
 
@@ -17,6 +18,7 @@ struct Report {
   double tolerance = 0;    // on the residual
   std::string pressure_route;
   Result result;
+  std::vector<CascadeLevel> levels;  // empty: no cascade
   Fields fields;
   Metrics metrics;
   std::optional<ReferenceDistance> reference;

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "optim/lbfgs.hpp"
 #include "scene/build.hpp"
+#include "scene/groundwork.hpp"
 #include "scene/suggestion.hpp"
 
 #include <cmath>
@@ -44,9 +45,11 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   RunReport run;
   Report& report = run.report;
   report.solver = options.solver.empty() ? scene.solver.type : options.solver;
-  const std::unique_ptr<Solver> solver = make_solver(solvers, report.solver, scene);
+  const SolverMaker maker = [&] { return make_solver(solvers, report.solver, scene); };
+  const std::unique_ptr<Solver> solver = maker();
   const StopRule stop = stop_rule(scene, options);
-  run.model = build(scene);
+  const Groundwork ground = lay_groundwork(scene);
+  run.model = build(scene, ground);
   Model& model = run.model;
   // Only now: a scene that is refused leaves no folder behind.
   if (options.writes) {
@@ -55,11 +58,18 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   }
   report.scene_file = scene.file.filename().string();
   report.tolerance = stop.tolerance;
-  report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);
+  report.warnings = model.warnings;
+  if (scene.solver.cascade) {
+    CascadeOutcome outcome = solve_cascade(scene, ground, model, maker, stop, options.observer);
+    report.result = std::move(outcome.result);
+    report.levels = std::move(outcome.levels);
+    report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  } else {
+    report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);
+  }
 
   const Result& result = report.result;
   report.pressure_route = pressure_route(model, result);
-  report.warnings = model.warnings;
   report.fields = compute_fields(model, model.objective->positions(result.q));
   report.metrics = measure(model, result.q, report.fields);
   report.reference = compare_with_reference(model, report.fields);

@@ -38,6 +38,7 @@ struct SolverSpec {
   int max_iterations = 100000;
   double max_seconds = 0;  // 0 = no limit [s]
   int memory = 12;         // pairs of lbfgs
+  bool cascade = false;    // coarser meshes first
 };
 
 struct Scene {

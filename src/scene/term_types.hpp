@@ -32,6 +32,9 @@ struct BuildContext {
   const FixedMask& fixed;
   const std::map<std::string, PlacedNetwork>& networks;  // by the path in the term's parameters
   std::function<std::vector<int>(const NodeSelection&, const std::string& where)> nodes;
+  // How many nodes of the scene's own mesh stand in the place of one here, on average: above 1 on a coarser
+  // mesh. Of a selection, or of all mesh vertices.
+  std::function<double(const NodeSelection*, const std::string& where)> multiplicity;
 };
 
 using TermPointer = std::unique_ptr<EnergyTerm>;

@@ -47,7 +47,8 @@ TermPointer build_field(const TermSpec& spec, BuildContext& context) {
   Model& model = context.model;
   Vector magnitudes = loaded_nodes(p, context);
   if (p.has("force")) {
-    magnitudes *= p.number("force");
+    magnitudes *= p.number("force") *
+                  context.multiplicity(p.has("nodes") ? &p.nodes("nodes") : nullptr, p.where("nodes"));
   } else {
     magnitudes = magnitudes.cwiseProduct(rest_areas(model));
     if (p.has("pressure")) {

@@ -1,0 +1,197 @@
+#include "scene/cascade.hpp"
+
+#include "core/error.hpp"
+#include "mesh/prolong.hpp"
+#include "scene/build.hpp"
+#include "scene/thinning.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace coapt {
+namespace {
+
+constexpr int kFewestTriangles = 500;  // of a coarse mesh
+constexpr size_t kMostCoarseMeshes = 4;
+constexpr double kLeastCoarsening = 0.67;  // a mesh with more than this share of the next is no help
+constexpr double kCoarseTolerance = 1e-3;
+
+// One step from a mesh of the cascade to the next coarser one.
+struct Step {
+  Coarsening coarsening;
+  std::vector<int> kept;  // vertex of the scene's own mesh of each coarse vertex
+  Points X;               // vertices of the finer mesh
+};
+
+// The options for a mesh whose vertices are `kept` of the finest.
+CoarsenOptions narrowed(const CoarsenOptions& finest, const Step& last) {
+  std::vector<int> number(finest.kinds.size(), -1);
+  CoarsenOptions options;
+  options.share = finest.share;
+  options.lines = last.coarsening.lines;
+  for (size_t k = 0; k < last.kept.size(); ++k) {
+    const auto v = static_cast<size_t>(last.kept[k]);
+    number[v] = static_cast<int>(k);
+    options.kinds.push_back(finest.kinds[v]);
+  }
+  for (const int v : finest.keep) options.keep.push_back(number[static_cast<size_t>(v)]);
+  return options;
+}
+
+// From fine to coarse.
+std::vector<Step> coarser_meshes(const Scene& scene, const Groundwork& ground) {
+  std::vector<Step> steps;
+  steps.reserve(kMostCoarseMeshes);
+  const TriangleMesh* mesh = &ground.model.mesh;
+  const CoarsenOptions finest = coarsen_options(scene, ground);
+  while (steps.size() < kMostCoarseMeshes && finest.share * mesh->triangle_count() >= kFewestTriangles) {
+    Step step{coarsen(*mesh, steps.empty() ? finest : narrowed(finest, steps.back())), {}, mesh->vertices};
+    if (step.coarsening.mesh.triangle_count() > kLeastCoarsening * mesh->triangle_count()) break;
+    step.kept = step.coarsening.kept;
+    if (!steps.empty())
+      for (int& v : step.kept) v = steps.back().kept[static_cast<size_t>(v)];
+    steps.push_back(std::move(step));
+    mesh = &steps.back().coarsening.mesh;
+  }
+  return steps;
+}
+
+// Positions of all nodes of the finer mesh; the points of the networks follow the vertices.
+Points finer(const Step& step, const Points& x) {
+  const Eigen::Index coarse_count = step.coarsening.mesh.vertex_count(), fine_count = step.X.cols();
+  Points result(3, fine_count + x.cols() - coarse_count);
+  result.leftCols(fine_count) = prolonged(step.coarsening, step.X, x.leftCols(coarse_count));
+  result.rightCols(x.cols() - coarse_count) = x.rightCols(x.cols() - coarse_count);
+  return result;
+}
+
+// The problem that starts at x, with the supports where their motion ends.
+Problem started_at(const Points& x, Model& model) {
+  if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
+  return {*model.objective, model.objective->unknowns(x), {}};
+}
+
+bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
+
+class Cascade {
+ public:
+  Cascade(const SolverMaker& make_solver, const StopRule& stop, const Observer& observer)
+      : make_solver_(make_solver), stop_(stop), observer_(observer) {}
+
+  // Solves a mesh of the cascade and notes it as a level.
+  Result level(const Problem& problem, int triangles, double tolerance) {
+    StopRule stop = stop_;
+    stop.tolerance = std::max(tolerance, stop_.tolerance);
+    stop.max_seconds = std::max(0.0, stop_.max_seconds - (wall_seconds() - wall_start_));
+    const std::unique_ptr<Solver> solver = make_solver_();
+    Result result = solve(*solver, problem, stop, observer_);
+    outcome.levels.push_back({triangles, result.iterations, result.status, result.residual,
+                              wall_seconds() - level_wall_, cpu_seconds() - level_cpu_});
+    level_wall_ = wall_seconds();
+    level_cpu_ = cpu_seconds();
+    return result;
+  }
+
+  // Makes the result that of the whole.
+  void finish(Result result) {
+    const double before = wall_seconds() - wall_start_ - result.wall_s;
+    for (Iteration& iteration : result.trace) iteration.seconds += before;
+    result.phase_s["coarse_levels"] = before;
+    result.wall_s += before;
+    result.cpu_s = cpu_seconds() - cpu_start_;
+    outcome.result = std::move(result);
+  }
+
+  CascadeOutcome outcome;
+
+ private:
+  const SolverMaker& make_solver_;
+  const StopRule& stop_;
+  const Observer& observer_;
+  double wall_start_ = wall_seconds(), cpu_start_ = cpu_seconds();
+  double level_wall_ = wall_start_, level_cpu_ = cpu_start_;
+};
+
+// The start of a problem as it stands, for a run that was interrupted before it came to it.
+Result judged(const Problem& problem, Status reason, Solver& solver) {
+  StopRule stop;
+  stop.max_iterations = 0;
+  Result result = solve(solver, problem, stop);
+  result.status = reason;
+  result.message = reason == Status::Cancelled ? "cancelled" : "stopped at the time limit";
+  result.message += " on a coarse mesh of the cascade; the shape found there was kept";
+  return result;
+}
+
+// Solves the coarser meshes. The shape on the scene's own mesh that the last of them gives, and why they
+// ended; no shape where one of them failed.
+struct Start {
+  Points x;
+  Status status = Status::Converged;
+};
+std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, Cascade& cascade) {
+  const std::vector<Step> steps = coarser_meshes(scene, ground);
+  if (steps.empty()) {
+    cascade.outcome.warnings.push_back(
+        "The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
+    return std::nullopt;
+  }
+  Start start;
+  for (size_t k = steps.size(); k-- > 0;) {
+    const TriangleMesh& mesh = steps[k].coarsening.mesh;
+    const std::string name =
+        "The mesh of " + std::to_string(mesh.triangle_count()) + " triangles of the cascade ";
+    std::string failure;
+    try {
+      Model model = build(scene, thinned(ground, mesh, steps[k].kept));
+      const bool is_coarsest = start.x.size() == 0;
+      const Problem problem =
+          is_coarsest ? Problem{*model.objective, model.q0, model.motion} : started_at(start.x, model);
+      const Result result = cascade.level(problem, mesh.triangle_count(), kCoarseTolerance);
+      start = {model.objective->positions(result.q), result.status};
+      if (result.status != Status::Converged) failure = result.message;
+    } catch (const InputError& error) {
+      failure = error.what();
+      start.status = Status::NonFinite;
+    }
+    if (was_interrupted(start.status)) {
+      for (size_t j = k + 1; j-- > 0;) start.x = finer(steps[j], start.x);
+      return start;
+    }
+    if (!failure.empty()) {
+      cascade.outcome.warnings.push_back(name + "was not solved (" + failure +
+                                         "); the scene's own was solved from its own start.");
+      return std::nullopt;
+    }
+    start.x = finer(steps[k], start.x);
+  }
+  return start;
+}
+
+}  // namespace
+
+CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
+                             const SolverMaker& make_solver, const StopRule& stop, const Observer& observer) {
+  Cascade cascade(make_solver, stop, observer);
+  const int triangles = model.mesh.triangle_count();
+  if (const std::optional<Start> start = coarse_start(scene, ground, cascade)) {
+    const Problem problem = started_at(start->x, model);
+    if (was_interrupted(start->status)) {
+      cascade.finish(judged(problem, start->status, *make_solver()));
+      return std::move(cascade.outcome);
+    }
+    Result result = cascade.level(problem, triangles, stop.tolerance);
+    if (result.status == Status::Converged || result.status == Status::IterationLimit ||
+        was_interrupted(result.status)) {
+      cascade.finish(std::move(result));
+      return std::move(cascade.outcome);
+    }
+    cascade.outcome.warnings.push_back("The start that the cascade gave led nowhere (" + result.message +
+                                       "): the mesh was solved from its own start.");
+    model.objective->prescribe(model.X);
+  }
+  cascade.finish(cascade.level({*model.objective, model.q0, model.motion}, triangles, stop.tolerance));
+  return std::move(cascade.outcome);
+}
+
+}  // namespace coapt

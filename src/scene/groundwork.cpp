@@ -1,0 +1,190 @@
+#include "scene/groundwork.hpp"
+
+#include "core/error.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/node_selection.hpp"
+#include "scene/supports.hpp"
+#include "scene/valve_json.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace coapt {
+namespace {
+
+// Everything that is gathered on the way.
+struct Assembly : Groundwork {
+  std::map<std::string, Points> points;  // named positions, in the frame of the files [mm]
+
+  void keep(const InputError& error) {
+    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+  }
+  void stop_on_defects() const {
+    if (!defects.empty()) throw InputError(defects);
+  }
+  void warn(const std::vector<std::string>& sentences) {
+    model.warnings.insert(model.warnings.end(), sentences.begin(), sentences.end());
+  }
+};
+
+TriangleMesh read_scaled(const std::filesystem::path& path, double scale, Assembly& assembly) {
+  MeshFile file = read_mesh(path);
+  file.mesh.vertices *= scale;
+  assembly.warn(file.warnings);
+  return std::move(file.mesh);
+}
+
+void read_surface(const Scene& scene, Assembly& assembly) {
+  if (!scene.mesh) return;
+  try {
+    assembly.model.mesh = read_scaled(scene.mesh->file, scene.mesh->scale, assembly);
+  } catch (const InputError& error) {
+    assembly.keep(error);
+  }
+}
+
+void read_reference(const Scene& scene, Assembly& assembly) {
+  if (!scene.closed_surface) return;
+  try {
+    assembly.model.closed_reference =
+        read_scaled(*scene.closed_surface, scene.closed_surface_scale, assembly);
+  } catch (const InputError& error) {
+    assembly.keep(error);
+  }
+}
+
+// Paths of the networks in the order in which the terms name them, each once.
+std::vector<std::string> network_paths(const Scene& scene) {
+  std::vector<std::string> paths;
+  for (const TermSpec& term : scene.terms) {
+    if (!term.parameters.has("network")) continue;
+    const std::string& path = term.parameters.text("network");
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+  }
+  return paths;
+}
+
+// Reads the file of sets and the networks; the nodes of the networks follow those of the mesh.
+void read_valves(const Scene& scene, Assembly& assembly) {
+  std::vector<std::string> paths = network_paths(scene);
+  const size_t network_count = paths.size();
+  if (scene.mesh && scene.mesh->sets) paths.push_back(scene.mesh->sets->string());
+  Model& model = assembly.model;
+  std::map<std::string, std::vector<int>>& sets = model.sets;
+  int next = model.mesh.vertex_count();
+  std::vector<Points> blocks{model.mesh.vertices};
+  std::set<std::string> done;
+  for (size_t k = 0; k < paths.size(); ++k) {
+    if (!done.insert(paths[k]).second) continue;
+    try {
+      ValveFile file = read_valve(paths[k], ValveMeshes::Skip);
+      if (scene.mesh && assembly.defects.empty())
+        for (const std::string& defect : vertex_defects(file, paths[k], model.mesh.vertex_count()))
+          assembly.defects.push_back(defect);
+      if (scene.mesh)
+        for (const auto& [name, nodes] : file.sets)
+          if (nodes.empty() || *std::max_element(nodes.begin(), nodes.end()) < model.mesh.vertex_count())
+            sets[name] = nodes;
+      for (auto& [name, positions] : file.points) assembly.points.try_emplace(name, std::move(positions));
+      if (k >= network_count) continue;
+      ChordNetwork& network = file.valve.chords;
+      const int papillary = static_cast<int>(network.papillary.cols());
+      for (int node = 0; node < papillary; ++node) sets["papillary"].push_back(next + node);
+      for (int node = 0; node < network.junctions.cols(); ++node)
+        sets["junctions"].push_back(next + papillary + node);
+      blocks.push_back(network.papillary);
+      blocks.push_back(network.junctions);
+      assembly.networks[paths[k]] = {std::move(network), next, next + papillary};
+      next += papillary + static_cast<int>(blocks.back().cols());
+    } catch (const InputError& error) {
+      assembly.keep(error);
+    }
+  }
+  model.X.resize(3, next);
+  int column = 0;
+  for (const Points& block : blocks) {
+    model.X.middleCols(column, block.cols()) = block;
+    column += static_cast<int>(block.cols());
+  }
+}
+
+// Moves the nodes to zero where they lie so far from it that digits would be lost.
+void recentre(Assembly& assembly) {
+  Model& model = assembly.model;
+  if (model.X.cols() == 0) return;
+  const Vec3 centre = 0.5 * (model.X.rowwise().minCoeff() + model.X.rowwise().maxCoeff());
+  if (centre.norm() <= bounding_box_diagonal(model.X)) return;
+  model.origin = centre;
+  model.X.colwise() -= centre;
+  model.mesh.vertices.colwise() -= centre;
+  if (model.closed_reference) model.closed_reference->vertices.colwise() -= centre;
+}
+
+void name_sets(const Scene& scene, Assembly& assembly) {
+  Model& model = assembly.model;
+  const TriangleMesh& mesh = model.mesh;
+  std::vector<int>& all = model.sets["all"];
+  for (int node = 0; node < model.X.cols(); ++node) all.push_back(node);
+  std::vector<int> boundary;
+  for (const auto& loop : boundary_loops(mesh.triangles))
+    boundary.insert(boundary.end(), loop.begin(), loop.end());
+  if (mesh.triangle_count() > 0) model.sets["boundary"] = boundary;
+  for (size_t region = 0; region < mesh.region_names.size(); ++region) {
+    std::set<int> nodes;
+    for (int t = 0; t < mesh.triangle_count(); ++t)
+      if (mesh.regions[static_cast<size_t>(t)] == static_cast<int>(region))
+        for (int k = 0; k < 3; ++k) nodes.insert(mesh.triangles(k, t));
+    model.sets.try_emplace(mesh.region_names[region], nodes.begin(), nodes.end());
+  }
+  std::map<std::string, std::vector<int>> named;
+  for (const auto& [name, selection] : scene.sets) {
+    try {
+      named[name] = selected_nodes(selection, model, scene.file.string() + ": sets." + name);
+    } catch (const InputError& error) {
+      assembly.keep(error);
+    }
+  }
+  for (auto& [name, nodes] : named) model.sets[name] = std::move(nodes);
+}
+
+}  // namespace
+
+Groundwork lay_groundwork(const Scene& scene) {
+  Assembly assembly;
+  Model& model = assembly.model;
+  read_surface(scene, assembly);
+  read_reference(scene, assembly);
+  read_valves(scene, assembly);
+  assembly.stop_on_defects();
+  check_surface(scene, model, assembly.defects);
+  assembly.stop_on_defects();
+  recentre(assembly);
+  name_sets(scene, assembly);
+
+  const auto papillary = model.sets.find("papillary");
+  const bool has_anchors = papillary != model.sets.end() && !assembly.networks.empty();
+  assembly.prescribed = prescribe(scene.boundary, has_anchors ? papillary->second : std::vector<int>{}, model,
+                                  assembly.points, assembly.defects);
+  hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
+  return std::move(static_cast<Groundwork&>(assembly));
+}
+
+std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
+                                const std::string& where) {
+  if (ground.finest == nullptr) return selected_nodes(selection, ground.model, where);
+  std::vector<int> nodes;
+  for (const int node : selected_nodes(selection, ground.finest->model, where))
+    if (const int here = ground.number[static_cast<size_t>(node)]; here >= 0) nodes.push_back(here);
+  return nodes;
+}
+
+double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where) {
+  if (ground.finest == nullptr) return 1;
+  if (selection == nullptr)
+    return static_cast<double>(ground.finest->model.mesh.vertex_count()) / ground.model.mesh.vertex_count();
+  const size_t left = selected_nodes(*selection, ground, where).size();
+  const size_t all = selected_nodes(*selection, ground.finest->model, where).size();
+  return left > 0 ? static_cast<double>(all) / static_cast<double>(left) : 1;
+}
+
+}  // namespace coapt

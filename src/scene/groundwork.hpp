@@ -1,0 +1,37 @@
+// Nodes, sets and supports of a scene, before it has terms. Private to this room.
+#pragma once
+
+#include "scene/prescribed_motion.hpp"
+#include "scene/term_types.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct Groundwork {
+  Model model;                                    // without terms, objective and motion
+  std::map<std::string, PlacedNetwork> networks;  // by path
+  Prescribed prescribed;
+  std::vector<std::string> defects;  // of sets and supports: to be said together with those of the terms
+
+  // Where the mesh is a coarser one of a cascade: the groundwork of the scene's own mesh, and the node here
+  // of each node there (-1: it is gone).
+  const Groundwork* finest = nullptr;
+  std::vector<int> number = {};
+};
+
+// Reads the scene's files, checks the mesh and numbers the nodes. Throws InputError with all defects of
+// these.
+Groundwork lay_groundwork(const Scene& scene);
+
+// The nodes that a selection means on the scene's own mesh, those that are gone left out.
+std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
+                                const std::string& where);
+
+// How many nodes of the scene's own mesh there are for each that is left here, of a selection or of all mesh
+// vertices.
+double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where);
+
+}  // namespace coapt
