@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/cross_matrix.hpp"
-include "energy/kernels/facet_volume.hpp"
+#include "energy/kernels/facet_volume.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/rim_fan.hpp"
 #include "mesh/triangle_mesh.hpp"
