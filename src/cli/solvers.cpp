@@ -3,6 +3,9 @@
 #ifdef COAPT_HAS_CERES
 #include "optim/ceres/ceres_solver.hpp"
 #endif
+#ifdef COAPT_HAS_CHOLMOD
+#include "optim/cholmod/cholmod_factorisation.hpp"
+#endif
 #ifdef COAPT_HAS_NLOPT
 #include "optim/nlopt/nlopt_solver.hpp"
 #endif
@@ -18,6 +21,14 @@ SolverTable all_solvers() {
   add_nlopt_solver(solvers);
 #endif
   return solvers;
+}
+
+FactorisationTable all_factorisations() {
+  FactorisationTable table{{"eigen", make_eigen_factorisation}};
+#ifdef COAPT_HAS_CHOLMOD
+  table["cholmod"] = [] { return make_cholmod_factorisation(); };
+#endif
+  return table;
 }
 
 }  // namespace coapt::cli

@@ -6,5 +6,6 @@
 namespace coapt::cli {
 
 SolverTable all_solvers();
+FactorisationTable all_factorisations();
 
 }  // namespace coapt::cli

@@ -18,7 +18,7 @@ class DenseInverse final : public InverseHessian {
     is_empty_ = true;
   }
 
-  Vector direction(const Vector& g) const override {
+  Vector direction(const Vector& g) override {
     return is_empty_ ? Vector(-g) : Vector(-(h_.selfadjointView<Eigen::Lower>() * g));
   }
 

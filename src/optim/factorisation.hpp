@@ -6,7 +6,9 @@
 #include <Eigen/SparseCore>
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace coapt {
@@ -47,6 +49,7 @@ class Factorisation {
 };
 
 using FactorisationFactory = std::function<std::unique_ptr<Factorisation>()>;
+using FactorisationTable = std::map<std::string, FactorisationFactory>;
 
 // Eigen's simplicial factorisation: always there.
 std::unique_ptr<Factorisation> make_eigen_factorisation();

@@ -5,10 +5,9 @@
 
 namespace coapt {
 
-struct LbfgsOptions {
-  int memory = 12;  // pairs kept
-};
-
-std::unique_ptr<Solver> make_lbfgs(const LbfgsOptions& options = {});
+// Of the options: memory; is_preconditioned with factorisation. The preconditioned method starts its
+// recursion from the factorised, shifted Hessian of an iterate not long past instead of a multiple of the
+// identity.
+std::unique_ptr<Solver> make_lbfgs(const SolverOptions& options = {});
 
 }  // namespace coapt

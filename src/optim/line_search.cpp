@@ -10,17 +10,24 @@ constexpr double kSufficientDecrease = 1e-4;
 constexpr double kCurvature = 0.9;
 constexpr int kMaxEvaluations = 40;
 
-void evaluate(Monitor& monitor, const LinePoint& from, const Vector& direction, double step, LinePoint& at) {
+// What the search remembers of a point; the vectors stay with the last one evaluated.
+struct Sample {
+  double step, energy, slope;
+};
+
+Sample evaluate(Monitor& monitor, const LinePoint& from, const Vector& direction, double step,
+                LinePoint& at) {
   at.step = step;
   at.q = from.q + step * direction;
   at.energy = monitor.gradient(at.q, at.g);
   at.slope = at.g.dot(direction);
   if (!std::isfinite(at.energy) || !at.g.allFinite()) at.energy = kInfinity;
+  return {step, at.energy, at.slope};
 }
 
 // Minimiser of the cubic through two points with their slopes (Nocedal & Wright 2006, eq. 3.59), kept
 // away from the ends so that the bracket shrinks.
-double cubic_minimiser(const LinePoint& a, const LinePoint& b) {
+double cubic_minimiser(const Sample& a, const Sample& b) {
   const double width = b.step - a.step;
   const double d1 = a.slope + b.slope - 3 * (a.energy - b.energy) / (a.step - b.step);
   const double radicand = d1 * d1 - a.slope * b.slope;
@@ -41,41 +48,38 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
                  LinePoint& to) {
   const double noise = monitor.energy_noise(from.energy);
   // Below the noise an energy tells nothing: the slope must then have shrunk instead.
-  const auto descends = [&](const LinePoint& p) {
+  const auto descends = [&](const Sample& p) {
     if (p.energy <= from.energy + kSufficientDecrease * p.step * from.slope) return true;
     return p.energy <= from.energy + noise && p.slope <= (2 * kSufficientDecrease - 1) * from.slope &&
            p.slope >= kCurvature * from.slope;
   };
-  const auto is_flat_enough = [&](const LinePoint& p) {
-    return std::abs(p.slope) <= -kCurvature * from.slope;
-  };
+  const auto is_flat_enough = [&](const Sample& p) { return std::abs(p.slope) <= -kCurvature * from.slope; };
 
-  LinePoint low = from;  // best end of the bracket
-  low.step = 0;
-  LinePoint high;  // other end, once there is one
+  Sample low{0, from.energy, from.slope};  // best end of the bracket
+  Sample high{};                           // other end, once there is one
   bool has_high = false;
   double step = first;
   for (int k = 0; k < kMaxEvaluations; ++k) {
     if (monitor.is_out_of_time()) break;
-    evaluate(monitor, from, direction, step, to);
-    if (to.energy == kInfinity) {  // infeasible: come back quickly
-      high = to;
+    const Sample now = evaluate(monitor, from, direction, step, to);
+    if (now.energy == kInfinity) {  // infeasible: come back quickly
+      high = now;
       has_high = true;
       step = low.step + 0.1 * (step - low.step);
       continue;
     }
-    if (descends(to) && is_flat_enough(to)) return true;
-    const bool is_noise = std::abs(to.energy - low.energy) <= noise;
-    const bool is_worse = is_noise ? to.slope > 0 : !descends(to) || to.energy >= low.energy;
+    if (descends(now) && is_flat_enough(now)) return true;
+    const bool is_noise = std::abs(now.energy - low.energy) <= noise;
+    const bool is_worse = is_noise ? now.slope > 0 : !descends(now) || now.energy >= low.energy;
     if (is_worse) {
-      high = to;
+      high = now;
       has_high = true;
     } else {
-      if (to.slope * ((has_high ? high.step : kInfinity) - low.step) > 0) {
+      if (now.slope * ((has_high ? high.step : kInfinity) - low.step) > 0) {
         high = low;
         has_high = true;
       }
-      low = to;
+      low = now;
     }
     if (!has_high) {
       step *= 4;
@@ -86,7 +90,11 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
     }
     if (has_high && std::abs(high.step - low.step) <= 1e-14 * std::max(low.step, high.step)) break;
   }
-  to = low;  // lower than the start, if not flat enough; or the start itself
+  // Lower than the start, if not flat enough; or the start itself.
+  if (low.step == 0)
+    to = from;
+  else if (to.step != low.step)
+    evaluate(monitor, from, direction, low.step, to);
   return low.step > 0 && low.energy <= from.energy + noise;
 }
 

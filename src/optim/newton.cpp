@@ -2,135 +2,133 @@
 
 #include "optim/gmres.hpp"
 #include "optim/line_search.hpp"
+#include "optim/shifted_hessian.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace coapt {
 namespace {
-double knob(const char* name, double fallback) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : fallback;
-}
+
+constexpr double kFirstShift = 1;  // times force over length of the scene
+constexpr double kFall = 0.1;      // of the shift after a step that kept its promise
+constexpr double kRise = 4;        // after one that was shortened much
+constexpr double kMostShift = 1e9;
+constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
+constexpr double kForcing = 1e-3;                // GMRES, relative
+constexpr int kKrylovVectors = 30;
+
+class Newton {
+ public:
+  Newton(const SolverOptions& options, Objective& objective, Monitor& monitor)
+      : objective_(objective), monitor_(monitor), options_(options), hessian_(options.factorisation) {}
+
+  Status minimize(Vector& q) {
+    at_.q = q;
+    at_.energy = monitor_.gradient(at_.q, at_.g);
+    while (true) {
+      if (const auto status = monitor_.accept(at_.q, at_.energy, at_.g)) return *status;
+      if (unit_ == 0) start_shift();
+      if (!hessian_.factorise(objective_, monitor_, at_.q, at_.g, shift_)) return Status::Stalled;
+      bool is_found = false;
+      while (!is_found) {
+        find_direction();
+        is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
+        if (is_found) break;
+        if (monitor_.is_out_of_time()) return Status::TimeLimit;
+        if (shift_ > kMostShift * unit_ || !hessian_.raise(monitor_, shift_)) return Status::LineSearchFailed;
+      }
+      std::swap(at_, next_);
+      q = at_.q;
+    }
+  }
+
+ private:
+  // Force over length: what resists a displacement of the scene's size with the scene's force.
+  void start_shift() {
+    const double extent = at_.q.maxCoeff() - at_.q.minCoeff();
+    unit_ = objective_.reference_force() / (extent > 0 ? extent : 1);
+    shift_ = kFirstShift * unit_;
+  }
+
+  // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
+  // part d always descends.
+  void find_direction() {
+    PhaseTimer timer(monitor_.phases(), "direction");
+    work_ = -at_.g;
+    hessian_.solve(work_, symmetric_);
+    direction_ = symmetric_;
+    if (objective_.has_skew_tangent())
+      gmres_.solve(
+          [this](const Vector& v, Vector& out) {
+            work_.setZero();
+            objective_.add_skew_product(v, work_);
+            hessian_.solve(work_, out);
+          },
+          symmetric_, kForcing, direction_);
+    at_.slope = at_.g.dot(direction_);
+    if (at_.slope < 0) return;
+    direction_ = symmetric_;  // GMRES stopped early
+    at_.slope = at_.g.dot(direction_);
+  }
+
+  bool search() {
+    if (!search_line(monitor_, at_, direction_, 1, next_)) return false;
+    const double promised = -at_.slope * next_.step * (1 - 0.5 * next_.step);
+    const double kept = (at_.energy - next_.energy) / promised;
+    if (next_.step >= 0.9 && kept > kKept)
+      shift_ *= kFall;
+    else if (next_.step < kShortened)
+      shift_ = std::max(kRise * shift_, 1e-9 * unit_);
+    return true;
+  }
+
+  // The shift takes the place of the radius (Levenberg, Marquardt; More 1978).
+  bool try_whole_step() {
+    next_.step = 1;
+    next_.q = at_.q + direction_;
+    next_.energy = monitor_.gradient(next_.q, next_.g);
+    if (!std::isfinite(next_.energy) || !next_.g.allFinite()) return false;
+    const double promised = 0.5 * (shift_ * direction_.squaredNorm() - at_.slope);
+    const double noise = monitor_.energy_noise(at_.energy);
+    const double gain = at_.energy - next_.energy;
+    if (gain < 1e-4 * promised && !(std::abs(gain) <= noise && next_.g.norm() < 0.9 * at_.g.norm()))
+      return false;
+    if (gain > 0.75 * promised || std::abs(gain) <= noise)
+      shift_ *= kFall;
+    else if (gain < 0.25 * promised)
+      shift_ = std::max(kRise * shift_, 1e-9 * unit_);
+    return true;
+  }
+
+  Objective& objective_;
+  Monitor& monitor_;
+  const SolverOptions& options_;
+  ShiftedHessian hessian_;
+  Gmres gmres_{kKrylovVectors};
+  double unit_ = 0, shift_ = 0;  // [force/length]
+  LinePoint at_, next_;
+  Vector work_, symmetric_, direction_;
+};
 
 class SolverNewton final : public Solver {
  public:
-  explicit SolverNewton(const NewtonOptions& options) : options_(options) {}
+  explicit SolverNewton(const SolverOptions& options) : options_(options) {}
 
   std::string_view name() const override { return "newton"; }
   bool follows_path() const override { return true; }
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
-    auto factor = options_.factorisation();
-    Gmres gmres(30);
-    SparseMatrix h;
-    LinePoint at, next;
-    at.q = q;
-    Vector direction, preconditioned, rhs;
-    long version = -1;
-    const bool verbose = knob("NV", 0) > 0;
-    double mu = knob("MU0", 1);
-    const double down = knob("DOWN", 0.1), up = knob("UP", 4), floor_mu = knob("MUMIN", 0);
-    const double forcing = knob("FORCE", 1e-3);
-    at.energy = monitor.gradient(at.q, at.g);
-    double scale = 0;
-    while (true) {
-      if (const auto status = monitor.accept(at.q, at.energy, at.g)) return *status;
-      const double residual = objective.relative_residual(at.g);
-      if (scale == 0) scale = objective.reference_force() / (at.q.maxCoeff() - at.q.minCoeff());
-      bool exact = true;
-      int tries = 0;
-      monitor.hessian(at.q, at.g, h, Projection::None);
-      if (objective.pattern_version() != version) {
-        PhaseTimer timer(monitor.phases(), "analyse");
-        factor->analyse(h);
-        version = objective.pattern_version();
-        diagonal_.clear();
-        for (int c = 0; c < static_cast<int>(h.cols()); ++c) {
-          const int* inner_index = h.innerIndexPtr();
-          const auto at_diagonal =
-              std::lower_bound(inner_index + h.outerIndexPtr()[c], inner_index + h.outerIndexPtr()[c + 1], c);
-          diagonal_.push_back(static_cast<int>(at_diagonal - inner_index));
-        }
-      }
-      double added = 0;
-      double mean_diag = 0;
-      for (int k : diagonal_) mean_diag += h.valuePtr()[k];
-      mean_diag /= double(diagonal_.size());
-      while (true) {
-        const double wanted = std::max(mu * scale, 1e-11 * mean_diag);
-        for (int k : diagonal_) h.valuePtr()[k] += wanted - added;
-        added = wanted;
-        bool ok;
-        {
-          PhaseTimer timer(monitor.phases(), "factorise");
-          ok = factor->factorise(h);
-          monitor.count_factorisation();
-        }
-        if (ok) break;
-        ++tries;
-        if (exact && knob("PROJ", 1) > 0) {
-          exact = false;
-          monitor.hessian(at.q, at.g, h, Projection::PositiveSemidefinite);
-          added = 0;
-        } else
-          mu = std::max(10 * mu, 1e-9);
-        if (mu > 1e12) return Status::Stalled;
-      }
-      int inner = 0;
-      {
-        PhaseTimer timer(monitor.phases(), "direction");
-        rhs = -at.g;
-        factor->solve(rhs, preconditioned);
-        if (objective.has_skew_tangent())
-          inner = gmres.solve(
-              [&](const Vector& v, Vector& out) {
-                rhs.setZero();
-                objective.add_skew_product(v, rhs);
-                factor->solve(rhs, out);
-              },
-              preconditioned, forcing, direction);
-        else
-          direction = preconditioned;
-        at.slope = at.g.dot(direction);
-      }
-      if (!(at.slope < 0)) {
-        if (verbose) std::printf("not descent\n");
-        direction = preconditioned;
-        at.slope = at.g.dot(direction);
-      }
-      if (!search_line(monitor, at, direction, 1, next)) {
-        if (monitor.is_out_of_time()) return Status::TimeLimit;
-        mu = std::max(10 * mu, 1e-6);
-        if (verbose) std::printf("line search failed, mu %g\n", mu);
-        if (mu > 1e6) return Status::LineSearchFailed;
-        continue;
-      }
-      if (verbose)
-        std::printf("%3d res %.2e E %.9g mu %.1e tries %d exact %d inner %d step %.3g |d| %.2e\n",
-                    monitor.iterations(), residual, at.energy, mu, tries, exact, inner, next.step,
-                    direction.lpNorm<Eigen::Infinity>());
-      const double model = at.slope * next.step * (1 - 0.5 * next.step);
-      const double ratio = (next.energy - at.energy) / model;
-      if (next.step >= 0.9 && ratio > 0.5)
-        mu = std::max(floor_mu, mu * down);
-      else if (next.step < 0.3)
-        mu = std::max(mu * up, 1e-9);
-      std::swap(at, next);
-      q = at.q;
-    }
+    return Newton(options_, objective, monitor).minimize(q);
   }
 
  private:
-  NewtonOptions options_;
-  std::vector<int> diagonal_;
+  SolverOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<Solver> make_newton(const NewtonOptions& options) {
+std::unique_ptr<Solver> make_newton(const SolverOptions& options) {
   return std::make_unique<SolverNewton>(options);
 }
 

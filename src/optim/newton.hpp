@@ -1,15 +1,17 @@
-// Newton's method on the exact Hessian, made safe by shifts of its diagonal.
+// Newton's method on the exact Hessian, made safe by a shift of its diagonal that vanishes towards the
+// solution.
 #pragma once
 
-#include "optim/factorisation.hpp"
 #include "optim/solver.hpp"
 
 namespace coapt {
 
-struct NewtonOptions {
-  FactorisationFactory factorisation = make_eigen_factorisation;
-};
-
-std::unique_ptr<Solver> make_newton(const NewtonOptions& options = {});
+// Each step solves (K + mu I) d = -g. K is the exact tangent where Cholesky's method accepts its symmetric
+// part, the sum of the elements' projected ones otherwise; its skew part, from pressure on free edges, is
+// taken into account by GMRES preconditioned with the factor of the symmetric one. The shift mu
+// (pseudo-transient continuation; Kelley & Keyes 1998) starts at the scale force over length of the scene,
+// falls tenfold with each full step that keeps what the quadratic model promised, and rises where a step has
+// to be shortened. Of the options: globalisation, factorisation.
+std::unique_ptr<Solver> make_newton(const SolverOptions& options = {});
 
 }  // namespace coapt

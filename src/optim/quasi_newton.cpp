@@ -34,6 +34,7 @@ Status descend(InverseHessian& inverse, Vector& q, Monitor& monitor) {
   at.energy = monitor.gradient(at.q, at.g);
   while (true) {
     if (const auto status = monitor.accept(at.q, at.energy, at.g)) return *status;
+    inverse.visit(at.q);
     bool is_found = false;
     while (!is_found) {
       const Vector direction = descent_direction(inverse, at, monitor);

@@ -9,9 +9,10 @@ namespace coapt {
 class InverseHessian {
  public:
   virtual ~InverseHessian() = default;
-  virtual bool is_empty() const = 0;                         // nothing learned: the direction is -g
-  virtual void clear() = 0;                                  // forgets what was learned
-  virtual Vector direction(const Vector& g) const = 0;       // -H g
+  virtual void visit(const Vector& /*q*/) {}                 // called at each iterate, before its direction
+  virtual bool is_empty() const = 0;                         // nothing known: the direction is -g
+  virtual void clear() = 0;                                  // forgets; called often enough it is empty
+  virtual Vector direction(const Vector& g) = 0;             // -H g
   virtual void learn(const Vector& s, const Vector& y) = 0;  // step and change of the gradient
 };
 

@@ -189,9 +189,9 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
 }
 
 SolverTable built_in_solvers() {
-  return {{"lbfgs", [] { return make_lbfgs(); }},
-          {"bfgs", [] { return make_bfgs(); }},
-          {"newton", [] { return make_newton(); }}};
+  return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
+          {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
+          {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
 }
 
 }  // namespace coapt

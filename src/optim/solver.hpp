@@ -3,6 +3,7 @@
 
 #include "core/timing.hpp"
 #include "energy/objective.hpp"
+#include "optim/factorisation.hpp"
 
 #include <functional>
 #include <map>
@@ -105,10 +106,24 @@ struct Result {
 // exact residual is small, and judges the outcome by the objective's residual alone.
 Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer = {});
 
-using SolverFactory = std::function<std::unique_ptr<Solver>()>;
+// How a step is kept from going too far.
+enum class Globalisation {
+  LineSearch,  // along the direction, until the energy falls enough
+  TrustRegion  // the shift of the diagonal is raised until the whole step keeps what the model promised
+};
+
+// What solvers may be told; each takes what concerns it.
+struct SolverOptions {
+  int memory = 12;                                          // pairs that lbfgs keeps
+  bool is_preconditioned = false;                           // lbfgs: the factorised Hessian as start metric
+  Globalisation globalisation = Globalisation::LineSearch;  // newton
+  FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
+};
+
+using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this library: "lbfgs", "bfgs". Adapters add themselves (add_ceres_solver, ...).
+// The solvers of this library: "newton", "lbfgs", "bfgs". Adapters add themselves (add_ceres_solver, ...).
 SolverTable built_in_solvers();
 
 }  // namespace coapt

@@ -68,7 +68,7 @@ Points finer(const Step& step, const Points& x) {
 // The problem that starts at x, with the supports where their motion ends.
 Problem started_at(const Points& x, Model& model) {
   if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
-  return {*model.objective, model.objective->unknowns(x), {}};
+  return {*model.objective, model.objective->unknowns(x)};
 }
 
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
@@ -146,7 +146,8 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
       Model model = build(scene, thinned(ground, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
       const Problem problem =
-          is_coarsest ? Problem{*model.objective, model.q0, model.motion} : started_at(start.x, model);
+          is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
+                      : started_at(start.x, model);
       const Result result = cascade.level(problem, mesh.triangle_count(), kCoarseTolerance);
       start = {model.objective->positions(result.q), result.status};
       if (result.status != Status::Converged) failure = result.message;
@@ -190,7 +191,8 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                                        "): the mesh was solved from its own start.");
     model.objective->prescribe(model.X);
   }
-  cascade.finish(cascade.level({*model.objective, model.q0, model.motion}, triangles, stop.tolerance));
+  cascade.finish(cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation},
+                               triangles, stop.tolerance));
   return std::move(cascade.outcome);
 }
 

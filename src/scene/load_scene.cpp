@@ -82,6 +82,16 @@ SolverSpec solver_from(const Parameters& values) {
   solver.max_iterations = values.integer("max_iterations");
   solver.max_seconds = values.number_or("max_seconds", 0);
   solver.memory = values.integer("memory");
+  solver.is_preconditioned = values.flag("preconditioned");
+  solver.globalisation =
+      values.text("globalisation") == "trust_region" ? Globalisation::TrustRegion : Globalisation::LineSearch;
+  solver.factorisation = values.text("factorisation");
+  if (values.has("continuation")) {
+    const Parameters& continuation = values.object("continuation");
+    solver.continuation.load_steps = continuation.integer("load_steps");
+    solver.continuation.stiffness_steps = continuation.integer("stiffness_steps");
+    solver.continuation.first_stiffness = continuation.number("first_stiffness");
+  }
   solver.cascade = values.flag("cascade");
   return solver;
 }

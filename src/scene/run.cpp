@@ -1,7 +1,6 @@
 #include "scene/run.hpp"
 
 #include "core/error.hpp"
-#include "optim/lbfgs.hpp"
 #include "scene/build.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/suggestion.hpp"
@@ -11,7 +10,14 @@
 namespace coapt {
 namespace {
 
-std::unique_ptr<Solver> make_solver(const SolverTable& solvers, const std::string& name, const Scene& scene) {
+FactorisationFactory chosen_factorisation(const FactorisationTable& table, const std::string& name) {
+  if (name == "auto") return table.contains("cholmod") ? table.at("cholmod") : make_eigen_factorisation;
+  if (const auto found = table.find(name); found != table.end()) return found->second;
+  throw InputError("factorisation \"" + name + "\" is not in this build; use \"auto\" or \"eigen\"");
+}
+
+std::unique_ptr<Solver> make_solver(const SolverTable& solvers, const std::string& name,
+                                    const SolverOptions& options) {
   const auto found = solvers.find(name);
   if (found == solvers.end()) {
     std::vector<std::string> known;
@@ -19,8 +25,7 @@ std::unique_ptr<Solver> make_solver(const SolverTable& solvers, const std::strin
     throw InputError("solver \"" + name + "\" is not known" + suggestion(name, known) +
                      "; this build has: " + listed(known));
   }
-  if (name == "lbfgs") return make_lbfgs({scene.solver.memory});
-  return found->second();
+  return found->second(options);
 }
 
 StopRule stop_rule(const Scene& scene, const RunOptions& options) {
@@ -45,7 +50,10 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   RunReport run;
   Report& report = run.report;
   report.solver = options.solver.empty() ? scene.solver.type : options.solver;
-  const SolverMaker maker = [&] { return make_solver(solvers, report.solver, scene); };
+  const SolverOptions solver_options{
+      scene.solver.memory, scene.solver.is_preconditioned, scene.solver.globalisation,
+      chosen_factorisation(options.factorisations, scene.solver.factorisation)};
+  const SolverMaker maker = [&] { return make_solver(solvers, report.solver, solver_options); };
   const std::unique_ptr<Solver> solver = maker();
   const StopRule stop = stop_rule(scene, options);
   const Groundwork ground = lay_groundwork(scene);
@@ -65,7 +73,8 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
     report.levels = std::move(outcome.levels);
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   } else {
-    report.result = solve(*solver, {*model.objective, model.q0, model.motion}, stop, options.observer);
+    report.result = solve(*solver, {*model.objective, model.q0, model.motion, scene.solver.continuation},
+                          stop, options.observer);
   }
 
   const Result& result = report.result;

@@ -15,6 +15,9 @@ struct RunOptions {
   std::filesystem::path folder;       // empty: the scene's, see result_folder()
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty
+
+  // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
+  FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
 };
 
 struct RunReport {

@@ -1,6 +1,7 @@
 // A scene as plain data: names, and numbers in internal units (mm, N, MPa).
 #pragma once
 
+#include "optim/solver.hpp"
 #include "scene/parameters.hpp"
 
 #include <array>
@@ -33,12 +34,16 @@ struct TermSpec {
 };
 
 struct SolverSpec {
-  std::string type = "lbfgs";
+  std::string type = "newton";
   double tolerance = 1e-6;  // on the relative residual
   int max_iterations = 100000;
-  double max_seconds = 0;  // 0 = no limit [s]
-  int memory = 12;         // pairs of lbfgs
-  bool cascade = false;    // coarser meshes first
+  double max_seconds = 0;                                   // 0 = no limit [s]
+  int memory = 12;                                          // pairs of lbfgs
+  bool cascade = false;                                     // coarser meshes first
+  bool is_preconditioned = false;                           // lbfgs
+  Globalisation globalisation = Globalisation::LineSearch;  // newton
+  std::string factorisation = "auto";                       // name in the table of the build
+  Continuation continuation;
 };
 
 struct Scene {

@@ -153,7 +153,7 @@ TEST(Chain, C3bOfRigidLinksMatchesTheDiscreteSolution) {
   StopRule stop;
   stop.tolerance = 1e-7;  // k epsilon is 2e-7 of a force of 12
   const Result result =
-      solve(*built_in_solvers().at("bfgs")(), {objective, objective.unknowns(chain.X), {}}, stop);
+      solve(*built_in_solvers().at("bfgs")({}), {objective, objective.unknowns(chain.X), {}}, stop);
   ASSERT_EQ(result.status, Status::Converged) << result.message;
   const Points x = objective.positions(result.q), support = objective.reactions(result.q);
   EXPECT_NEAR(-x.row(2).minCoeff() / sag, 1, 1e-6);

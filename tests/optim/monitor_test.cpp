@@ -79,7 +79,7 @@ class EverySolver : public testing::TestWithParam<std::string> {
 #ifdef COAPT_HAS_NLOPT
     add_nlopt_solver(table);
 #endif
-    return table.contains(GetParam()) ? table.at(GetParam())() : nullptr;
+    return table.contains(GetParam()) ? table.at(GetParam())({}) : nullptr;
   }
   void SetUp() override {
     if (!solver()) GTEST_SKIP() << "skipped: this build has no " << GetParam();

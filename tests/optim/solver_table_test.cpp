@@ -139,7 +139,7 @@ Result run(Scene& scene, const std::string& solver, double tolerance = 1e-8) {
   StopRule stop;
   stop.tolerance = tolerance;
   stop.max_seconds = 60;
-  return solve(*all_solvers().at(solver)(), {*scene.objective, scene.q0, {}}, stop);
+  return solve(*all_solvers().at(solver)({}), {*scene.objective, scene.q0, {}}, stop);
 }
 
 class SolverOnScene : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -147,7 +147,7 @@ class SolverOnScene : public testing::TestWithParam<std::tuple<std::string, std:
 TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
   const auto& [solver, name] = GetParam();
   if (!all_solvers().contains(solver)) GTEST_SKIP() << "skipped: this build has no " << solver;
-  Scene scene = scenes().at(name)(), reference_scene = scenes().at(name)();
+  Scene scene = scenes().at(name)({}), reference_scene = scenes().at(name)({});
   const Result reference = run(reference_scene, "lbfgs", 1e-10);
   ASSERT_EQ(reference.status, Status::Converged) << reference.message;
   const Result result = run(scene, solver);

@@ -113,7 +113,7 @@ TEST_F(BuildTest, RefusesBendingWithoutAStiffness) {
 
 TEST_F(BuildTest, SolvesTheDiscToARoundedDome) {
   const Model model = build_disc(kDiscTerms, kHeldRim);
-  const auto solver = built_in_solvers().at("lbfgs")();
+  const auto solver = built_in_solvers().at("lbfgs")({});
   const Result result = solve(*solver, {*model.objective, model.q0, model.motion}, {.tolerance = 1e-6});
   EXPECT_EQ(result.status, Status::Converged) << result.message;
   const double height = model.objective->positions(result.q)(2, 0);

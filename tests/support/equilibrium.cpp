@@ -41,7 +41,7 @@ Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms 
   stop.tolerance = tolerance;
   stop.max_seconds = 120;
   Equilibrium found;
-  found.result = solve(*built_in_solvers().at(solver)(), {objective, objective.unknowns(start), {}}, stop);
+  found.result = solve(*built_in_solvers().at(solver)({}), {objective, objective.unknowns(start), {}}, stop);
   found.x = objective.positions(found.result.q);
   return found;
 }

@@ -122,6 +122,7 @@ struct TensionField {
 };
 
 // Hinges (edge, edge, corner, corner) by the angle between the two facets' normals.
+// k ((J1 - J2)^2/2 + J1 J2 (1 - cos(theta - theta0))) from angles, where the facets have an area.
 struct Hinges {
   Points X;
   Eigen::Matrix4Xi nodes;
@@ -129,31 +130,39 @@ struct Hinges {
 
   template <typename T>
   T operator()(const std::vector<AutoVec<T>>& x) const {
+    using std::cos;
     std::vector<AutoVec<double>> rest;
     for (Eigen::Index v = 0; v < X.cols(); ++v) rest.push_back(plain(X.col(v)));
     T energy = T(0.0);
     for (Eigen::Index k = 0; k < nodes.cols(); ++k) {
       const Vec3 e = X.col(nodes(1, k)) - X.col(nodes(0, k));
-      const double areas = 0.5 * (e.cross(X.col(nodes(2, k)) - X.col(nodes(0, k))).norm() +
-                                  e.cross(X.col(nodes(3, k)) - X.col(nodes(0, k))).norm());
+      const double area1 = norm(normal(nodes.col(k), rest, 2)), area2 = norm(normal(nodes.col(k), rest, 3));
+      const T J1 = times(1 / area1, norm(normal(nodes.col(k), x, 2))),
+              J2 = times(1 / area2, norm(normal(nodes.col(k), x, 3)));
       const T fold = T(angle(nodes.col(k), x) - T(angle(nodes.col(k), rest)));
-      energy = T(energy + times(0.5 * stiffness * e.squaredNorm() / areas, squared(fold)));
+      const T turned = T(J1 * J2) * T(T(1.0) - T(cos(fold)));
+      energy = T(energy + times(2 * stiffness * e.squaredNorm() / (area1 + area2),
+                                T(times(0.5, squared(T(J1 - J2))) + turned)));
     }
     return energy;
   }
 
  private:
+  // Of the facet with that corner, both to the same side of the sheet.
+  template <typename T>
+  static AutoVec<T> normal(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x, int corner) {
+    const AutoVec<T> edge = AutoVec<T>(x[n[1]] - x[n[0]]), side = AutoVec<T>(x[n[corner]] - x[n[0]]);
+    return corner == 2 ? cross(edge, side) : cross(side, edge);
+  }
+
   // Away from 0 and pi, where the arc cosine has no derivative.
   template <typename T>
-  T angle(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x) const {
+  static T angle(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x) {
     using std::acos;
-    const AutoVec<T> left = cross(AutoVec<T>(x[n[1]] - x[n[0]]), AutoVec<T>(x[n[2]] - x[n[1]])),
-                     right = cross(AutoVec<T>(x[n[0]] - x[n[1]]), AutoVec<T>(x[n[3]] - x[n[0]]));
-    const T lengths = T(norm(left) * norm(right)), along = dot(left, right);
-    const T cosine = T(along / lengths);
-    const T size = T(acos(cosine));
+    const AutoVec<T> left = normal(n, x, 2), right = normal(n, x, 3);
+    const T size = T(acos(T(dot(left, right) / T(norm(left) * norm(right)))));
     const T side =
-        dot(left, AutoVec<T>(x[n[3]] - x[n[1]]));  // height of the last corner over the first facet
+        dot(left, AutoVec<T>(x[n[3]] - x[n[0]]));  // height of the last corner over the first facet
     return number(side) < 0 ? size : times(-1, size);
   }
 };

@@ -80,7 +80,7 @@ class SolverCeres final : public Solver {
 }  // namespace
 
 void add_ceres_solver(SolverTable& table) {
-  table["ceres"] = [] { return std::make_unique<SolverCeres>(); };
+  table["ceres"] = [](const SolverOptions&) { return std::make_unique<SolverCeres>(); };
 }
 
 }  // namespace coapt

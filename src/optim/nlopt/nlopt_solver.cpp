@@ -54,7 +54,7 @@ class SolverNlopt final : public Solver {
 }  // namespace
 
 void add_nlopt_solver(SolverTable& table) {
-  table["nlopt"] = [] { return std::make_unique<SolverNlopt>(); };
+  table["nlopt"] = [](const SolverOptions&) { return std::make_unique<SolverNlopt>(); };
 }
 
 }  // namespace coapt

@@ -30,7 +30,7 @@ int main() {
 
   Points start = X;
   start.row(2) = (0.1 * (1 - X.colwise().squaredNorm().array())).matrix();
-  const auto solver = built_in_solvers().at("lbfgs")();
+  const auto solver = built_in_solvers().at("lbfgs")({});
   const Result result = solve(*solver, {objective, objective.unknowns(start), {}}, {.tolerance = 1e-8});
 
   const double height = objective.positions(result.q).row(2).maxCoeff();

@@ -1,0 +1,41 @@
+// The Hessian of an objective, shifted until it is positive definite, and its factor.
+#pragma once
+
+#include "optim/factorisation.hpp"
+#include "optim/monitor.hpp"
+
+#include <vector>
+
+namespace coapt {
+
+class ShiftedHessian {
+ public:
+  explicit ShiftedHessian(const FactorisationFactory& make) : factor_(make()) {}
+
+  // Evaluates the Hessian at q and factorises it with `shift` [force/length] added to its diagonal: the exact
+  // one if that is positive definite, else that of projected elements with a shift that is raised until it is
+  // one. g: gradient at q. Returns false when no shift helps: the Hessian is not finite.
+  bool factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g, double& shift);
+
+  // The same Hessian with a greater shift.
+  bool raise(Monitor& monitor, double& shift);
+
+  // x = (K + shift)^-1 b. Pre: the last factorisation succeeded.
+  void solve(const Vector& b, Vector& x) { factor_->solve(b, x); }
+
+  bool is_exact() const { return is_exact_; }
+
+ private:
+  void analyse(Monitor& monitor);
+  bool factorise_shifted(Monitor& monitor, double shift);
+
+  std::unique_ptr<Factorisation> factor_;
+  SparseMatrix h_;
+  std::vector<int> diagonal_;  // places of the diagonal among the values
+  long pattern_version_ = -1;  // that was analysed
+  double shift_ = 0;           // that the diagonal carries now
+  double least_shift_ = 0;     // keeps what has no stiffness at all, such as slack chords' junctions
+  bool is_exact_ = true;
+};
+
+}  // namespace coapt
