@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace coapt {
 namespace {
 
@@ -39,6 +41,15 @@ std::unique_ptr<EnergyTerm> bending_term(const Points& X, const Eigen::Matrix4Xi
       "bending", std::vector<int>(nodes.data(), nodes.data() + nodes.size()), rest);
 }
 
+oracle::Hinges hinge_oracle(const Points& X, const Triangles& triangles) {
+  const Eigen::Matrix4Xi nodes = hinges(triangles);
+  Vector angle(nodes.cols());
+  for (Eigen::Index k = 0; k < nodes.cols(); ++k)
+    angle[k] =
+        BendingHinge::angle(X.col(nodes(0, k)), X.col(nodes(1, k)), X.col(nodes(2, k)), X.col(nodes(3, k)));
+  return {X, nodes, angle, kStiffness};
+}
+
 TermCase bending_case(const std::string& label, const Points& rest, const Points& state,
                       const Triangles& triangles) {
   TermCase c;
@@ -56,7 +67,7 @@ TEST(BendingHinge, PassesTheSuiteOnACrumpledPatch) {
   const TriangleMesh mesh = patch();
   const TermCase c = bending_case("crumpled", mesh.vertices, shaken(mesh.vertices, 0.15, 8), mesh.triangles);
   EXPECT_EQ(examine_term(c), "");
-  EXPECT_EQ(compare_with_autodiff(c, oracle::Hinges{mesh.vertices, hinges(mesh.triangles), kStiffness}), "");
+  EXPECT_EQ(compare_with_autodiff(c, hinge_oracle(mesh.vertices, mesh.triangles)), "");
 }
 
 // One hinge folded by an angle, with unequal facets.
@@ -81,7 +92,7 @@ TEST(BendingHinge, PassesTheSuiteFromNearlyFlatToASharpFold) {
                               hinge_triangles());
     c.reach = 0.01;
     EXPECT_EQ(examine_term(c), "");
-    EXPECT_EQ(compare_with_autodiff(c, oracle::Hinges{rest, hinges(hinge_triangles()), kStiffness}), "");
+    EXPECT_EQ(compare_with_autodiff(c, hinge_oracle(rest, hinge_triangles())), "");
   }
 }
 
@@ -100,7 +111,8 @@ TEST(BendingHinge, HasExactDerivativesWhereItIsFlat) {
   const TermCase c = bending_case("flat", folded(0), folded(1e-12), hinge_triangles());
   const TermValues flat = evaluate_term(*c.make({}), c.state);
   const double k = kStiffness * 1.44 / (0.5 * 1.2 * 1.7);
-  EXPECT_NEAR(flat.energy / (0.5 * k * 1e-24), 1, 1e-10);
+  EXPECT_NEAR(flat.energy / (0.5 * k * 1e-24), 1,
+              1e-6);  // beside it the rounding in the plane, 1e-16, counts
   // Lifting a corner by z turns its facet by z over its height.
   EXPECT_NEAR(flat.gradient(2, 3) / (-k * 1e-12 / 0.9), 1, 1e-10);
   EXPECT_NEAR(flat.gradient(2, 2) / (-k * 1e-12 / 0.8), 1, 1e-10);
@@ -108,42 +120,47 @@ TEST(BendingHinge, HasExactDerivativesWhereItIsFlat) {
   EXPECT_NEAR(flat.hessian(8, 11) / (k / 0.72), 1, 1e-10);
 }
 
-// A sheet sewn flat on itself opens alike to both sides of a half turn.
-TEST(BendingHinge, OpensAlikeToBothSidesOfAFoldedRestState) {
-  const Points flat = folded(std::numbers::pi);
-  const auto rest = BendingHinge::rest(flat.col(0), flat.col(1), flat.col(2), flat.col(3), 1);
-  const auto energy = [&](double angle) {
-    const Points x = folded(angle);
-    return BendingHinge::evaluate(rest, Eigen::Map<const Eigen::Vector<double, 12>>(x.data()), nullptr,
-                                  nullptr);
-  };
-  const double expected = rest.stiffness * (1 - std::cos(0.4));
-  EXPECT_NEAR(energy(std::numbers::pi - 0.4), expected, 1e-14);
-  EXPECT_NEAR(energy(-std::numbers::pi + 0.4), expected, 1e-14);
+// The promise of the law: rigid facets that turn about their edge, from any angle at rest.
+TEST(BendingHinge, MeasuresTwiceTheSineOfHalfTheChangeOfAngle) {
+  const double k = kStiffness * 1.44 / (0.5 * 1.2 * 1.7);
+  for (const double at_rest : {0.0, 0.4, -1.3, 3.0, std::numbers::pi})
+    for (const double angle : {0.0, 1e-9, 0.7, -2.2, 3.1}) {
+      const TermCase c = bending_case("fold", folded(at_rest), folded(angle), hinge_triangles());
+      const double change = 2 * std::sin((angle - at_rest) / 2);
+      EXPECT_NEAR(evaluate_term(*c.make({}), c.state).energy, 0.5 * k * change * change, 1e-15)
+          << at_rest << " " << angle;
+    }
 }
 
-// A facet that has lost its area is where an angle has no meaning: the law and its slope must not notice.
-TEST(BendingHinge, IsSmoothWhereAFacetLosesItsArea) {
-  const Points rest = folded(0.3);
-  const auto slope = [&](double height) {
-    Points x = folded(0.5);
-    x.col(3) = Vec3(height, 0.7, 0);
-    return evaluate_term(*bending_term(rest, hinges(hinge_triangles()), kStiffness), x).gradient;
-  };
-  EXPECT_LT((slope(1e-7) - slope(-1e-7)).norm(), 1e-5 * slope(0).norm());
-  EXPECT_GT(slope(0).norm(), 0.1);
-}
-
-TEST(BendingHinge, StaysFiniteWhereAFacetCollapses) {
+// Where a facet collapses the angle has no limit; energy, force and stiffness have.
+TEST(BendingHinge, IsSmoothWhereAFacetCollapses) {
   const TermCase c = bending_case("hinge", folded(0.4), folded(0), hinge_triangles());
-  Points on_edge = folded(0.3), point = folded(0.3), thin = folded(0.3);
-  on_edge.col(3) = 0.3 * on_edge.col(0) + 0.7 * on_edge.col(1);
-  point.col(1) = point.col(0);
-  thin.col(3) = Vec3(1e-9, 0.5, 1e-10);
-  for (const Points& x : {on_edge, point, thin}) {
-    const TermValues values = evaluate_term(*c.make({}), x);
-    EXPECT_TRUE(std::isfinite(values.energy) && values.gradient.allFinite() && values.hessian.allFinite());
+  const auto term = c.make({});
+  const auto at_height = [&](double height) {
+    Points x = folded(0.3);
+    x.col(3) = Vec3(height, 0.5, 0);
+    return evaluate_term(*term, x);
+  };
+  const TermValues collapsed = at_height(0);
+  EXPECT_GT(collapsed.energy, 0.01);
+  for (const double height : {1e-9, -1e-9}) {
+    const TermValues near = at_height(height);
+    EXPECT_LT(std::abs(near.energy - collapsed.energy), 1e-8);
+    EXPECT_LT((near.gradient - collapsed.gradient).norm(), 1e-7);
+    EXPECT_LT((near.hessian - collapsed.hessian).norm(), 1e-7);
   }
+  Points point = folded(0.3);
+  point.col(1) = point.col(0);
+  EXPECT_TRUE(std::isfinite(evaluate_term(*term, point).energy));
+  EXPECT_TRUE(evaluate_term(*term, point).hessian.allFinite());
+}
+
+TEST(BendingHinge, CostsNothingWhereAFlatSheetStaysFlatAndStretchesEvenly) {
+  const TriangleMesh mesh = grid_mesh(3, 3);
+  const auto term = bending_term(mesh.vertices, hinges(mesh.triangles), 1.0);
+  const TermValues flat = evaluate_term(*term, deformation(1.4, 0.3, 0.2) * mesh.vertices);
+  EXPECT_LT(flat.energy, 1e-25);
+  EXPECT_LT(flat.gradient.norm(), 1e-12);
 }
 
 // Energy of a sheet rolled to a cylinder, over that of plate theory, averaged over directions of rolling.

@@ -121,49 +121,64 @@ struct TensionField {
   }
 };
 
-// Hinges (edge, edge, corner, corner) by the angle between the two facets' normals.
-// k ((J1 - J2)^2/2 + J1 J2 (1 - cos(theta - theta0))) from angles, where the facets have an area.
+// Hinges (edge, edge, corner, corner) from heights and normals, in units of those at rest. `angle`: of each
+// hinge at rest.
 struct Hinges {
   Points X;
   Eigen::Matrix4Xi nodes;
+  Vector angle;
   double stiffness;
 
   template <typename T>
   T operator()(const std::vector<AutoVec<T>>& x) const {
-    using std::cos;
-    std::vector<AutoVec<double>> rest;
-    for (Eigen::Index v = 0; v < X.cols(); ++v) rest.push_back(plain(X.col(v)));
     T energy = T(0.0);
     for (Eigen::Index k = 0; k < nodes.cols(); ++k) {
-      const Vec3 e = X.col(nodes(1, k)) - X.col(nodes(0, k));
-      const double area1 = norm(normal(nodes.col(k), rest, 2)), area2 = norm(normal(nodes.col(k), rest, 3));
-      const T J1 = times(1 / area1, norm(normal(nodes.col(k), x, 2))),
-              J2 = times(1 / area2, norm(normal(nodes.col(k), x, 3)));
-      const T fold = T(angle(nodes.col(k), x) - T(angle(nodes.col(k), rest)));
-      const T turned = T(J1 * J2) * T(T(1.0) - T(cos(fold)));
-      energy = T(energy + times(2 * stiffness * e.squaredNorm() / (area1 + area2),
-                                T(times(0.5, squared(T(J1 - J2))) + turned)));
+      const Facet left = facet(nodes.col(k), 2), right = facet(nodes.col(k), 3);
+      const AutoVec<T> m1 = height(nodes.col(k), 2, left, x), m2 = height(nodes.col(k), 3, right, x);
+      const AutoVec<T> n1 = normal(nodes.col(k), 2, left, x), n2 = normal(nodes.col(k), 3, right, x);
+      const double edge = (X.col(nodes(1, k)) - X.col(nodes(0, k))).norm();
+      T square = T(0.0);
+      for (int i = 0; i < 3; ++i) {
+        const T flat = times(std::cos(angle[k] / 2), T(m1[i] + m2[i]));
+        const T folded = times(std::sin(angle[k] / 2), T(n1[i] - n2[i]));
+        square = T(square + squared(T(flat + folded)));
+      }
+      energy = T(energy + times(0.5 * stiffness * edge * edge / (left.area + right.area), square));
     }
     return energy;
   }
 
  private:
-  // Of the facet with that corner, both to the same side of the sheet.
-  template <typename T>
-  static AutoVec<T> normal(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x, int corner) {
-    const AutoVec<T> edge = AutoVec<T>(x[n[1]] - x[n[0]]), side = AutoVec<T>(x[n[corner]] - x[n[0]]);
-    return corner == 2 ? cross(edge, side) : cross(side, edge);
+  struct Facet {
+    double area, height, foot;  // at rest; foot: its share of the edge
+  };
+
+  // By Heron's formula and the law of cosines.
+  Facet facet(const Eigen::Vector4i& n, int corner) const {
+    const double edge = (X.col(n[1]) - X.col(n[0])).norm(), p = (X.col(n[corner]) - X.col(n[0])).norm(),
+                 q = (X.col(n[corner]) - X.col(n[1])).norm(), half = 0.5 * (edge + p + q);
+    const double area = std::sqrt(half * (half - edge) * (half - p) * (half - q));
+    return {area, 2 * area / edge, 0.5 * (1 + (p * p - q * q) / (edge * edge))};
   }
 
-  // Away from 0 and pi, where the arc cosine has no derivative.
   template <typename T>
-  static T angle(const Eigen::Vector4i& n, const std::vector<AutoVec<T>>& x) {
-    using std::acos;
-    const AutoVec<T> left = normal(n, x, 2), right = normal(n, x, 3);
-    const T size = T(acos(T(dot(left, right) / T(norm(left) * norm(right)))));
-    const T side =
-        dot(left, AutoVec<T>(x[n[3]] - x[n[0]]));  // height of the last corner over the first facet
-    return number(side) < 0 ? size : times(-1, size);
+  AutoVec<T> height(const Eigen::Vector4i& n, int corner, const Facet& f,
+                    const std::vector<AutoVec<T>>& x) const {
+    AutoVec<T> m;
+    for (int i = 0; i < 3; ++i) {
+      const T foot = T(times(1 - f.foot, x[n[0]][i]) + times(f.foot, x[n[1]][i]));
+      m[i] = times(1 / f.height, T(x[n[corner]][i] - foot));
+    }
+    return m;
+  }
+
+  // Seen from the edge both corners turn the same way round, so the second normal points down.
+  template <typename T>
+  AutoVec<T> normal(const Eigen::Vector4i& n, int corner, const Facet& f,
+                    const std::vector<AutoVec<T>>& x) const {
+    AutoVec<T> cross_product = cross(AutoVec<T>(x[n[0]] - x[n[corner]]), AutoVec<T>(x[n[1]] - x[n[corner]]));
+    for (T& entry : cross_product) entry = times(0.5 / f.area, entry);
+    return cross_product;
   }
 };
 
