@@ -118,7 +118,7 @@ std::string scene_text(const Shape& shape, const ShapeOptions& options) {
   text += "  \"name\": \"" + shape.name + "\",\n";
   if (shape.mesh != nullptr) text += "  \"mesh\": { \"file\": \"mesh.obj\" },\n";
   text += "  \"boundary\": " + shape.boundary + ",\n  \"terms\": " + terms + "\n  ],\n";
-  text += "  \"solver\": { \"type\": \"lbfgs\", \"tolerance\": 1e-6 }\n}\n";
+  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": 1e-8 }\n}\n";
   text = replaced(text, "$MODEL", model);
   text = replaced(text, "$SIDE", millimetres(kAirbagSide));
   // The whole chain weighs 1.2 N.

@@ -10,9 +10,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kFirstShift = 1;  // times force over length of the scene
-constexpr double kFall = 0.1;      // of the shift after a step that kept its promise
-constexpr double kRise = 4;        // after one that was shortened much
+constexpr double kFirstShift = 10;  // times force over length of the scene
+constexpr double kFall = 0.2;       // of the shift after a step that kept its promise
+constexpr double kRise = 4;         // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kForcing = 1e-3;                // GMRES, relative
@@ -73,7 +73,7 @@ class Newton {
   }
 
   bool search() {
-    if (!search_line(monitor_, at_, direction_, 1, next_)) return false;
+    if (!search_line(monitor_, at_, direction_, first_step(), next_)) return false;
     const double promised = -at_.slope * next_.step * (1 - 0.5 * next_.step);
     const double kept = (at_.energy - next_.energy) / promised;
     if (next_.step >= 0.9 && kept > kKept)
@@ -81,6 +81,20 @@ class Newton {
     else if (next_.step < kShortened)
       shift_ = std::max(kRise * shift_, 1e-9 * unit_);
     return true;
+  }
+
+  // One, but for a double root, such as a slack chord's onset of tension, which Newton's method approaches by
+  // halves: there the step that ends the series (Decker & Kelley 1980).
+  double first_step() {
+    double step = 1;
+    if (last_.size() == direction_.size()) {
+      const double ratio = direction_.dot(last_) / last_.squaredNorm();
+      if (ratio > 0.4 && ratio < 0.6 &&
+          (direction_ - ratio * last_).squaredNorm() < 0.01 * direction_.squaredNorm())
+        step = 1 / (1 - ratio);
+    }
+    last_ = direction_;
+    return step;
   }
 
   // The shift takes the place of the radius (Levenberg, Marquardt; More 1978).
@@ -108,7 +122,7 @@ class Newton {
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
   LinePoint at_, next_;
-  Vector work_, symmetric_, direction_;
+  Vector work_, symmetric_, direction_, last_;
 };
 
 class SolverNewton final : public Solver {

@@ -118,7 +118,7 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
   text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
   text += "  \"boundary\": " + boundary_text(valve) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
-  text += "  \"solver\": { \"type\": \"lbfgs\", \"tolerance\": " + digits(options.tolerance) + " }";
+  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) + " }";
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
   return text + "\n}\n";
 }
