@@ -88,6 +88,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     options.folder = arguments->folder;
     if (tolerance->count() > 0) options.tolerance = arguments->tolerance;
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
+    options.factorisations = all_factorisations();
     options.observer = make_observer();
     const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);
     end_progress();

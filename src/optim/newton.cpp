@@ -15,6 +15,7 @@ constexpr double kFall = 0.2;       // of the shift after a step that kept its p
 constexpr double kRise = 4;         // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
+constexpr double kExact = 0.1;  // deviation of the kept from the promised decrease
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
@@ -77,7 +78,7 @@ class Newton {
     const double promised = -at_.slope * next_.step * (1 - 0.5 * next_.step);
     const double kept = (at_.energy - next_.energy) / promised;
     if (next_.step >= 0.9 && kept > kKept)
-      shift_ *= kFall;
+      shift_ *= std::abs(kept - 1) < kExact ? kFall * kFall : kFall;
     else if (next_.step < kShortened)
       shift_ = std::max(kRise * shift_, 1e-9 * unit_);
     return true;

@@ -43,13 +43,6 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
   return terms;
 }
 
-double mean_spacing(const Model& model) {
-  if (model.mesh.triangle_count() > 0) return mean_edge_length(model.mesh.vertices, model.mesh.triangles);
-  double sum = 0;
-  for (const Line& line : model.lines) sum += (model.X.col(line.a) - model.X.col(line.b)).norm();
-  return model.lines.empty() ? 0 : sum / static_cast<double>(model.lines.size());
-}
-
 }  // namespace
 
 Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
@@ -62,7 +55,7 @@ Model build(const Scene& scene, const Groundwork& ground) {
   if (!defects.empty()) throw InputError(defects);
   warn_of_unsupported_parts(model, terms, prescribed.fixed);
 
-  model.motion = motion_path(prescribed, model.X, scene.motion_steps, mean_spacing(model));
+  model.motion = motion_path(prescribed, model.X, scene.motion_steps);
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
   model.q0 = model.objective->unknowns(model.X);
   return model;

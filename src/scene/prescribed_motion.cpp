@@ -110,17 +110,15 @@ void apply(const BoundaryEntry& entry, const Model& model, const std::map<std::s
   }
 }
 
-// The longest way that a node travels in one section of its path.
-double longest_section(const Prescribed& prescribed, const Points& X) {
-  double longest = 0;
+// Stations of the longest path; zero where nothing moves.
+size_t station_count(const Prescribed& prescribed, const Points& X) {
+  size_t count = 0;
   for (const auto& [node, path] : prescribed.paths) {
-    Vec3 from = X.col(node);
-    for (const Vec3& to : path) {
-      longest = std::max(longest, (to - from).norm() * static_cast<double>(path.size()));
-      from = to;
-    }
+    const bool moves =
+        std::any_of(path.begin(), path.end(), [&](const Vec3& to) { return to != X.col(node); });
+    if (moves) count = std::max(count, path.size());
   }
-  return longest;
+  return count;
 }
 
 }  // namespace
@@ -140,15 +138,11 @@ Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vect
   return prescribed;
 }
 
-MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps, double spacing) {
-  constexpr double kMostSteps = 1000;
+MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps) {
   MotionPath motion;
-  const double longest = longest_section(prescribed, X);
-  if (longest == 0) return motion;
-  motion.steps = steps;
-  if (steps == 0)
-    motion.steps =
-        spacing > 0 ? static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMostSteps)) : 1;
+  const size_t stations = station_count(prescribed, X);
+  if (stations == 0) return motion;
+  motion.steps = steps > 0 ? steps : static_cast<int>(stations);
   motion.positions = [paths = prescribed.paths, X](double t) {
     Points x = X;
     for (const auto& [node, path] : paths) {

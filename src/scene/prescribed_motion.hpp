@@ -23,7 +23,8 @@ Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vect
                      std::vector<std::string>& defects);
 
 // The motion along straight lines from station to station, each path at constant t per section.
-// steps: as given, or where 0 as many as keep every node below `spacing` [mm] per step.
-MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps, double spacing);
+// steps: as given, or where 0 one for each station: the free nodes are carried along, so that a long step
+// tears nothing.
+MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps);
 
 }  // namespace coapt

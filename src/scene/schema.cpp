@@ -154,12 +154,14 @@ const ObjectSpec& scene_spec() {
           boundary_key(),
           {.name = "motion",
            .kind = KeyKind::Object,
-           .object = {.keys = {{.name = "steps",
-                                .kind = KeyKind::Integer,
-                                .min = 1,
-                                .max = 100000,
-                                .doc = "Equal steps of the prescribed motion; default: as many as keep every "
-                                       "prescribed node below one mean edge length per step."}}},
+           .object =
+               {.keys = {{.name = "steps",
+                          .kind = KeyKind::Integer,
+                          .min = 1,
+                          .max = 100000,
+                          .doc =
+                              "Equal steps of the prescribed motion; default: one for each station of the "
+                              "longest path. Free nodes are carried along, whatever the length of a step."}}},
            .doc = "How the prescribed nodes travel."},
           {.name = "terms",
            .kind = KeyKind::Terms,
