@@ -18,7 +18,7 @@ struct ImportOptions {
   std::string pressure_model = "follower";  // follower, volume, frozen, or field (toward the commissure line)
   std::string contact = "none";             // none or facet
   double default_thickness = 0.65;          // where the valve states none [mm]
-  double tolerance = 1e-6;
+  double tolerance = 1e-8;
 };
 
 // Reads a valve JSON and the meshes beside it and writes the folder. Returns warnings, whole sentences.
