@@ -1,10 +1,12 @@
 // Rows B1 to B4 of the verification table: membranes under load against closed forms and an independent
-// solution of the axisymmetric equations.
+// solution of the axisymmetric equations. Each is solved twice: cst_stvk by lbfgs, and cst_tension_field by
+// newton, which must give the same answers, as all these membranes are taut.
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
+#include "support/sheets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +16,31 @@
 namespace coapt {
 namespace {
 
+// What a membrane is made of and who solves for it.
+struct Means {
+  std::string name;
+  Material material;
+  std::string solver;
+};
+
+const Means kMeans[] = {{"cst_stvk by lbfgs", Material::StVK, "lbfgs"},
+                        {"cst_tension_field by newton", Material::TensionField, "newton"}};
+
+// Eh = 1, nu = 0.3.
+Equilibrium find(const Means& means, const TriangleMesh& mesh, const Points& start, const FixedMask& fixed,
+                 std::unique_ptr<EnergyTerm> load, double prestress = 0, double tolerance = 1e-9) {
+  Equilibrium found = find_equilibrium(
+      start, fixed,
+      terms_of(sheet_term(means.material, mesh.vertices, mesh.triangles, {1, 0.3, prestress}),
+               std::move(load)),
+      tolerance, means.solver);
+  EXPECT_EQ(found.result.status, Status::Converged) << means.name << ": " << found.result.message;
+  return found;
+}
+
 // --- B1: square of side 1, tension 1, dead load p: w0 = 0.0736713 p -----------------------------------
 
-double square_deflection(int n) {
+double square_deflection(const Means& means, int n) {
   const double p = 1e-4;
   const TriangleMesh mesh = grid_mesh(n, n);
   FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
@@ -26,11 +50,8 @@ double square_deflection(int n) {
   const Points load = frozen_pressure_forces(mesh.vertices, mesh.triangles, p);
   // The edge tension 1/n is 1e6 times the load of a node, and no measure of whether that load is balanced.
   const Equilibrium found =
-      find_equilibrium(mesh.vertices, fixed,
-                       terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 1}),
-                                std::make_unique<LoadDead>("load", "load_pressure", load, mesh.vertices)),
-                       1e-6);
-  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+      find(means, mesh, mesh.vertices, fixed,
+           std::make_unique<LoadDead>("load", "load_pressure", load, mesh.vertices), 1, 1e-6);
   return found.x(2, grid_node(n, n / 2, n / 2)) / p;
 }
 
@@ -47,17 +68,52 @@ double poisson_deflection() {
 TEST(Square, B1SagsUnderASmallLoadLikePoissonsEquation) {
   const double exact = poisson_deflection();
   EXPECT_NEAR(exact, 0.0736713533, 1e-8);
-  const double coarse = square_deflection(16) / exact - 1, middle = square_deflection(32) / exact - 1;
-  EXPECT_GT(observed_order(coarse, middle), 1.9);
-  if (is_sanitized()) return;
-  const double fine = square_deflection(64) / exact - 1;
-  EXPECT_LT(std::abs(fine), 1e-3);
-  EXPECT_GT(observed_order(middle, fine), 1.9);
+  for (const Means& means : kMeans) {
+    SCOPED_TRACE(means.name);
+    const double coarse = square_deflection(means, 16) / exact - 1,
+                 middle = square_deflection(means, 32) / exact - 1;
+    EXPECT_GT(observed_order(coarse, middle), 1.9);
+    if (is_sanitized()) continue;
+    const double fine = square_deflection(means, 64) / exact - 1;
+    std::printf("B1 %s: errors %.2e %.2e %.2e\n", means.name.c_str(), coarse, middle, fine);
+    EXPECT_LT(std::abs(fine), 1e-3);
+    EXPECT_GT(observed_order(middle, fine), 1.9);
+  }
+}
+
+// --- B1c: disc of radius 1, tension 1, dead load p: w0 = p/4 --------------------------------------------
+
+double prestressed_disc_deflection(const Means& means, int n) {
+  const double p = 1e-4;
+  const TriangleMesh mesh = smooth_disc_mesh(n);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    fixed.col(v).setConstant(mesh.vertices.col(v).norm() > 1 - 1e-9);
+  const Points load = frozen_pressure_forces(mesh.vertices, mesh.triangles, p);
+  const Equilibrium found =
+      find(means, mesh, mesh.vertices, fixed,
+           std::make_unique<LoadDead>("load", "load_pressure", load, mesh.vertices), 1, 1e-6);
+  return found.x(2, grid_node(n, n / 2, n / 2)) / p;
+}
+
+TEST(PrestressedDisc, B1cSagsToAParaboloid) {
+  const double exact = 0.25;
+  for (const Means& means : kMeans) {
+    SCOPED_TRACE(means.name);
+    const double coarse = prestressed_disc_deflection(means, 8) / exact - 1,
+                 fine = prestressed_disc_deflection(means, 16) / exact - 1;
+    EXPECT_GT(observed_order(coarse, fine), 1.9);
+    if (is_sanitized()) continue;
+    const double finest = prestressed_disc_deflection(means, 32) / exact - 1;
+    std::printf("B1c %s: errors %.2e %.2e %.2e\n", means.name.c_str(), coarse, fine, finest);
+    EXPECT_LT(std::abs(finest), 1e-3);
+    EXPECT_GT(observed_order(fine, finest), 1.9);
+  }
 }
 
 // --- B2: clamped disc, exact geometry -------------------------------------------------------------------
 
-double disc_deflection(int n, double q, bool is_follower) {
+double disc_deflection(const Means& means, int n, double q, bool is_follower) {
   const TriangleMesh mesh = smooth_disc_mesh(n);
   FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
   Points start = mesh.vertices;  // slightly bulged: the flat disc has no stiffness
@@ -74,10 +130,7 @@ double disc_deflection(int n, double q, bool is_follower) {
   else
     load = std::make_unique<LoadDead>(
         "p", "load_pressure", frozen_pressure_forces(mesh.vertices, mesh.triangles, q), mesh.vertices);
-  const Equilibrium found = find_equilibrium(
-      start, fixed, terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0}), std::move(load)),
-      1e-9);
-  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  const Equilibrium found = find(means, mesh, start, fixed, std::move(load));
   return found.x(2, grid_node(n, n / 2, n / 2));
 }
 
@@ -91,20 +144,24 @@ class Disc : public testing::TestWithParam<DiscCase> {};
 
 TEST_P(Disc, B2MatchesTheExactAxisymmetricSolution) {
   const auto [q, is_follower, exact] = GetParam();
-  const double coarse = disc_deflection(4, q, is_follower), middle = disc_deflection(8, q, is_follower),
-               fine = disc_deflection(16, q, is_follower);
-  EXPECT_GT(observed_order(middle - exact, fine - exact), 1.9);
-  if (is_sanitized()) return;
-  EXPECT_LT(std::abs(disc_deflection(22, q, is_follower) / exact - 1), 2e-3);  // 1,936 triangles
-  const double finest = disc_deflection(32, q, is_follower);
-  const auto extrapolated = [](double h2, double h, double factor) { return h + (h - h2) / (factor - 1); };
-  const double a = extrapolated(coarse, middle, 4), b = extrapolated(middle, fine, 4),
-               c = extrapolated(fine, finest, 4);  // free of h^2
-  const double answer = extrapolated(extrapolated(a, b, 16), extrapolated(b, c, 16), 64);
-  std::printf("B2 %s q=%.0e: errors %.2e %.2e %.2e, extrapolated %.2e\n", is_follower ? "follower" : "dead",
-              q, middle / exact - 1, fine / exact - 1, finest / exact - 1, answer / exact - 1);
-  EXPECT_GT(observed_order(fine - exact, finest - exact), 1.9);
-  EXPECT_LT(std::abs(answer / exact - 1), 1e-5);
+  for (const Means& means : kMeans) {
+    SCOPED_TRACE(means.name);
+    const auto deflection = [&](int n) { return disc_deflection(means, n, q, is_follower); };
+    const double coarse = deflection(4), middle = deflection(8), fine = deflection(16);
+    EXPECT_GT(observed_order(middle - exact, fine - exact), 1.9);
+    if (is_sanitized()) continue;
+    EXPECT_LT(std::abs(deflection(22) / exact - 1), 2e-3);  // 1,936 triangles
+    const double finest = deflection(32);
+    const auto extrapolated = [](double h2, double h, double factor) { return h + (h - h2) / (factor - 1); };
+    const double a = extrapolated(coarse, middle, 4), b = extrapolated(middle, fine, 4),
+                 c = extrapolated(fine, finest, 4);  // free of h^2
+    const double answer = extrapolated(extrapolated(a, b, 16), extrapolated(b, c, 16), 64);
+    std::printf("B2 %s q=%.0e, %s: errors %.2e %.2e %.2e, extrapolated %.2e\n",
+                is_follower ? "follower" : "dead", q, means.name.c_str(), middle / exact - 1,
+                fine / exact - 1, finest / exact - 1, answer / exact - 1);
+    EXPECT_GT(observed_order(fine - exact, finest - exact), 1.9);
+    EXPECT_LT(std::abs(answer / exact - 1), 1e-5);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Loads, Disc,
@@ -134,16 +191,12 @@ struct Sphere {
   double stretch, energy_per_area;
 };
 
-Sphere inflated_sphere(int subdivisions, double stretch) {
+Sphere inflated_sphere(const Means& means, int subdivisions, double stretch) {
   const double p = sphere_pressure(stretch);  // Eh = R = 1, nu = 0.3
   const TriangleMesh mesh = sphere_mesh(subdivisions);
   const FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
-  auto membrane = membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0});
-  const Equilibrium found = find_equilibrium(
-      1.05 * mesh.vertices, fixed,
-      terms_of(std::move(membrane), make_follower_pressure("p", mesh.vertices, mesh.triangles, p, fixed)),
-      1e-9);
-  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  const Equilibrium found = find(means, mesh, 1.05 * mesh.vertices, fixed,
+                                 make_follower_pressure("p", mesh.vertices, mesh.triangles, p, fixed));
   const double rest = surface_area(mesh.vertices, mesh.triangles);
   double energy = 0;
   for (const TermReport& term : found.result.terms)
@@ -151,16 +204,16 @@ Sphere inflated_sphere(int subdivisions, double stretch) {
   return {std::sqrt(surface_area(found.x, mesh.triangles) / rest), energy / rest};
 }
 
-TEST(Sphere, B3InflatesToTheClosedFormStretch) {
+void expect_closed_form_stretch(const Means& means) {
   for (const double stretch : {1.02, 1.1, 1.3}) {
-    const Sphere coarse = inflated_sphere(1, stretch), middle = inflated_sphere(2, stretch);
+    const Sphere coarse = inflated_sphere(means, 1, stretch), middle = inflated_sphere(means, 2, stretch);
     EXPECT_GT(observed_order(coarse.stretch - stretch, middle.stretch - stretch), 1.9) << stretch;
     if (is_sanitized()) continue;
-    const Sphere fine = inflated_sphere(3, stretch);  // 1,280 faces
+    const Sphere fine = inflated_sphere(means, 3, stretch);  // 1,280 faces
     const double at_given_pressure = fine.energy_per_area / sphere_energy(stretch) - 1;
-    std::printf("B3 %.2f: errors of stretch %.2e %.2e %.2e, of energy at the given pressure %.2e\n", stretch,
-                coarse.stretch / stretch - 1, middle.stretch / stretch - 1, fine.stretch / stretch - 1,
-                at_given_pressure);
+    std::printf("B3 %.2f, %s: errors of stretch %.2e %.2e %.2e, of energy at the given pressure %.2e\n",
+                stretch, means.name.c_str(), coarse.stretch / stretch - 1, middle.stretch / stretch - 1,
+                fine.stretch / stretch - 1, at_given_pressure);
     EXPECT_LT(std::abs(fine.stretch / stretch - 1), 5e-3) << stretch;
     EXPECT_LT(std::abs(sphere_pressure(fine.stretch) / sphere_pressure(stretch) - 1), 5e-3) << stretch;
     EXPECT_LT(std::abs(fine.energy_per_area / sphere_energy(fine.stretch) - 1), 5e-3) << stretch;
@@ -173,6 +226,13 @@ TEST(Sphere, B3InflatesToTheClosedFormStretch) {
   }
 }
 
+TEST(Sphere, B3InflatesToTheClosedFormStretch) {
+  for (const Means& means : kMeans) {
+    SCOPED_TRACE(means.name);
+    expect_closed_form_stretch(means);
+  }
+}
+
 // --- B4: long strip as a cylinder -------------------------------------------------------------------------
 
 struct Strip {
@@ -180,7 +240,7 @@ struct Strip {
 };
 
 // Free edges y = 0 and y = height move within their planes: pressure needs the exact follower model there.
-double strip_sag(int n, const Strip& strip) {
+double strip_sag(const Means& means, int n, const Strip& strip) {
   const int rows = 2;
   const double height = rows * strip.rest_width / n;
   const TriangleMesh mesh = grid_mesh(n, rows, strip.rest_width, height);
@@ -195,27 +255,30 @@ double strip_sag(int n, const Strip& strip) {
       if (i == 0 || i == n) fixed.col(grid_node(n, i, j)).setConstant(true);
     }
   const Equilibrium found =
-      find_equilibrium(start, fixed,
-                       terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0}),
-                                make_follower_pressure("p", start, mesh.triangles, strip.p, fixed)),
-                       1e-9);
-  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+      find(means, mesh, start, fixed, make_follower_pressure("p", start, mesh.triangles, strip.p, fixed));
   double sag = 0;
   for (int j = 0; j <= rows; ++j) sag += found.x(2, grid_node(n, n / 2, j)) / (rows + 1);
   return sag;
 }
 
-TEST(Strip, B4BulgesIntoTheClosedFormCylinder) {
+void expect_closed_form_bulge(const Means& means) {
   for (const Strip& strip :
        {Strip{1.0, 1e-3, 0.0349517345}, Strip{1.0, 1e-2, 0.0753898085}, Strip{1.2, 1e-2, 0.286536511}}) {
-    const double coarse = strip_sag(16, strip), middle = strip_sag(32, strip);
+    const double coarse = strip_sag(means, 16, strip), middle = strip_sag(means, 32, strip);
     EXPECT_GT(observed_order(coarse - strip.sag, middle - strip.sag), 1.9);
     if (is_sanitized()) continue;
-    const double fine = strip_sag(64, strip);
-    std::printf("B4 %.1f %.0e: errors %.2e %.2e %.2e\n", strip.rest_width, strip.p, coarse / strip.sag - 1,
-                middle / strip.sag - 1, fine / strip.sag - 1);
+    const double fine = strip_sag(means, 64, strip);
+    std::printf("B4 %.1f %.0e, %s: errors %.2e %.2e %.2e\n", strip.rest_width, strip.p, means.name.c_str(),
+                coarse / strip.sag - 1, middle / strip.sag - 1, fine / strip.sag - 1);
     EXPECT_LT(std::abs(fine / strip.sag - 1), 1e-3);
     EXPECT_GT(observed_order(middle - strip.sag, fine - strip.sag), 1.9);
+  }
+}
+
+TEST(Strip, B4BulgesIntoTheClosedFormCylinder) {
+  for (const Means& means : kMeans) {
+    SCOPED_TRACE(means.name);
+    expect_closed_form_bulge(means);
   }
 }
 
