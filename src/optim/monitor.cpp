@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kEnergyNoise = 1e-12;  // relative to the energy
 constexpr double kWorkNoise = 1e-14;    // relative to force times extent
+constexpr size_t kUsualTrace = 1000;    // iterates for which the trace never grows
 constexpr int kPatience = 1000;         // iterates without gain
 constexpr double kRunaway = 1e4;        // growth of the unknowns' extent that no equilibrium explains
 
@@ -28,7 +29,9 @@ Monitor::Monitor(Objective& objective, const StopRule& stop, const Observer& obs
       stop_(stop),
       observer_(observer),
       tolerance_(stop.tolerance),
-      start_(wall_seconds()) {}
+      start_(wall_seconds()) {
+  trace_.reserve(kUsualTrace);
+}
 
 double Monitor::value(const Vector& q) {
   PhaseTimer timer(phases_, "value");

@@ -15,7 +15,7 @@ constexpr double kFall = 0.2;       // of the shift after a step that kept its p
 constexpr double kRise = 4;         // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
-constexpr double kExact = 0.1;  // deviation of the kept from the promised decrease
+constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 

@@ -1,10 +1,13 @@
-// Counts what a factorisation allocates once its pattern is known. An executable of its own: it puts itself
-// in front of the C library's allocator, which serves Eigen and CHOLMOD alike.
+// Counts what a factorisation allocates once its pattern is known, and what a whole iteration of newton does.
+// An executable of its own: it puts itself in front of the C library's allocator, which serves Eigen and
+// CHOLMOD alike.
 #include "optim/factorisation.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"
 #endif
+
+#include "support/valve_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -110,5 +113,23 @@ TEST_F(Allocation, OfCholmodIsItsUpdateMatrixAtAnySize) {
   }
 }
 #endif
+
+// From the second iterate on, whatever the iteration does: Hessian, factor, GMRES, line search, trace.
+TEST_F(Allocation, NewtonIteratesWithoutAny) {
+  const ValveScene scene{{}};
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  const auto newton = built_in_solvers().at("newton")({});
+  std::vector<long> counts;
+  counts.reserve(1000);
+  const Result result = solve(*newton, {objective, objective.unknowns(scene.X), scene.method().motion},
+                              {.tolerance = 1e-8}, [&](const Iteration&, const Vector&) {
+                                counts.push_back(allocations);
+                                return true;
+                              });
+  ASSERT_EQ(result.status, Status::Converged);
+  ASSERT_GT(counts.size(), 5u);
+  EXPECT_GT(counts[1], counts[0]);  // the first iteration makes room
+  for (size_t k = 2; k < counts.size(); ++k) EXPECT_EQ(counts[k], counts[k - 1]) << "iteration " << k;
+}
 
 }  // namespace

@@ -1,0 +1,167 @@
+// Newton's method and what it stands on: the exact, unsymmetric tangent of follower pressure, GMRES, shifts.
+#include "optim/newton.hpp"
+
+#include "optim/carry_along.hpp"
+#include "optim/gmres.hpp"
+#include "optim/lbfgs.hpp"
+#include "support/meshes.hpp"
+#include "support/sanitized.hpp"
+#include "support/valve_scene.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+namespace coapt {
+namespace {
+
+// The valve at a state off equilibrium, its leaflets' free edges moving.
+struct ShakenValve {
+  ValveScene scene{{}};
+  Objective objective{scene.X, scene.fixed, scene.terms()};
+  Vector q = objective.unknowns(shaken(scene.X, 0.05, 4));
+};
+
+Vector shaken_direction(Eigen::Index size) {
+  Vector v(size);
+  for (Eigen::Index k = 0; k < size; ++k) v[k] = std::sin(1 + 2.7 * static_cast<double>(k));
+  return v.normalized();
+}
+
+TEST(FollowerTangent, IsTheDerivativeOfTheExactForce) {
+  ShakenValve valve;
+  valve.objective.follow_path(valve.q);
+  Vector g, ahead, behind;
+  SparseMatrix h;
+  valve.objective.hessian(valve.q, g, h);
+  ASSERT_TRUE(valve.objective.has_skew_tangent());
+  const Vector v = shaken_direction(valve.q.size());
+  Vector product = h.selfadjointView<Eigen::Lower>() * v;
+  const Vector symmetric = product;
+  valve.objective.add_skew_product(v, product);
+  const double step = 1e-6;
+  valve.objective.gradient(valve.q + step * v, ahead);
+  valve.objective.gradient(valve.q - step * v, behind);
+  const Vector difference = (ahead - behind) / (2 * step);
+  EXPECT_LT((difference - product).norm(), 1e-6 * product.norm());
+  EXPECT_GT((difference - symmetric).norm(), 1e-4 * product.norm());  // the skew part is there
+  EXPECT_NEAR(v.dot(product - symmetric), 0, 1e-12 * product.norm());
+}
+
+// The same for the remainder of the surface closed by fans, term by term.
+TEST(FollowerTangent, IsTheDerivativeOfTheRemainderWithFansToo) {
+  const ValveScene scene{{}};
+  Points x = shaken(scene.X, 0.05, 5);
+  for (const auto& term : scene.terms()) {
+    if (!term->has_circulatory_force()) continue;
+    for (const bool has_fans : {false, true}) {
+      if (has_fans) term->renew(x);
+      std::vector<TangentBlock> blocks;
+      term->add_circulatory_tangent(x, blocks);
+      const Points v = shaken_direction(x.size()).reshaped(3, x.cols());
+      Points product = Points::Zero(3, x.cols());
+      for (const TangentBlock& block : blocks) product.col(block.row) += block.value * v.col(block.column);
+      Points ahead = Points::Zero(3, x.cols()), behind = ahead;
+      term->add_circulatory_force(x + 1e-5 * v, ahead);
+      term->add_circulatory_force(x - 1e-5 * v, behind);
+      EXPECT_GT(product.norm(), 0);
+      EXPECT_LT(((ahead - behind) / 2e-5 - product).norm(), 1e-8 * product.norm()) << has_fans;
+      EXPECT_TRUE(!has_fans || term->simplify());
+    }
+  }
+}
+
+// Simpson's rule is exact for pressure along a straight step: the merit's slope is the exact force's.
+TEST(FollowerTangent, WorkAlongAStraightPathIsExact) {
+  ShakenValve valve;
+  valve.objective.follow_path(valve.q);
+  const Vector d = 3 * shaken_direction(valve.q.size());
+  Vector g;
+  const auto slope_error = [&](double s, double h) {
+    const double rise =
+        valve.objective.value(valve.q + (s + h) * d) - valve.objective.value(valve.q + (s - h) * d);
+    valve.objective.gradient(valve.q + s * d, g);
+    return std::abs(rise / (2 * h) - g.dot(d)) / std::abs(g.dot(d));
+  };
+  for (const double s : {0.3, 1.0, 2.0}) EXPECT_LT(slope_error(s, 1e-4), 1e-6) << s;
+}
+
+TEST(Gmres, SolvesWhatADenseSolverSolves) {
+  const Eigen::MatrixXd B =
+      0.4 * Eigen::MatrixXd::NullaryExpr(30, 30, [](Eigen::Index i, Eigen::Index j) {
+        return std::sin(3.0 * static_cast<double>(i) + 7.0 * static_cast<double>(j * j));
+      });
+  const Vector b = shaken_direction(30);
+  const auto apply = [&](const Vector& v, Vector& out) { out = B * v; };
+  Gmres gmres(30);
+  Vector x;
+  gmres.solve(apply, b, 1e-12, x);
+  const Vector exact = (Eigen::MatrixXd::Identity(30, 30) + B).lu().solve(b);
+  EXPECT_LT((x - exact).norm(), 1e-10 * exact.norm());
+  EXPECT_LE(gmres.solve(apply, b, 1e-2, x), 29);  // a loose tolerance takes fewer
+  EXPECT_LT((x + B * x - b).norm(), 1.01e-2);
+  EXPECT_EQ(gmres.solve(apply, Vector::Zero(30), 1e-2, x), 0);
+  EXPECT_EQ(x.norm(), 0);
+}
+
+Result solve_valve(const ValveScene& scene, const SolverOptions& options, const std::string& solver,
+                   const Continuation& continuation = {}) {
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  const auto method = built_in_solvers().at(solver)(options);
+  StopRule stop;
+  stop.tolerance = 1e-9;
+  return solve(*method, {objective, objective.unknowns(scene.X), scene.method().motion, continuation}, stop);
+}
+
+TEST(Newton, ReachesOneShapeByEveryRoute) {
+  if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
+  const ValveScene scene{{}};
+  const Result plain = solve_valve(scene, {}, "newton");
+  ASSERT_EQ(plain.status, Status::Converged) << plain.message;
+  EXPECT_LE(plain.iterations, 20);
+  EXPECT_LE(plain.factorisations, 24);
+  EXPECT_NE(plain.route.find("work along the path"), std::string::npos);
+
+  SolverOptions trust_region, preconditioned;
+  trust_region.globalisation = Globalisation::TrustRegion;
+  preconditioned.is_preconditioned = true;
+  const Result others[] = {
+      solve_valve(scene, trust_region, "newton"), solve_valve(scene, preconditioned, "lbfgs"),
+      solve_valve(scene, {}, "newton", {4, 1, 1}), solve_valve(scene, {}, "newton", {1, 4, 0.1})};
+  for (const Result& other : others) {
+    EXPECT_EQ(other.status, Status::Converged) << other.message;
+    EXPECT_NEAR(other.energy, plain.energy, 1e-7 * std::abs(plain.energy));
+  }
+  const Result plain_lbfgs = solve_valve(scene, {}, "lbfgs");
+  EXPECT_LT(4 * others[1].iterations, plain_lbfgs.iterations);  // what the metric is there for
+}
+
+TEST(Continuation, EndsAtTheFullProblem) {
+  const ValveScene scene{{}};
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  Vector g, scaled;
+  const Vector q = objective.unknowns(scene.X);
+  const double energy = objective.gradient(q, g);
+  objective.scale(0.5, 0.5);
+  EXPECT_NEAR(objective.gradient(q, scaled), 0.5 * energy, 1e-12 * std::abs(energy));
+  EXPECT_LT((scaled - 0.5 * g).norm(), 1e-14 * g.norm());
+  objective.scale(1, 1);
+  EXPECT_EQ(objective.gradient(q, scaled), energy);
+}
+
+TEST(CarryAlong, TakesASheetWhereItsRimGoesAndLeavesTheRestAlone) {
+  const TriangleMesh mesh = disc_mesh(6);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  for (const auto& loop : boundary_loops(mesh.triangles))
+    for (const int node : loop) fixed.col(node).setConstant(true);
+  Objective objective(mesh.vertices, fixed,
+                      terms_of(sheet_term(Material::StVK, mesh.vertices, mesh.triangles, {})));
+  const Vec3 shift(0.3, -2, 5);
+  const Points target = mesh.vertices.colwise() + shift;
+  const Vector q = objective.unknowns(mesh.vertices);
+  const Vector carried = carried_along(objective, q, target);
+  EXPECT_LT((carried - objective.unknowns(target)).lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_LT((carried_along(objective, q, mesh.vertices) - q).lpNorm<Eigen::Infinity>(), 1e-15);
+}
+
+}  // namespace
+}  // namespace coapt
