@@ -137,8 +137,9 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   };
   for (size_t k = 0; k < terms_.size(); ++k) {
     if (terms_[k]->role() != TermRole::Load) read_off_loads();
-    energy += pour(*terms_[k], h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection)
-                                            : Sink(gradient));
+    energy +=
+        pour(*terms_[k], h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection, threads_)
+                                      : Sink(gradient));
   }
   read_off_loads();
   if (h != nullptr) {

@@ -54,6 +54,10 @@ class Objective {
   // scaled alike leave an equilibrium where it is.
   void scale(double load, double stiffness);
 
+  // Threads that may assemble the Hessian; 1 from the start. The result has the same bits whatever their
+  // number.
+  void use_threads(int count) { threads_ = count; }
+
   // Moves the prescribed coordinates to those of x; free coordinates of x are ignored.
   void prescribe(const Points& x);
 
@@ -135,6 +139,7 @@ class Objective {
   std::vector<int> block_;                          // block of each node, -1 = wholly prescribed
   int free_count_ = 0;
   double load_factor_ = 1, stiffness_factor_ = 1;
+  int threads_ = 1;
 
   enum class Circulatory { None, HeldDead, PathWork };
   Circulatory circulatory_ = Circulatory::None;

@@ -26,13 +26,15 @@ class Sink {
   // Energy and gradient, 3 x node_count values in column order, added to.
   explicit Sink(double* gradient) : gradient_(gradient) {}
 
-  // Energy, gradient and Hessian. slots: width * width for each element of the term.
-  Sink(double* gradient, double* hessian, const BlockSlot* slots, Projection projection)
-      : gradient_(gradient), hessian_(hessian), slots_(slots), projection_(projection) {}
+  // Energy, gradient and Hessian. slots: width * width for each element of the term. threads: that may
+  // evaluate elements; what is poured, and in which order, does not depend on them.
+  Sink(double* gradient, double* hessian, const BlockSlot* slots, Projection projection, int threads = 1)
+      : gradient_(gradient), hessian_(hessian), slots_(slots), projection_(projection), threads_(threads) {}
 
   bool wants_gradient() const { return gradient_ != nullptr; }
   bool wants_hessian() const { return hessian_ != nullptr; }
   Projection projection() const { return projection_; }
+  int threads() const { return threads_; }
 
   // Everything that is poured in from now on is multiplied by this factor (continuation in load or
   // stiffness).
@@ -60,6 +62,7 @@ class Sink {
   double* hessian_ = nullptr;
   const BlockSlot* slots_ = nullptr;
   Projection projection_ = Projection::None;
+  int threads_ = 1;
   double factor_ = 1;
 };
 

@@ -57,6 +57,7 @@ Model build(const Scene& scene, const Groundwork& ground) {
 
   model.motion = motion_path(prescribed, model.X, scene.motion_steps);
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
+  model.objective->use_threads(scene.solver.threads);
   model.q0 = model.objective->unknowns(model.X);
   return model;
 }

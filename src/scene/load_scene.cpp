@@ -86,6 +86,7 @@ SolverSpec solver_from(const Parameters& values) {
   solver.globalisation =
       values.text("globalisation") == "trust_region" ? Globalisation::TrustRegion : Globalisation::LineSearch;
   solver.factorisation = values.text("factorisation");
+  solver.threads = values.integer("threads");
   if (values.has("continuation")) {
     const Parameters& continuation = values.object("continuation");
     solver.continuation.load_steps = continuation.integer("load_steps");

@@ -109,6 +109,12 @@ KeySpec solver_key() {
                                               .doc = "Factor on the stiffness before the first step."}}},
                          .doc = "Way to the full problem by easier ones, together with the prescribed "
                                 "motion; default: the full problem at once."},
+                        {.name = "threads",
+                         .kind = KeyKind::Integer,
+                         .fallback = "1",
+                         .min = 1,
+                         .max = 256,
+                         .doc = "Threads that assemble the Hessian; the result does not depend on them."},
                         {.name = "globalisation",
                          .kind = KeyKind::Choice,
                          .fallback = "\"line_search\"",

@@ -135,6 +135,23 @@ TEST(Newton, ReachesOneShapeByEveryRoute) {
   EXPECT_LT(4 * others[1].iterations, plain_lbfgs.iterations);  // what the metric is there for
 }
 
+TEST(Threads, AssembleTheSameBits) {
+  ValveOptions options;
+  options.triangles = 5000;  // more than a batch of elements
+  const ValveScene scene(options);
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  const Vector q = objective.unknowns(shaken(scene.X, 0.05, 3));
+  Vector g1, g;
+  SparseMatrix h1, h;
+  const double energy = objective.hessian(q, g1, h1);
+  for (const int threads : {2, 4, 8}) {
+    objective.use_threads(threads);
+    EXPECT_EQ(objective.hessian(q, g, h), energy) << threads;
+    EXPECT_TRUE((g.array() == g1.array()).all()) << threads;
+    EXPECT_TRUE((h.coeffs() == h1.coeffs()).all()) << threads;
+  }
+}
+
 TEST(Continuation, EndsAtTheFullProblem) {
   const ValveScene scene{{}};
   Objective objective(scene.X, scene.fixed, scene.terms());
