@@ -44,6 +44,7 @@ struct SolverSpec {
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   std::string factorisation = "auto";                       // name in the table of the build
   Continuation continuation;
+  int modes = 0;  // smallest eigenvalues in the certificate
 };
 
 struct Scene {
