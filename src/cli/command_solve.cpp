@@ -18,6 +18,7 @@ namespace {
 struct Arguments {
   std::string scene, folder, solver;
   double tolerance = 0, max_seconds = 0;
+  int modes = 0;
 };
 
 void print_value(const char* label, const std::optional<double>& value, const char* unit,
@@ -35,6 +36,14 @@ void print_reference(const ReferenceDistance& distance) {
               std::max(distance.to_reference.max, distance.from_reference.max));
 }
 
+void print_certificate(const Certificate& certificate) {
+  std::printf("  %-22s %s\n", "certificate", summary(certificate).c_str());
+  if (certificate.stability.smallest.size() == 0) return;
+  std::printf("  %-22s", "smallest eigenvalues");
+  for (const double value : certificate.stability.smallest) std::printf(" %.4g", value);
+  std::printf(" N/mm\n");
+}
+
 void print_summary(const RunReport& run) {
   const Report& report = run.report;
   const Result& result = report.result;
@@ -42,6 +51,7 @@ void print_summary(const RunReport& run) {
   std::printf("%s\n", result.message.c_str());
   std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
   std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
+  print_certificate(result.certificate);
   std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh",
               run.model.mesh.vertex_count(), run.model.mesh.triangle_count(), run.model.lines.size());
   std::printf("  %-22s %s, %d iterations, %ld gradients, %.2f s\n", "solver", report.solver.c_str(),
@@ -81,13 +91,18 @@ void add_solve_command(CLI::App& app, int& exit_code) {
       command
           ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")
           ->check(CLI::PositiveNumber);
-  command->callback([arguments, tolerance, seconds, &exit_code] {
+  const auto* modes = command
+                          ->add_option("--modes", arguments->modes,
+                                       "Smallest eigenvalues in the certificate (default: the scene's)")
+                          ->check(CLI::Range(0, 1000));
+  command->callback([arguments, tolerance, seconds, modes, &exit_code] {
     listen_for_interrupts();
     RunOptions options;
     options.solver = arguments->solver;
     options.folder = arguments->folder;
     if (tolerance->count() > 0) options.tolerance = arguments->tolerance;
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
+    if (modes->count() > 0) options.modes = arguments->modes;
     options.factorisations = all_factorisations();
     options.observer = make_observer();
     const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);

@@ -95,10 +95,9 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
     best_energy_ = std::min(best_energy_, energy);
     best_residual_ = std::min(best_residual_, now.residual);
   }
-  if (extent_ > kRunaway * first_extent_) {
-    ran_away_ = true;
-    return Status::Stalled;
-  }
+  if (extent_ > kRunaway * first_extent_ ||
+      (watch_ != nullptr && watch_->is_lost(objective_, q, now.residual)))
+    return Status::NoEquilibrium;
   if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // Watches one run for every solver alike: trace, stop rules, time by phase, counters, cancellation.
 #pragma once
 
+#include "optim/equilibrium_watch.hpp"
 #include "optim/solver.hpp"
 
 #include <optional>
@@ -35,11 +36,12 @@ class Monitor {
   double tolerance() const { return tolerance_; }  // of this round, on the relative residual
 
   // --- for solve() -------------------------------------------------------------------------------------
+  // Asked at each accepted iterate whether the run is lost. It must outlive the run.
+  void set_watch(EquilibriumWatch* watch) { watch_ = watch; }
   void begin_round(int round, double tolerance);
   int round() const { return round_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
-  bool has_run_away() const { return ran_away_; }  // the unknowns grew without bound
   double seconds() const { return wall_seconds() - start_; }
   long factorisations() const { return factorisations_; }
   std::vector<Iteration> take_trace() { return std::move(trace_); }
@@ -56,10 +58,10 @@ class Monitor {
   double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round
   int last_gain_ = 0;                                           // iteration of the last improvement
   bool cancelled_ = false;
+  EquilibriumWatch* watch_ = nullptr;
   long factorisations_ = 0;
   Vector last_;
   double extent_ = 0, first_extent_ = 0;  // of the unknowns [length]
-  bool ran_away_ = false;
   std::vector<Iteration> trace_;
   PhaseTimes phases_;
 };

@@ -15,11 +15,19 @@ namespace {
 constexpr int kMaxRounds = 100;  // renewals of a load without potential
 constexpr int kMaxRoundsWithoutGain = 12;
 constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
+constexpr int kMostSaddles = 2;            // that are left in one run
+constexpr double kFirstKick = 1e-2;        // off a saddle, relative to the extent of the unknowns
+constexpr int kKickTrials = 8;
 
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
+}
+
+bool ends_the_run(Status status) {
+  return status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
+         status == Status::NonFinite || status == Status::NoEquilibrium;
 }
 
 // Renews the load that has no potential until the exact residual is small. Each round minimises the
@@ -51,9 +59,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
     ++rounds;
     monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
     const Status status = solver.minimize(objective, q, monitor);
-    if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
-        status == Status::NonFinite)
-      return status;
+    if (ends_the_run(status)) return status;
   }
   q = best;
   note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
@@ -85,8 +91,117 @@ std::string sentence(const Result& result, double tolerance, const std::string& 
     case Status::Stalled:
       text = "stalled" + at + wanted;
       break;
+    case Status::NoEquilibrium:
+      text = "no equilibrium";
+      break;
   }
   return note.empty() ? text : text + ": " + note;
+}
+
+// How far a solver got, and what there is to say about it.
+struct Outcome {
+  Status status = Status::Converged;
+  std::string note = {};
+  bool is_on_the_way = false;  // the full problem was not reached
+};
+
+// Follows the prescribed motion and the continuation to the full problem.
+Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+               Result& result) {
+  Objective& objective = problem.objective;
+  const Continuation& continuation = problem.continuation;
+  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
+                              continuation.stiffness_steps});
+  Outcome outcome;
+  int step = 1;
+  for (; step <= steps; ++step) {
+    const double t = static_cast<double>(step) / steps;
+    if (problem.motion.positions) {
+      const Points x = problem.motion.positions(t);
+      result.q = carried_along(objective, result.q, x);
+      objective.prescribe(x);
+    }
+    objective.scale(continuation.load_steps > 1 ? t : 1,
+                    continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
+    const bool is_last = step == steps;
+    outcome.status = settle(solver, objective, result.q, monitor,
+                            is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance),
+                            result.rounds, outcome.note);
+    if (ends_the_run(outcome.status)) break;
+  }
+  // A run that was cut short is judged, with the full load, and kept, where it had got to.
+  objective.scale(1, 1);
+  outcome.is_on_the_way = step < steps;
+  if (outcome.is_on_the_way)
+    outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
+                   " of the prescribed motion or of the continuation";
+  return outcome;
+}
+
+bool feels_no_force(const Result& result) {
+  return std::all_of(result.terms.begin(), result.terms.end(),
+                     [](const TermReport& term) { return term.greatest_force == 0; });
+}
+
+// The verdict is the objective's, whatever the solver thinks.
+void judge(const Outcome& outcome, const Problem& problem, const StopRule& stop, Monitor& monitor,
+           Result& result) {
+  Objective& objective = problem.objective;
+  std::string note = outcome.note;
+  result.status = outcome.status;
+  result.residual = objective.true_residual(result.q);
+  if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
+      result.status != Status::NoEquilibrium && !outcome.is_on_the_way)
+    result.status = Status::Converged;
+  else if (result.status == Status::Converged || result.status == Status::LineSearchFailed)
+    result.status = Status::Stalled;
+  result.iterations = monitor.iterations();
+
+  if (problem.stability.factorisation) {
+    PhaseTimer timer(monitor.phases(), "certificate");
+    const bool judges_stability = result.status == Status::Converged || result.status == Status::Stalled;
+    result.certificate = certify(objective, result.q, stop.tolerance, problem.stability, judges_stability);
+    for (int k = 0; k < result.certificate.stability.factorisations; ++k) monitor.count_factorisation();
+  }
+  // The potential around the final state, so that the energy depends on that state alone and not on the
+  // way that a solver took to it.
+  if (objective.has_circulatory_force()) objective.hold_dead(result.q);
+  result.terms = objective.breakdown(result.q);
+  result.energy = 0;
+  for (const TermReport& term : result.terms) result.energy += term.energy;
+
+  if (result.status == Status::Converged && result.iterations == 0) {
+    if (objective.free_count() == 0)
+      note = "no coordinate is free: there is nothing to solve";
+    else
+      note = feels_no_force(result) ? "no force acts anywhere: there is nothing to solve"
+                                    : "the start is an equilibrium already";
+  }
+  const StabilityReport& stability = result.certificate.stability;
+  if (stability.verdict == Stability::Saddle && result.certificate.is_conservative)
+    note = "this is a saddle of the energy, with " +
+           (stability.negative_modes < 0 ? "uncounted" : std::to_string(stability.negative_modes)) +
+           " negative modes";
+  result.message = sentence(result, stop.tolerance, note);
+}
+
+// Goes down from a saddle along its negative mode. What descends from there never comes back to it, as its
+// energy is lower. Returns false where there is no saddle or no way down was found.
+bool leave_saddle(Monitor& monitor, Result& result) {
+  const Vector& mode = result.certificate.stability.descent;
+  if (result.status != Status::Converged || !result.certificate.is_conservative || mode.size() == 0)
+    return false;
+  const double energy = monitor.value(result.q), wanted = energy - monitor.energy_noise(energy);
+  const double extent = result.q.maxCoeff() - result.q.minCoeff();
+  double length = kFirstKick * extent / mode.lpNorm<Eigen::Infinity>();
+  for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25)
+    for (const double sign : {1.0, -1.0}) {
+      const Vector q = result.q + sign * length * mode;
+      if (!(monitor.value(q) < wanted)) continue;
+      result.q = q;
+      return true;
+    }
+  return false;
 }
 
 }  // namespace
@@ -107,6 +222,8 @@ std::string_view status_name(Status status) {
       return "non_finite";
     case Status::Cancelled:
       return "cancelled";
+    case Status::NoEquilibrium:
+      return "no_equilibrium";
   }
   return "";
 }
@@ -119,63 +236,24 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
 
   Result result;
   result.q = problem.q0;
-  Status status = Status::Converged;
-  std::string note;
-  const Continuation& continuation = problem.continuation;
-  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
-                              continuation.stiffness_steps});
-  int step = 1;
-  for (; step <= steps; ++step) {
-    const double t = static_cast<double>(step) / steps;
-    if (problem.motion.positions) {
-      const Points x = problem.motion.positions(t);
-      result.q = carried_along(objective, result.q, x);
-      objective.prescribe(x);
-    }
-    objective.scale(continuation.load_steps > 1 ? t : 1,
-                    continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
-    const bool is_last = step == steps;
-    status =
-        settle(solver, objective, result.q, monitor,
-               is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance), result.rounds, note);
-    if (status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
-        status == Status::NonFinite || monitor.has_run_away())
-      break;
+  EquilibriumWatch watch(objective, problem.q0);
+  monitor.set_watch(&watch);
+  Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
+  if (outcome.note.empty()) {
+    outcome = follow(solver, problem, stop, monitor, result);
+    if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
   }
-  // A run that was cut short is judged, with the full load, and kept, where it had got to.
-  objective.scale(1, 1);
-  const bool is_on_the_way = step < steps;
-  if (monitor.has_run_away())
-    note =
-        "no equilibrium was found, the shape grows without bound: a part is not held, or the load is too "
-        "much for it";
-  else if (is_on_the_way)
-    note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
-           " of the prescribed motion or of the continuation";
-
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
                        ? "exact force, with its work along the path as merit"
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
                              std::to_string(result.rounds) + " rounds";
-
-  // The verdict is the objective's, whatever the solver thinks.
-  result.residual = objective.true_residual(result.q);
-  // The potential around the final state, so that the energy depends on that state alone and not on the
-  // way that a solver took to it.
-  if (objective.has_circulatory_force()) objective.hold_dead(result.q);
-  result.terms = objective.breakdown(result.q);
-  for (const TermReport& term : result.terms) result.energy += term.energy;
-  if (result.residual <= stop.tolerance && status != Status::Cancelled && !is_on_the_way)
-    status = Status::Converged;
-  else if (status == Status::Converged || status == Status::LineSearchFailed)
-    status = Status::Stalled;
-  result.status = status;
-  result.iterations = monitor.iterations();
-  if (status == Status::Converged && result.iterations == 0)
-    note = objective.free_count() == 0 ? "no coordinate is free: there is nothing to solve"
-                                       : "the start is an equilibrium already";
-  result.message = sentence(result, stop.tolerance, note);
+  judge(outcome, problem, stop, monitor, result);
+  for (int saddle = 0; saddle < kMostSaddles && leave_saddle(monitor, result); ++saddle) {
+    monitor.begin_round(monitor.round() + 1, stop.tolerance);
+    const Status status = solver.minimize(objective, result.q, monitor);
+    judge({status, "a saddle was left on the way"}, problem, stop, monitor, result);
+  }
 
   result.evaluations = {objective.counts().value - counts_before.value,
                         objective.counts().gradient - counts_before.gradient,

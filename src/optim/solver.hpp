@@ -3,6 +3,7 @@
 
 #include "core/timing.hpp"
 #include "energy/objective.hpp"
+#include "optim/certificate.hpp"
 #include "optim/factorisation.hpp"
 
 #include <functional>
@@ -20,8 +21,9 @@ enum class Status {
   TimeLimit,
   Stalled,  // no further progress is possible at this precision
   LineSearchFailed,
-  NonFinite,  // the objective could not be evaluated
-  Cancelled   // by the observer
+  NonFinite,     // the objective could not be evaluated
+  Cancelled,     // by the observer
+  NoEquilibrium  // there is none, or the shape grows or shrinks without bound
 };
 
 std::string_view status_name(Status status);  // "converged", "iteration_limit", ...
@@ -83,6 +85,10 @@ struct Problem {
   Vector q0;
   MotionPath motion = {};
   Continuation continuation = {};
+
+  // With a factorisation the result gets a certificate, and a saddle is left where the loads have a
+  // potential.
+  StabilityOptions stability = {};
 };
 
 struct Result {
@@ -97,6 +103,7 @@ struct Result {
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;
+  Certificate certificate;  // where the problem asked for it
   std::vector<Iteration> trace;
   double wall_s = 0, cpu_s = 0;
   std::map<std::string, double> phase_s;  // wall time by phase

@@ -10,7 +10,7 @@ struct Groundwork;
 
 // Reads the scene's files, checks the mesh, numbers the nodes, and builds motion, terms and objective.
 // What is doubtful but usable is said in Model::warnings: slack rest data, isolated vertices (prescribed, so
-// that they carry no unknowns), parts that no prescribed node holds.
+// that they carry no unknowns), parts that nothing keeps from shifting.
 // Throws InputError with all defects that could be found, each naming its file or its place in the scene.
 Model build(const Scene& scene);
 

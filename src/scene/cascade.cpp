@@ -172,11 +172,13 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
 }  // namespace
 
 CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
-                             const SolverMaker& make_solver, const StopRule& stop, const Observer& observer) {
+                             const SolverMaker& make_solver, const StopRule& stop, const Observer& observer,
+                             const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
   const int triangles = model.mesh.triangle_count();
   if (const std::optional<Start> start = coarse_start(scene, ground, cascade)) {
-    const Problem problem = started_at(start->x, model);
+    Problem problem = started_at(start->x, model);
+    problem.stability = stability;
     if (was_interrupted(start->status)) {
       cascade.finish(judged(problem, start->status, *make_solver()));
       return std::move(cascade.outcome);
@@ -191,8 +193,9 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                                        "): the mesh was solved from its own start.");
     model.objective->prescribe(model.X);
   }
-  cascade.finish(cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation},
-                               triangles, stop.tolerance));
+  cascade.finish(
+      cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation, stability},
+                    triangles, stop.tolerance));
   return std::move(cascade.outcome);
 }
 

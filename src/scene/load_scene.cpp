@@ -94,6 +94,7 @@ SolverSpec solver_from(const Parameters& values) {
     solver.continuation.first_stiffness = continuation.number("first_stiffness");
   }
   solver.cascade = values.flag("cascade");
+  if (values.has("certificate")) solver.modes = values.object("certificate").integer("modes");
   return solver;
 }
 

@@ -94,6 +94,42 @@ Json reference_distance() {
       "distance between the solved surface and the closed surface that the scene names");
 }
 
+// Of modes or nodes; null where nobody counted.
+Json count_or_null(std::string_view meaning) {
+  return described({{"type", Json::array({"integer", "null"})}, {"minimum", 0}}, meaning);
+}
+
+Json certificate() {
+  const Json stabilities = {"not_known", "strict_minimum", "flat", "saddle", "nothing_to_judge"};
+  return object(
+      {{"summary", text("all of it in one sentence")},
+       {"stability",
+        described({{"enum", stabilities}}, "by the signs of the eigenvalues of the exact Hessian")},
+       {"conservative",
+        flag("all loads have a potential; else the Hessian is the symmetric part of the tangent")},
+       {"smallest_pivot_ratio", number("of the Cholesky factor of a strict minimum, smallest over largest")},
+       {"zero_modes", count_or_null("zero-energy modes")},
+       {"negative_modes", count_or_null("modes along which the energy falls")},
+       {"loose_nodes", count_or_null("free nodes without force or stiffness, left out of the judgement")},
+       {"smallest_eigenvalues", list({{"type", "number"}}, "ascending, where they were asked for [N/mm]")},
+       {"free_parts", list(object({{"node", count("its first node")},
+                                   {"nodes", count("how many")},
+                                   {"free_motions", count("rigid motions that its supports do not prevent")}},
+                                  "one part"),
+                           "connected parts that are not held in every way")},
+       {"force_balance", number("resultant of loads and reactions over the sum of their magnitudes")},
+       {"moment_balance", number("the same for moments")},
+       {"imbalance",
+        object({{"node", count("where the out-of-balance force is largest")},
+                {"position_mm", list(number("coordinate [mm]"), "where it is")},
+                {"force_n", number("out-of-balance force [N]")},
+                {"term", text("that contributes most to it")},
+                {"share_n", number("force of that term in its direction [N]")}},
+               "of a run that did not converge"),
+        Need::Optional}},
+      "what is known of the state beyond its residual");
+}
+
 Json levels(const Json& statuses) {
   return list(
       object({{"triangles", count("of its mesh")},
@@ -120,7 +156,7 @@ Json counters() {
 
 std::string result_schema() {
   const Json statuses = {"converged",          "iteration_limit", "time_limit", "stalled",
-                         "line_search_failed", "non_finite",      "cancelled"};
+                         "line_search_failed", "non_finite",      "cancelled",  "no_equilibrium"};
   Json schema =
       object({{"version", text("of coapt")},
               {"scene", text("file name of the scene")},
@@ -129,6 +165,7 @@ std::string result_schema() {
               {"converged", flag("the residual is below the tolerance")},
               {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
               {"energy", number("potential energy [mJ]")},
+              {"certificate", certificate()},
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
               {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},

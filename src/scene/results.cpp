@@ -87,6 +87,38 @@ Json counters_json(const Model& model, const Result& result) {
           {"contact_searches", searches}};
 }
 
+Json counted(int count) { return count < 0 ? Json(nullptr) : Json(count); }
+
+Json certificate_json(const Model& model, const Certificate& certificate) {
+  const StabilityReport& stability = certificate.stability;
+  const bool is_judged = stability.verdict != Stability::NotKnown;
+  Json smallest = Json::array(), parts = Json::array();
+  for (const double value : stability.smallest) smallest.push_back(number(value));
+  for (const FreePart& part : certificate.free_parts)
+    parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
+  Json json = {
+      {"summary", summary(certificate)},
+      {"stability", stability_name(stability.verdict)},
+      {"conservative", certificate.is_conservative},
+      {"smallest_pivot_ratio", stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : Json(nullptr)},
+      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
+      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
+      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
+      {"smallest_eigenvalues", smallest},
+      {"free_parts", parts},
+      {"force_balance", number(certificate.balance.force)},
+      {"moment_balance", number(certificate.balance.moment)}};
+  if (const auto& worst = certificate.imbalance) {
+    const Vec3 at = worst->position + model.origin;
+    json["imbalance"] = {{"node", worst->node},
+                         {"position_mm", {number(at[0]), number(at[1]), number(at[2])}},
+                         {"force_n", number(worst->force)},
+                         {"term", worst->term},
+                         {"share_n", number(worst->share)}};
+  }
+  return json;
+}
+
 Json levels_json(const std::vector<CascadeLevel>& levels) {
   Json json = Json::array();
   for (const CascadeLevel& level : levels)
@@ -194,6 +226,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"converged", result.status == Status::Converged},
       {"residual", number(result.residual)},
       {"energy", number(result.energy)},
+      {"certificate", certificate_json(model, result.certificate)},
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},

@@ -1,6 +1,7 @@
 #include "scene/run.hpp"
 
 #include "core/error.hpp"
+#include "optim/smallest_modes.hpp"
 #include "scene/build.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/suggestion.hpp"
@@ -50,9 +51,11 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   RunReport run;
   Report& report = run.report;
   report.solver = options.solver.empty() ? scene.solver.type : options.solver;
-  const SolverOptions solver_options{
-      scene.solver.memory, scene.solver.is_preconditioned, scene.solver.globalisation,
-      chosen_factorisation(options.factorisations, scene.solver.factorisation)};
+  const FactorisationFactory factorisation =
+      chosen_factorisation(options.factorisations, scene.solver.factorisation);
+  const SolverOptions solver_options{scene.solver.memory, scene.solver.is_preconditioned,
+                                     scene.solver.globalisation, factorisation};
+  const StabilityOptions stability{factorisation, options.modes.value_or(scene.solver.modes)};
   const SolverMaker maker = [&] { return make_solver(solvers, report.solver, solver_options); };
   const std::unique_ptr<Solver> solver = maker();
   const StopRule stop = stop_rule(scene, options);
@@ -68,13 +71,14 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   report.tolerance = stop.tolerance;
   report.warnings = model.warnings;
   if (scene.solver.cascade) {
-    CascadeOutcome outcome = solve_cascade(scene, ground, model, maker, stop, options.observer);
+    CascadeOutcome outcome = solve_cascade(scene, ground, model, maker, stop, options.observer, stability);
     report.result = std::move(outcome.result);
     report.levels = std::move(outcome.levels);
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   } else {
-    report.result = solve(*solver, {*model.objective, model.q0, model.motion, scene.solver.continuation},
-                          stop, options.observer);
+    report.result =
+        solve(*solver, {*model.objective, model.q0, model.motion, scene.solver.continuation, stability}, stop,
+              options.observer);
   }
 
   const Result& result = report.result;
@@ -82,6 +86,8 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   report.fields = compute_fields(model, model.objective->positions(result.q));
   report.metrics = measure(model, result.q, report.fields);
   report.reference = compare_with_reference(model, report.fields);
+  if (stability.modes > 0 && !has_smallest_modes())
+    report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");

@@ -12,6 +12,7 @@ struct RunOptions {
   std::string solver;                 // empty: the scene's
   std::optional<double> tolerance;    // empty: the scene's
   std::optional<double> max_seconds;  // empty: the scene's
+  std::optional<int> modes;           // smallest eigenvalues in the certificate; empty: the scene's
   std::filesystem::path folder;       // empty: the scene's, see result_folder()
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty

@@ -44,7 +44,8 @@ struct SolverSpec {
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   std::string factorisation = "auto";                       // name in the table of the build
   Continuation continuation;
-  int threads = 1;
+  int threads = 1;  // that assemble the Hessian
+  int modes = 0;    // smallest eigenvalues in the certificate
 };
 
 struct Scene {

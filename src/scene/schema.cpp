@@ -129,7 +129,18 @@ KeySpec solver_key() {
                          .fallback = "\"auto\"",
                          .choices = {"auto", "cholmod", "eigen"},
                          .doc = "Sparse Cholesky method of newton, preconditioned lbfgs and the certificate; "
-                                "auto takes cholmod in a build that has it."}}},
+                                "auto takes cholmod in a build that has it."},
+                        {.name = "certificate",
+                         .kind = KeyKind::Object,
+                         .object = {.keys = {{.name = "modes",
+                                              .kind = KeyKind::Integer,
+                                              .fallback = "0",
+                                              .min = 0,
+                                              .max = 1000,
+                                              .doc = "Smallest eigenvalues of the Hessian to compute, which "
+                                                     "needs a build with Spectra. More than none also counts "
+                                                     "zero and negative modes whatever the size."}}},
+                         .doc = "What the certificate of the result holds beyond the usual."}}},
           .doc = "How the equilibrium is found."};
 }
 

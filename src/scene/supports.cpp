@@ -1,9 +1,9 @@
 #include "scene/supports.hpp"
 
+#include "energy/connected_parts.hpp"
 #include "mesh/mesh_check.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace coapt {
 namespace {
@@ -21,28 +21,6 @@ bool has_term(const Scene& scene, const std::string& type) {
   return std::any_of(scene.terms.begin(), scene.terms.end(),
                      [&](const TermSpec& term) { return term.type == type; });
 }
-
-// Union of the nodes that an element couples: each node points to another of its part, roots to themselves.
-class Parts {
- public:
-  explicit Parts(int node_count) : parent_(static_cast<size_t>(node_count)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  int root(int node) {
-    while (parent_[static_cast<size_t>(node)] != node) {
-      int& parent = parent_[static_cast<size_t>(node)];
-      parent = parent_[static_cast<size_t>(parent)];
-      node = parent;
-    }
-    return node;
-  }
-
-  void join(int a, int b) { parent_[static_cast<size_t>(root(a))] = root(b); }
-
- private:
-  std::vector<int> parent_;
-};
 
 }  // namespace
 
@@ -84,35 +62,20 @@ void hold_isolated_nodes(Model& model, const std::map<std::string, PlacedNetwork
 }
 
 void warn_of_unsupported_parts(Model& model, const std::vector<TermPointer>& terms, const FixedMask& fixed) {
-  const int node_count = static_cast<int>(model.X.cols());
-  Parts parts(node_count);
-  bool is_loaded = false;
-  for (const TermPointer& term : terms) {
-    is_loaded = is_loaded || term->role() == TermRole::Load;
-    if (term->role() != TermRole::Internal) continue;
-    const Stencils& stencils = term->stencils();
-    for (size_t k = 0; k < stencils.nodes.size(); ++k) {
-      const size_t first = k - k % static_cast<size_t>(stencils.width);
-      parts.join(stencils.nodes[k], stencils.nodes[first]);
-    }
-  }
-  std::vector<bool> is_held(static_cast<size_t>(node_count), false);
-  std::vector<int> size(static_cast<size_t>(node_count), 0);
-  for (int node = 0; node < node_count; ++node) {
-    const size_t root = static_cast<size_t>(parts.root(node));
-    ++size[root];
-    if (fixed.col(node).any()) is_held[root] = true;
-  }
-  std::vector<int> loose;  // one node of each part, and nodes without any stiffness
-  for (int node = 0; node < node_count; ++node)
-    if (parts.root(node) == node && !is_held[static_cast<size_t>(node)]) loose.push_back(node);
-  if (loose.empty()) return;
+  std::vector<int> loose;  // one node of each part
   int count = 0;
-  for (const int node : loose) count += size[static_cast<size_t>(node)];
+  for (const Part& part : connected_parts(terms, model.X, fixed)) {
+    if (!part.can_shift_at_all()) continue;
+    loose.push_back(part.nodes.front());
+    count += static_cast<int>(part.nodes.size());
+  }
+  if (loose.empty()) return;
+  const bool is_loaded = std::any_of(terms.begin(), terms.end(),
+                                     [](const TermPointer& term) { return term->role() == TermRole::Load; });
   model.warnings.push_back(
-      "No prescribed node holds " + std::to_string(loose.size()) + " connected part(s) with " +
-      std::to_string(count) + " nodes in all, named by one node each: " + first_few(loose) +
-      ". Their position is not determined (rigid-body modes)" +
+      "No prescribed coordinate keeps " + std::to_string(loose.size()) + " connected part(s) with " +
+      std::to_string(count) + " nodes in all, named by one node each, from shifting along an axis: " +
+      first_few(loose) + ". Their position is not determined (rigid-body modes)" +
       (is_loaded ? "; under a load that is not in balance there is no equilibrium." : "."));
 }
 

@@ -17,7 +17,8 @@ void check_surface(const Scene& scene, Model& model, std::vector<std::string>& d
 void hold_isolated_nodes(Model& model, const std::map<std::string, PlacedNetwork>& networks,
                          FixedMask& fixed);
 
-// Warns of every connected part of the internal terms that no prescribed coordinate holds.
+// Warns of every connected part of the internal terms that can shift along an axis as nothing of it is
+// prescribed there.
 void warn_of_unsupported_parts(Model& model, const std::vector<TermPointer>& terms, const FixedMask& fixed);
 
 }  // namespace coapt

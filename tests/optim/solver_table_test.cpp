@@ -147,7 +147,7 @@ class SolverOnScene : public testing::TestWithParam<std::tuple<std::string, std:
 TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
   const auto& [solver, name] = GetParam();
   if (!all_solvers().contains(solver)) GTEST_SKIP() << "skipped: this build has no " << solver;
-  Scene scene = scenes().at(name)({}), reference_scene = scenes().at(name)({});
+  Scene scene = scenes().at(name)(), reference_scene = scenes().at(name)();
   const Result reference = run(reference_scene, "lbfgs", 1e-10);
   ASSERT_EQ(reference.status, Status::Converged) << reference.message;
   const Result result = run(scene, solver);
@@ -219,14 +219,14 @@ TEST(SolverTable, SaysSoWhenThereIsNothingToDo) {
                           terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
       StopRule stop;
       stop.max_seconds = 5;
-      const Result result = solve(*make(), {objective, objective.unknowns(mesh.vertices), {}}, stop);
+      const Result result = solve(*make({}), {objective, objective.unknowns(mesh.vertices), {}}, stop);
       EXPECT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
       EXPECT_EQ(result.iterations, 0) << solver;
       EXPECT_FALSE(result.message.empty()) << solver;
       EXPECT_EQ(objective.positions(result.q), mesh.vertices) << solver;
     }
     Objective empty(Points(3, 0), FixedMask(3, 0), {});
-    EXPECT_EQ(solve(*make(), {empty, Vector(0), {}}, {}).status, Status::Converged) << solver;
+    EXPECT_EQ(solve(*make({}), {empty, Vector(0), {}}, {}).status, Status::Converged) << solver;
   }
 }
 

@@ -1,0 +1,108 @@
+#include "optim/equilibrium_watch.hpp"
+
+#include "energy/kernels/surface_tension.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+constexpr double kRoundOff = 1e-9;            // of a resultant, relative to the sum of the forces' magnitudes
+constexpr int kInterval = 50;                 // iterates from one look to the next
+constexpr double kFar = 100;                  // drift, relative to the extent of the start
+constexpr double kCollapsed = 1e-4;           // area, relative to the start
+constexpr double kFarFromEquilibrium = 1e-2;  // residual
+constexpr int kCollapsedLooks = 4;            // in a row
+
+double facet_area(const Points& x, int a, int b, int c) {
+  return 0.5 * Vec3(x.col(b) - x.col(a)).cross(Vec3(x.col(c) - x.col(a))).norm();
+}
+
+Vec3 centre(const Points& x, const std::vector<int>& nodes) {
+  Vec3 sum = Vec3::Zero();
+  for (const int node : nodes) sum += x.col(node);
+  return sum / static_cast<double>(nodes.size());
+}
+
+}  // namespace
+
+EquilibriumWatch::EquilibriumWatch(const Objective& objective, const Vector& q)
+    : reason_("the shape grows without bound") {
+  const Points x = objective.positions(q);
+  if (x.cols() == 0) return;
+  extent_ = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+  const std::vector<Part> parts = connected_parts(objective.terms(), x, objective.fixed());
+  for (const Part& part : parts)
+    if (part.can_shift_at_all()) adrift_.push_back({part.nodes, centre(x, part.nodes), part.description()});
+  reason_ += adrift_.empty() ? ", the load is too much for it" : "; " + adrift_.front().name;
+  if (!adrift_.empty()) find_obstacle(objective, x, parts);
+  for (const auto& term : objective.terms()) {
+    if (term->type() != SurfaceTension::kType) continue;
+    const std::vector<int>& nodes = term->stencils().nodes;
+    for (size_t k = 0; k + 2 < nodes.size(); k += 3)
+      film_.push_back(
+          {nodes[k], nodes[k + 1], nodes[k + 2], facet_area(x, nodes[k], nodes[k + 1], nodes[k + 2])});
+  }
+}
+
+void EquilibriumWatch::find_obstacle(const Objective& objective, const Points& x,
+                                     const std::vector<Part>& parts) {
+  Points dead = Points::Zero(3, x.cols()), other = dead;
+  for (const auto& term : objective.terms()) {
+    if (term->role() == TermRole::Contact) return;
+    if (term->role() == TermRole::Load)
+      (term->stencils().width <= 1 ? dead : other) += nodal_forces(*term, x);
+  }
+  if (!dead.allFinite() || !other.allFinite()) return;
+  for (const Part& part : parts) {
+    Vec3 resultant = Vec3::Zero(), other_resultant = Vec3::Zero();
+    double dead_sum = 0, other_sum = 0;
+    for (const int node : part.nodes) {
+      resultant += dead.col(node);
+      other_resultant += other.col(node);
+      dead_sum += dead.col(node).norm();
+      other_sum += other.col(node).norm();
+    }
+    // Pressure on a closed surface has no resultant in any shape; on an open one it may balance the rest.
+    if (other_resultant.norm() > kRoundOff * other_sum) continue;
+    for (int c = 0; c < 3; ++c) {
+      if (!part.can_shift[static_cast<size_t>(c)] || std::abs(resultant[c]) <= kRoundOff * dead_sum) continue;
+      char force[64];
+      std::snprintf(force, sizeof force, "%.3g along %c", resultant[c], "xyz"[c]);
+      obstacle_ = part.description() + ", and nothing meets the resultant of its loads, " + force;
+      return;
+    }
+  }
+}
+
+bool EquilibriumWatch::has_drifted(const Points& x) {
+  for (const Adrift& part : adrift_) {
+    if ((centre(x, part.nodes) - part.start).norm() <= kFar * extent_) continue;
+    reason_ = part.name + ", and its loads carry it away";
+    return true;
+  }
+  return false;
+}
+
+bool EquilibriumWatch::has_collapsed(const Points& x) {
+  const auto is_gone = [&](const Facet& f) { return facet_area(x, f.a, f.b, f.c) < kCollapsed * f.area; };
+  const auto found = std::find_if(film_.begin(), film_.end(), is_gone);
+  if (found == film_.end()) return false;
+  reason_ = "the film pinches off: " + std::to_string(std::count_if(film_.begin(), film_.end(), is_gone)) +
+            " of its facets have shrunk to nothing, near node " + std::to_string(found->a);
+  return true;
+}
+
+bool EquilibriumWatch::is_lost(const Objective& objective, const Vector& q, double residual) {
+  if ((adrift_.empty() && film_.empty()) || ++iterates_ % kInterval != 0) return false;
+  const Points x = objective.positions(q);
+  if (has_drifted(x)) return true;
+  collapsed_ = residual > kFarFromEquilibrium && has_collapsed(x) ? collapsed_ + 1 : 0;
+  return collapsed_ >= kCollapsedLooks;
+}
+
+}  // namespace coapt
