@@ -12,22 +12,6 @@
 namespace coapt {
 namespace {
 
-// Nodes that a force holds: those of the leaflets, and the ends of taut chords. A junction between slack
-// chords lies anywhere within their reach, without energy, and has no place that a test could ask for. (A
-// chord on the border, stretched by 1e-7 of its length, pulls with less than the tolerance.)
-std::vector<int> held_nodes(const ValveScene& scene, const Points& x) {
-  std::vector<bool> is_held(scene.X.cols(), false);
-  for (const int node : scene.triangles.reshaped()) is_held[node] = true;
-  for (Eigen::Index k = 0; k < scene.chords.cols(); ++k) {
-    const int a = scene.chords(0, k), b = scene.chords(1, k);
-    if ((x.col(a) - x.col(b)).norm() > (1 + 1e-5) * scene.chord_lengths[k]) is_held[a] = is_held[b] = true;
-  }
-  std::vector<int> nodes;
-  for (int k = 0; k < scene.X.cols(); ++k)
-    if (is_held[k]) nodes.push_back(k);
-  return nodes;
-}
-
 TEST(Valve, LandsOnOneEquilibriumFromPerturbedStarts) {
   const ValveScene scene({});
   Points first;
@@ -42,7 +26,7 @@ TEST(Valve, LandsOnOneEquilibriumFromPerturbedStarts) {
     ASSERT_EQ(found.result.status, Status::Converged) << seed << ": " << found.result.message;
     if (seed == 0) {
       first = found.x;
-      held = held_nodes(scene, first);
+      held = scene.held_nodes(first);
     }
     const Vector distance = (found.x - first)(Eigen::all, held).colwise().norm();
     spread = std::max(spread, distance.maxCoeff());
