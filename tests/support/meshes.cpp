@@ -56,14 +56,13 @@ TriangleMesh disc_mesh(int rings) {
   return mesh;
 }
 
-TriangleMesh smooth_disc_mesh(int n) {
+TriangleMesh crossed_grid_mesh(int n, double width, double height) {
   const int corners = (n + 1) * (n + 1);
   TriangleMesh mesh;
   mesh.vertices.resize(3, corners + n * n);
   mesh.triangles.resize(3, 4 * n * n);
   const auto place = [&](int node, double i, double j) {
-    const double u = 2 * i / n - 1, v = 2 * j / n - 1;
-    mesh.vertices.col(node) = Vec3(u * std::sqrt(1 - 0.5 * v * v), v * std::sqrt(1 - 0.5 * u * u), 0);
+    mesh.vertices.col(node) = Vec3(width * i / n, height * j / n, 0);
   };
   for (int j = 0; j <= n; ++j)
     for (int i = 0; i <= n; ++i) place(grid_node(n, i, j), i, j);
@@ -77,6 +76,22 @@ TriangleMesh smooth_disc_mesh(int n) {
       mesh.triangles.col(t++) << d + 1, d, middle;
       mesh.triangles.col(t++) << d, a, middle;
     }
+  return mesh;
+}
+
+Vec3 disc_point(double u, double v) {
+  return {u * std::sqrt(1 - 0.5 * v * v), v * std::sqrt(1 - 0.5 * u * u), 0};
+}
+
+TriangleMesh smooth_disc_mesh(int n) {
+  TriangleMesh mesh = crossed_grid_mesh(n, 2, 2);
+  for (auto x : mesh.vertices.colwise()) x = disc_point(x[0] - 1, x[1] - 1);
+  return mesh;
+}
+
+TriangleMesh quarter_disc_mesh(int n) {
+  TriangleMesh mesh = crossed_grid_mesh(n);
+  for (auto x : mesh.vertices.colwise()) x = disc_point(x[0], x[1]);
   return mesh;
 }
 

@@ -6,8 +6,8 @@
 namespace coapt {
 namespace {
 
-constexpr double kYoung = 1, kPoisson = 0.45, kThickness = 0.8, kChordYoung = 40;  // MPa, mm
-constexpr double kPressure = -120 * 133.322e-6;  // 120 mmHg against the normals [MPa]
+constexpr double kPoisson = 0.45, kThickness = 0.8;  // mm
+constexpr double kPressure = -120 * 133.322e-6;      // 120 mmHg against the normals [MPa]
 
 }  // namespace
 
@@ -47,30 +47,70 @@ ValveScene::ValveScene(const ValveOptions& wanted) : options(wanted) {
   }
 }
 
-Terms ValveScene::terms() const {
+Terms ValveScene::terms(const Frame& frame, bool is_reversed) const {
+  const double resultant = frame.force / frame.length, moment = frame.force * frame.length;
+  const Points Y = frame.points(X);
+  Triangles corners = frame.triangles(triangles);
+  if (is_reversed) corners.row(1).swap(corners.row(2));
+  const bool is_mirrored = frame.rotation.determinant() < 0;
   std::vector<Cable::Rest> cables;
-  for (Eigen::Index k = 0; k < chords.cols(); ++k)
-    cables.push_back({kChordYoung * chord_areas[k] / chord_lengths[k], chord_lengths[k],
-                      options.smoothing * chord_lengths[k], 0});
+  std::vector<int> ends;
+  for (Eigen::Index k = 0; k < chords.cols(); ++k) {
+    cables.push_back({options.chord_young * chord_areas[k] / chord_lengths[k] * resultant,
+                      frame.length * chord_lengths[k], options.smoothing * frame.length * chord_lengths[k],
+                      0});
+    for (const int node : {chords(0, k), chords(1, k)}) ends.push_back(frame.node(node));
+  }
   Terms list;
-  list.push_back(tension_field_term(X, triangles, {kYoung * kThickness, kPoisson, 0}));
+  list.push_back(tension_field_term(Y, corners, {options.young * kThickness * resultant, kPoisson, 0}));
   if (options.bending > 0)
-    list.push_back(bending_term(
-        X, triangles,
-        options.bending * kYoung * kThickness * kThickness * kThickness / 12 / (1 - kPoisson * kPoisson)));
-  list.push_back(std::make_unique<ElementTerm<Cable>>(
-      "chords", std::vector<int>(chords.data(), chords.data() + chords.size()), std::move(cables)));
-  list.push_back(make_follower_pressure("pressure", X, triangles, kPressure, fixed));
+    list.push_back(bending_term(Y, corners,
+                                options.bending * options.young * kThickness * kThickness * kThickness / 12 /
+                                    (1 - kPoisson * kPoisson) * moment));
+  list.push_back(std::make_unique<ElementTerm<Cable>>("chords", std::move(ends), std::move(cables)));
+  const double p = kPressure * resultant / frame.length;
+  list.push_back(
+      make_follower_pressure("pressure", Y, corners, is_reversed != is_mirrored ? -p : p, fixed_in(frame)));
   return list;
 }
 
-Method ValveScene::method(double tolerance) const {
+FixedMask ValveScene::fixed_in(const Frame& frame) const {
+  FixedMask mask = fixed;
+  for (int k = 0; k < X.cols(); ++k) mask.col(frame.node(k)) = fixed.col(k);
+  return mask;
+}
+
+Method ValveScene::method(double tolerance, const Frame& frame) const {
   Method method;
   method.tolerance = tolerance;
   method.max_iterations = 1000;
   method.max_seconds = 600;
-  method.motion.positions = [to = closed](double) { return to; };
+  method.motion.positions = [to = frame.points(closed)](double) { return to; };
   return method;
+}
+
+Equilibrium ValveScene::solve_in(const Frame& frame, double tolerance, bool is_reversed) const {
+  Equilibrium found =
+      find_equilibrium(frame.points(X), fixed_in(frame), terms(frame, is_reversed), method(tolerance, frame));
+  Points back(3, X.cols());
+  for (int k = 0; k < X.cols(); ++k)
+    back.col(k) =
+        frame.rotation.transpose() * (found.x.col(frame.node(k)) - frame.translation) / frame.length;
+  found.x = back;
+  return found;
+}
+
+std::vector<int> ValveScene::held_nodes(const Points& x) const {
+  std::vector<bool> is_held(X.cols(), false);
+  for (const int node : triangles.reshaped()) is_held[node] = true;
+  for (Eigen::Index k = 0; k < chords.cols(); ++k) {
+    const int a = chords(0, k), b = chords(1, k);
+    if ((x.col(a) - x.col(b)).norm() > (1 + 1e-5) * chord_lengths[k]) is_held[a] = is_held[b] = true;
+  }
+  std::vector<int> nodes;
+  for (int k = 0; k < X.cols(); ++k)
+    if (is_held[k]) nodes.push_back(k);
+  return nodes;
 }
 
 TriangleMesh ValveScene::leaflets(const Points& x) const {

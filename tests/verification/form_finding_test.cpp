@@ -125,8 +125,10 @@ TEST(SoapFilm, D2BetweenTwoRingsIsACatenoid) {
 
 // --- D5 ---------------------------------------------------------------------------------------------------
 
+// On grids with diagonals the least discrete area is at triangles without area, and newton takes thousands of
+// steps towards it: a fault of that energy. Crossed cells hold their middles.
 double schwarz_area(int n) {
-  TriangleMesh mesh = grid_mesh(n, n);
+  TriangleMesh mesh = crossed_grid_mesh(n);
   const double s = 1 / (2 * std::numbers::sqrt2);  // edge 1
   const Vec3 a = s * Vec3(1, 1, 1), b = s * Vec3(-1, -1, 1), c = s * Vec3(-1, 1, -1), d = s * Vec3(1, -1, -1);
   for (int v = 0; v < mesh.vertex_count(); ++v) {

@@ -3,6 +3,7 @@
 #include "optim/cholmod/cholmod_factorisation.hpp"
 
 #include <dlfcn.h>
+#include <mutex>
 
 // Declared here: where the header that declares them lies differs between distributions.
 extern "C" {
@@ -13,12 +14,33 @@ int openblas_get_num_threads();
 namespace coapt {
 namespace detail {
 
-BlasThreads::BlasThreads(int count) : before_(openblas_get_num_threads()) {
-  if (before_ != count) openblas_set_num_threads(count);
+namespace {
+
+// OpenBLAS knows one number for the process. It is put back when the last scope that set it ends: not sooner,
+// or a scope in another thread would go on with the number from before, and differ in its last bits.
+struct Shared {
+  std::mutex mutex;
+  int scopes = 0, before = 0;
+};
+
+Shared& shared() {
+  static Shared instance;
+  return instance;
+}
+
+}  // namespace
+
+BlasThreads::BlasThreads(int count) {
+  Shared& all = shared();
+  const std::lock_guard lock(all.mutex);
+  if (all.scopes++ == 0) all.before = openblas_get_num_threads();
+  if (openblas_get_num_threads() != count) openblas_set_num_threads(count);
 }
 
 BlasThreads::~BlasThreads() {
-  if (openblas_get_num_threads() != before_) openblas_set_num_threads(before_);
+  Shared& all = shared();
+  const std::lock_guard lock(all.mutex);
+  if (--all.scopes == 0 && openblas_get_num_threads() != all.before) openblas_set_num_threads(all.before);
 }
 
 }  // namespace detail

@@ -9,9 +9,6 @@ class BlasThreads {
   ~BlasThreads();
   BlasThreads(const BlasThreads&) = delete;
   BlasThreads& operator=(const BlasThreads&) = delete;
-
- private:
-  int before_;
 };
 
 }  // namespace coapt::detail
