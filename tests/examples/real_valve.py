@@ -2,10 +2,9 @@
 
     real_valve.py COAPT SHARED_DATA_FOLDER frozen|field|follower
 
-Exit code 77, "skipped", where the data is not there. The leaflets get one linear modulus, 0.05 MPa: of 0.03,
-0.05, 0.1 and 0.2 MPa (frozen and follower pressure) the nearest to the published closed surface among those
-that converge within half a minute. The bounds on the mean distance are the measured ones (1.31, 1.11 and 0.69 mm)
-with room for another equilibrium; the real material is nonlinear, so the distance measures the law.
+Exit code 77, "skipped", where the data is not there. The leaflets are a tension field with one linear modulus,
+0.05 MPa, and bending. The bounds on the mean distance are the measured ones (1.35, 1.12 and 0.68 mm) with some room;
+newton and lbfgs end in the same shape. The real material is nonlinear, so the distance measures the law.
 """
 import json
 import math
@@ -15,7 +14,7 @@ import sys
 import tempfile
 
 SKIPPED = 77
-TOLERANCE = 1e-6
+TOLERANCE = 1e-8
 GREATEST_MEAN_DISTANCE = {"frozen": 1.5, "field": 1.3, "follower": 1.0}  # [mm]
 REQUIRED = ["orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
             "leaflet_area_open_mm2", "leaflet_area_closed_mm2", "max_principal_strain", "max_chord_force_n",
@@ -38,13 +37,13 @@ def defects(result: dict, model: str) -> list[str]:
         "the orifice is a small part of the annulus": 0 <= metrics["orifice_area_mm2"] <= 100,
         "leaflets coapt": metrics["coaptation_area_mm2"] > 30 and metrics["coaptation_height_mm"] > 2,
         "the open leaflets keep their area": abs(metrics["leaflet_area_open_mm2"] - 1317.63) < 0.1,
-        "the leaflets stretch": metrics["leaflet_area_closed_mm2"] > 1.05 * metrics["leaflet_area_open_mm2"],
+        "the leaflets stretch": metrics["max_principal_strain"] > 0.1,
+        "some of them is taut, some wrinkled": metrics["taut_area_mm2"] > 100 and metrics["wrinkled_area_mm2"] > 100,
         "chords pull": metrics["max_chord_force_n"] > 0.01,
-        "reactions balance the loads": metrics["force_balance"] < 1e-4 and metrics["moment_balance"] < 1e-4,
+        "reactions balance the loads": metrics["force_balance"] < 1e-8 and metrics["moment_balance"] < 1e-8,
         f"mean distance below {GREATEST_MEAN_DISTANCE[model]} mm": distance["mean_mm"] < GREATEST_MEAN_DISTANCE[model],
         "the distance is no accident": 0.1 < distance["mean_mm"] <= distance["p95_mm"] <= distance["max_mm"],
-        "intersections are reported": metrics["intersections"] == 0 or
-                                      any("pass through" in warning for warning in result["warnings"]),
+        "no facets pass through each other": metrics["intersections"] == 0,
     }
     return [rule for rule, holds in rules.items() if not holds]
 
@@ -65,7 +64,7 @@ def main() -> int:
             print('the imported scene has no "young": "1 MPa" to edit')
             return 1
         scene.write_text(softer)
-        run = subprocess.run([coapt, "solve", str(scene), "--solver", "lbfgs", "--tolerance", str(TOLERANCE)],
+        run = subprocess.run([coapt, "solve", str(scene), "--solver", "newton", "--tolerance", str(TOLERANCE)],
                              capture_output=True, text=True)
         print(run.stdout + run.stderr)
         if run.returncode != 0:

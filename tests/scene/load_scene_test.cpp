@@ -208,7 +208,7 @@ TEST(SceneFile, ReadsNumbersIntoInternalUnitsWithDefaults) {
   EXPECT_EQ(scene.motion_steps, 3);
   EXPECT_EQ(scene.solver.tolerance, 1e-8);
   EXPECT_EQ(scene.solver.max_seconds, 2);
-  EXPECT_EQ(scene.solver.type, "lbfgs");
+  EXPECT_EQ(scene.solver.type, "newton");
   EXPECT_EQ(*scene.output_folder, folder.path() / "out");
 }
 
