@@ -16,6 +16,7 @@ constexpr double kRise = 4;         // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
+constexpr double kNear = 1e-3;                   // residual from which on a double root is looked for
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
@@ -85,10 +86,11 @@ class Newton {
   }
 
   // One, but for a double root, such as a slack chord's onset of tension, which Newton's method approaches by
-  // halves: there the step that ends the series (Decker & Kelley 1980).
+  // halves: there the step that ends the series (Decker & Kelley 1980). Only near the solution: far from it a
+  // stiffening law halves its excess too, and the long step would make it slack.
   double first_step() {
     double step = 1;
-    if (last_.size() == direction_.size()) {
+    if (last_.size() == direction_.size() && objective_.relative_residual(at_.g) < kNear) {
       const double ratio = direction_.dot(last_) / last_.squaredNorm();
       if (ratio > 0.4 && ratio < 0.6 &&
           (direction_ - ratio * last_).squaredNorm() < 0.01 * direction_.squaredNorm())

@@ -112,7 +112,7 @@ Vec3 affine_errors(const TriangleMesh& mesh, int nx, int ny) {
       }
   const Equilibrium found =
       find_equilibrium(start, fixed, terms_of(tension_field_term(mesh.vertices, mesh.triangles, {1, 0.3, 0})),
-                       {.tolerance = 1e-11, .max_iterations = 500});
+                       {.tolerance = 1e-12, .max_iterations = 500});
   const Vec3 size = exact.rowwise().maxCoeff() - exact.rowwise().minCoeff();
   const Vec3 errors = (found.x - exact).cwiseAbs().rowwise().maxCoeff();
   std::printf("S6: %s, %d iterations, errors by width %.1e and by height %.1e\n",
