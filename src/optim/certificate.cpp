@@ -134,7 +134,9 @@ std::string summary(const Certificate& certificate) {
   std::string text = stability_summary(certificate);
   if (certificate.stability.loose_nodes > 0)
     text += ", " + counted(certificate.stability.loose_nodes, "loose node");
-  text += ", reactions balance to " + number(std::max(certificate.balance.force, certificate.balance.moment));
+  if (certificate.is_balance_clear)
+    text +=
+        ", reactions balance to " + number(std::max(certificate.balance.force, certificate.balance.moment));
   if (const auto& worst = certificate.imbalance)
     text += ", largest out-of-balance force " + number(worst->force) + " at node " +
             std::to_string(worst->node) + " (most of it by " + worst->term + ")";

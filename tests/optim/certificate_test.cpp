@@ -198,6 +198,8 @@ TEST_P(Solvers, S9LeavesASaddleForAMinimum) {
   ASSERT_EQ(result.status, Status::Converged) << result.message;
   EXPECT_NE(result.certificate.stability.verdict, Stability::Saddle) << summary(result.certificate);
   EXPECT_LT(result.energy, 0.5 * stayed.energy);
+  EXPECT_FALSE(result.certificate.is_balance_clear);  // buckled: neither loads nor reactions are left
+  EXPECT_EQ(summary(result.certificate).find("reactions"), std::string::npos);
   EXPECT_GT(objective.positions(result.q).row(2).cwiseAbs().maxCoeff(), 0.01);
   std::printf("S9 %s: %d iterations, %s, %s\n", GetParam().c_str(), result.iterations, result.message.c_str(),
               summary(result.certificate).c_str());
