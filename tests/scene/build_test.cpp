@@ -122,6 +122,24 @@ TEST_F(BuildTest, SolvesTheDiscToARoundedDome) {
   EXPECT_LT(height, 0.25);
 }
 
+// S2: seven digits of every coordinate are those of the offset.
+TEST_F(BuildTest, S2SolvesAlikeFarFromTheOrigin) {
+  const auto shape = [&](const Vec3& offset) {
+    TriangleMesh moved = disc_;
+    moved.vertices.colwise() += offset;
+    write_mesh(folder_.path() / "disc.obj", moved);
+    const Model model = build_disc(kDiscTerms, kHeldRim);
+    const auto newton = built_in_solvers().at("newton")({});
+    const Result result = solve(*newton, {*model.objective, model.q0, model.motion}, {.tolerance = 1e-10});
+    EXPECT_EQ(result.status, Status::Converged) << result.message;
+    const Points x = model.objective->positions(result.q);
+    return Points((x - model.X));
+  };
+  const Points near = shape(Vec3::Zero()), far = shape(Vec3(1e8, -1e8, 1e8));  // the disc has a radius of 10
+  EXPECT_LT((near - far).lpNorm<Eigen::Infinity>(), 1e-8 * 20);
+  EXPECT_GT(near.lpNorm<Eigen::Infinity>(), 0.1);
+}
+
 TEST_F(BuildTest, PushesAgainstTheNormalsFromTheFront) {
   for (const char* model_name : {"follower", "volume", "frozen"}) {
     const auto force_at_centre = [&](const char* side) {
