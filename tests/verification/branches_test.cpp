@@ -151,5 +151,27 @@ TEST(Valve, S22ComesBackWhenAChordDoes) {
   }
 }
 
+// A chord swings by a tenth of its length and back in a hundred warm starts.
+TEST(Nightly, S22ASweepOfAHundredStepsEndsWhereItBegan) {
+  ValveScene scene({});
+  const Equilibrium cold = scene.solve_in({}, 1e-10);
+  const std::vector<int> held = scene.held_nodes(cold.x);
+  const double length = scene.chord_lengths[1];
+  Method method = scene.method(1e-10);
+  method.motion = {};
+  Points x = cold.x;
+  int iterations = 0;
+  for (int step = 1; step <= 100; ++step) {
+    scene.chord_lengths[1] = length * (1 + 0.1 * std::sin(2 * std::acos(-1.0) * step / 100));
+    const Equilibrium found = find_equilibrium(x, scene.fixed, scene.terms(), method);
+    ASSERT_EQ(found.result.status, Status::Converged) << step << ": " << found.result.message;
+    x = found.x;
+    iterations += found.result.iterations;
+  }
+  const double distance = (x - cold.x)(Eigen::all, held).colwise().norm().maxCoeff();
+  std::printf("S22 sweep: back within %.1e mm after %d iterations\n", distance, iterations);
+  EXPECT_LT(distance, 1e-6);
+}
+
 }  // namespace
 }  // namespace coapt
