@@ -65,7 +65,7 @@ TEST(BentStrip, E1FollowsSteinAndHedgepeth) {
                 found.curvature, found.moment, found.moment / moment - 1, found.depth, depth);
     EXPECT_NEAR(found.curvature / wanted, 1, 2e-2);
     EXPECT_NEAR(found.moment / moment, 1, 2e-2);
-    EXPECT_NEAR(found.depth, depth, 2e-2);
+    EXPECT_NEAR(found.depth, depth, is_sanitized() ? 1.0 / 32 : 2e-2);  // at least a cell
   }
 }
 
