@@ -20,8 +20,26 @@ namespace {
 // or a scope in another thread would go on with the number from before, and differ in its last bits.
 struct Shared {
   std::mutex mutex;
-  int scopes = 0, before = 0;
+  int scopes = 0, before = 0, levels_before = 0;
 };
+
+// CHOLMOD copies each supernode in an OpenMP region of four threads, whose waking costs more than twice what
+// the factorisation does. With no active level its regions run in the caller's thread. Looked up, not linked:
+// a CHOLMOD without OpenMP brings no such library along.
+using SetLevels = void (*)(int);
+using GetLevels = int (*)();
+
+SetLevels set_openmp_levels() {
+  static const auto kFunction = reinterpret_cast<SetLevels>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+  return kFunction;
+}
+
+GetLevels get_openmp_levels() {
+  static const auto kFunction = reinterpret_cast<GetLevels>(dlsym(RTLD_DEFAULT, "omp_get_max_active_levels"));
+  return kFunction;
+}
+
+bool has_openmp() { return set_openmp_levels() != nullptr && get_openmp_levels() != nullptr; }
 
 Shared& shared() {
   static Shared instance;
@@ -33,14 +51,22 @@ Shared& shared() {
 BlasThreads::BlasThreads(int count) {
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
-  if (all.scopes++ == 0) all.before = openblas_get_num_threads();
+  if (all.scopes++ == 0) {
+    all.before = openblas_get_num_threads();
+    if (has_openmp()) {
+      all.levels_before = get_openmp_levels()();
+      set_openmp_levels()(0);
+    }
+  }
   if (openblas_get_num_threads() != count) openblas_set_num_threads(count);
 }
 
 BlasThreads::~BlasThreads() {
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
-  if (--all.scopes == 0 && openblas_get_num_threads() != all.before) openblas_set_num_threads(all.before);
+  if (--all.scopes > 0) return;
+  if (openblas_get_num_threads() != all.before) openblas_set_num_threads(all.before);
+  if (has_openmp()) set_openmp_levels()(all.levels_before);
 }
 
 }  // namespace detail
