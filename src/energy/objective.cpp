@@ -68,6 +68,35 @@ double Objective::pour(const EnergyTerm& term, Sink sink) const {
   return factor(term) * term.evaluate(x_, sink);
 }
 
+const EnergyTerm* Objective::step_limiting_term() const {
+  const auto found =
+      std::find_if(terms_.begin(), terms_.end(), [](const auto& term) { return term->limits_steps(); });
+  return found == terms_.end() ? nullptr : found->get();
+}
+
+double Objective::step_limit(const Vector& q, const Vector& direction, double most) {
+  if (step_limiting_term() == nullptr) return most;
+  prepare(q);
+  Points d = Points::Zero(3, node_count());
+  for (size_t k = 0; k < active_.size(); ++k)
+    d.col(active_[k]) = fixed_.col(active_[k]).select(0, direction.segment<3>(3 * k).array());
+  return step_limit(x_, d, most);
+}
+
+double Objective::step_limit(const Points& x, const Points& d, double most) {
+  for (const auto& term : terms_)
+    if (term->limits_steps()) most = std::min(most, term->step_limit(x, d, most));
+  return most;
+}
+
+bool Objective::stiffen(const Vector& q) {
+  prepare(q);
+  bool is_stiffer = false;
+  for (const auto& term : terms_) is_stiffer = term->stiffen(x_) || is_stiffer;
+  if (is_stiffer) pattern_is_current_ = false;
+  return is_stiffer;
+}
+
 void Objective::prescribe(const Points& x) { x_ = fixed_.select(x, x_); }
 
 void Objective::prepare(const Vector& q) {

@@ -84,6 +84,18 @@ class Objective {
   // The same with the whole reactions, prestress included [force]: what round-off is measured against.
   double largest_force() const { return std::max(reference_force(), whole_reaction_scale_); }
 
+  // --- Steps that must not be too long ---------------------------------------------------------------
+  // The first term that limits steps (EnergyTerm::step_limit), or null.
+  const EnergyTerm* step_limiting_term() const;
+
+  // The greatest s <= most for which the way from q to q + s direction is admissible to all terms; the same
+  // for nodes, prescribed ones included, from x to x + s d. Pre: q and x are admissible.
+  double step_limit(const Vector& q, const Vector& direction, double most);
+  double step_limit(const Points& x, const Points& d, double most);
+
+  // Whether a term became stiffer, as the state q shows that it was too soft.
+  bool stiffen(const Vector& q);
+
   // --- Loads without a potential --------------------------------------------------------------------
   bool has_circulatory_force() const;
 

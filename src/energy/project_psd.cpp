@@ -13,5 +13,6 @@ void project_psd(Eigen::Matrix<double, kSize, kSize>& h) {
 
 template void project_psd<6>(Eigen::Matrix<double, 6, 6>&);
 template void project_psd<9>(Eigen::Matrix<double, 9, 9>&);
+template void project_psd<12>(Eigen::Matrix<double, 12, 12>&);
 
 }  // namespace coapt

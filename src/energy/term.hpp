@@ -79,6 +79,19 @@ class EnergyTerm {
   virtual bool renew(const Points& /*x*/) { return false; }
   virtual bool simplify() { return false; }
 
+  // --- Steps that must not be too long ---------------------------------------------------------------
+  // Whether step_limit() may be less than it was asked for. A solver that uses such a term asks before every
+  // step; what is evaluated anywhere else may be an infinite energy.
+  virtual bool limits_steps() const { return false; }
+
+  // The greatest admissible s <= most for a move from x to x + s d (3 x node_count): all of the way there is
+  // admissible. Pre: x is.
+  virtual double step_limit(const Points& /*x*/, const Points& /*d*/, double most) const { return most; }
+
+  // Makes the term stiffer where the state at x shows that it is too soft to be trusted. Returns whether it
+  // did: then the energy is another one.
+  virtual bool stiffen(const Points& /*x*/) { return false; }
+
   virtual TermCounters counters() const { return {stencils().count(), 0, 0}; }
 
  private:

@@ -58,7 +58,8 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
   Sample low{0, from.energy, from.slope};  // best end of the bracket
   Sample high{};                           // other end, once there is one
   bool has_high = false;
-  double step = first;
+  double step = monitor.step_limit(from.q, direction, first);
+  bool is_limited = step < first;
   for (int k = 0; k < kMaxEvaluations; ++k) {
     if (monitor.is_out_of_time()) break;
     const Sample now = evaluate(monitor, from, direction, step, to);
@@ -82,7 +83,11 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
       low = now;
     }
     if (!has_high) {
-      step *= 4;
+      if (is_limited) return true;  // as far as it may go, and downhill all the way
+      const double wanted = 4 * step;
+      step = monitor.step_limit(from.q, direction, wanted);
+      is_limited = step < wanted;
+      if (step <= low.step) return true;
     } else if (high.energy == kInfinity) {
       step = 0.5 * (low.step + high.step);
     } else {

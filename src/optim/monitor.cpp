@@ -49,6 +49,12 @@ double Monitor::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>&
   return guarded(g, q.size(), [&] { return objective_.hessian(q, g, h, projection); });
 }
 
+double Monitor::step_limit(const Vector& q, const Vector& direction, double most) {
+  if (objective_.step_limiting_term() == nullptr) return most;
+  PhaseTimer timer(phases_, "collisions");
+  return objective_.step_limit(q, direction, most);
+}
+
 bool Monitor::is_out_of_time() const { return seconds() >= stop_.max_seconds; }
 
 double Monitor::energy_noise(double energy) const {

@@ -19,6 +19,10 @@ class Monitor {
   double gradient(const Vector& q, Vector& g);
   double hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double>& h, Projection projection);
 
+  // The greatest admissible s <= most along a direction (Objective::step_limit), timed by phase
+  // "collisions".
+  double step_limit(const Vector& q, const Vector& direction, double most);
+
   // The change of an energy near `energy` that may be nothing but round-off. A sum of terms that almost
   // cancel is noisier than its own size tells: the largest force times the extent of the unknowns is the
   // work against which positions are rounded.

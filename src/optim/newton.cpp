@@ -103,6 +103,8 @@ class Newton {
   // The shift takes the place of the radius (Levenberg, Marquardt; More 1978).
   bool try_whole_step() {
     next_.step = 1;
+    direction_ *= monitor_.step_limit(at_.q, direction_, 1);
+    at_.slope = at_.g.dot(direction_);
     next_.q = at_.q + direction_;
     next_.energy = monitor_.gradient(next_.q, next_.g);
     if (!std::isfinite(next_.energy) || !next_.g.allFinite()) return false;

@@ -1,3 +1,4 @@
+#include "core/error.hpp"
 #include "optim/bfgs.hpp"
 #include "optim/carry_along.hpp"
 #include "optim/lbfgs.hpp"
@@ -15,8 +16,10 @@ namespace {
 constexpr int kMaxRounds = 100;  // renewals of a load without potential
 constexpr int kMaxRoundsWithoutGain = 12;
 constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
-constexpr int kMostSaddles = 2;            // that are left in one run
-constexpr double kFirstKick = 1e-2;        // off a saddle, relative to the extent of the unknowns
+constexpr double kLeastMotion = 1e-4;  // of the whole prescribed motion, that collisions may leave of a step
+constexpr int kMostStiffenings = 5;    // of a contact that proves too soft
+constexpr int kMostSaddles = 2;        // that are left in one run
+constexpr double kFirstKick = 1e-2;    // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
 
 std::string number(double value) {
@@ -35,9 +38,12 @@ bool ends_the_run(Status status) {
 Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
               int& rounds, std::string& note) {
   if (!objective.has_circulatory_force() || solver.follows_path()) {
-    if (objective.has_circulatory_force()) objective.follow_path(q);
-    monitor.begin_round(monitor.round(), tolerance);
-    return solver.minimize(objective, q, monitor);
+    for (int stiffening = 0;; ++stiffening) {
+      if (objective.has_circulatory_force()) objective.follow_path(q);
+      monitor.begin_round(monitor.round(), tolerance);
+      const Status status = solver.minimize(objective, q, monitor);
+      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
+    }
   }
   Vector best = q;
   double best_residual = kInfinity, gained_residual = kInfinity;
@@ -105,6 +111,24 @@ struct Outcome {
   bool is_on_the_way = false;  // the full problem was not reached
 };
 
+// Moves the prescribed nodes from where they are at `from` towards `to`, the free ones carried along, as far
+// as no collision is in the way; returns how far that is.
+double move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
+  const Points start = objective.positions(q);
+  for (double t = to; t > from; t = from + 0.5 * (t - from)) {
+    const Points x = motion.positions(t);
+    const Vector carried = carried_along(objective, q, x);
+    objective.prescribe(x);
+    if (objective.step_limit(start, objective.positions(carried) - start, 1) == 1) {
+      q = carried;
+      return t;
+    }
+    objective.prescribe(start);
+    if (t - from < kLeastMotion) break;
+  }
+  return from;
+}
+
 // Follows the prescribed motion and the continuation to the full problem.
 Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                Result& result) {
@@ -113,26 +137,37 @@ Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Mon
   const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
                               continuation.stiffness_steps});
   Outcome outcome;
+  double moved = 0;  // of the prescribed motion
+  bool is_blocked = false;
   int step = 1;
   for (; step <= steps; ++step) {
     const double t = static_cast<double>(step) / steps;
-    if (problem.motion.positions) {
-      const Points x = problem.motion.positions(t);
-      result.q = carried_along(objective, result.q, x);
-      objective.prescribe(x);
-    }
-    objective.scale(continuation.load_steps > 1 ? t : 1,
-                    continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
-    const bool is_last = step == steps;
-    outcome.status = settle(solver, objective, result.q, monitor,
-                            is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance),
-                            result.rounds, outcome.note);
-    if (ends_the_run(outcome.status)) break;
+    bool has_arrived = !problem.motion.positions;
+    do {
+      if (!has_arrived) {
+        const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);
+        has_arrived = reached == t;
+        is_blocked = !has_arrived && reached - moved < kLeastMotion;
+        moved = reached;
+        if (is_blocked) break;
+      }
+      objective.scale(continuation.load_steps > 1 ? t : 1,
+                      continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
+      const bool is_last = has_arrived && step == steps;
+      outcome.status = settle(solver, objective, result.q, monitor,
+                              is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance),
+                              result.rounds, outcome.note);
+    } while (!has_arrived && !ends_the_run(outcome.status));
+    if (is_blocked || ends_the_run(outcome.status)) break;
   }
   // A run that was cut short is judged, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
   outcome.is_on_the_way = step < steps;
-  if (outcome.is_on_the_way)
+  if (is_blocked) {
+    outcome.status = Status::Stalled;
+    outcome.note =
+        "the prescribed motion presses facets against each other, at " + number(100 * moved) + " % of it";
+  } else if (outcome.is_on_the_way)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
                    " of the prescribed motion or of the continuation";
   return outcome;
@@ -196,7 +231,8 @@ bool leave_saddle(Monitor& monitor, Result& result) {
   double length = kFirstKick * extent / mode.lpNorm<Eigen::Infinity>();
   for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25)
     for (const double sign : {1.0, -1.0}) {
-      const Vector q = result.q + sign * length * mode;
+      const double step = monitor.step_limit(result.q, sign * mode, length);
+      const Vector q = result.q + sign * step * mode;
       if (!(monitor.value(q) < wanted)) continue;
       result.q = q;
       return true;
@@ -230,6 +266,12 @@ std::string_view status_name(Status status) {
 
 Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer) {
   Objective& objective = problem.objective;
+  if (const EnergyTerm* term = objective.step_limiting_term();
+      term != nullptr && !solver.honours_step_limits())
+    throw InputError("solver \"" + std::string(solver.name()) +
+                     "\" chooses its steps itself and cannot keep them free of collisions, which term \"" +
+                     term->name() + "\" (" + std::string(term->type()) +
+                     ") needs; use \"newton\", \"lbfgs\" or \"bfgs\", or \"contact_facet\"");
   const double cpu_start = cpu_seconds();
   const EvaluationCounts counts_before = objective.counts();
   Monitor monitor(objective, stop, observer);

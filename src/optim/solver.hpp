@@ -61,6 +61,10 @@ class Solver {
   // step with its start. Others get a load without potential in rounds, each with a true potential.
   virtual bool follows_path() const { return false; }
 
+  // Whether the method asks Monitor::step_limit before every step. One that does not is refused terms that
+  // limit steps.
+  virtual bool honours_step_limits() const { return true; }
+
   // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
   // accepted iterate, finite whatever happens. Never throws for numerical reasons.
   virtual Status minimize(Objective& objective, Vector& q, Monitor& monitor) = 0;
@@ -110,7 +114,8 @@ struct Result {
 };
 
 // Runs a solver on a problem: follows the prescribed motion, renews loads without a potential until the
-// exact residual is small, and judges the outcome by the objective's residual alone.
+// exact residual is small, and judges the outcome by the objective's residual alone. Throws InputError, before
+// anything is done, when a term limits steps and the solver does not honour it.
 Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer = {});
 
 // How a step is kept from going too far.

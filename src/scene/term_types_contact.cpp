@@ -1,5 +1,7 @@
 #include "core/error.hpp"
+#include "energy/contact_barrier.hpp"
 #include "energy/contact_facet.hpp"
+#include "mesh/intersections.hpp"
 #include "scene/term_types.hpp"
 
 #include <algorithm>
@@ -8,6 +10,8 @@ namespace coapt {
 namespace {
 
 constexpr double kRangePerEdge = 0.5;  // default range over mean edge length
+constexpr double kGapPerEdge = 0.3;    // default gap of the barrier over mean edge length
+constexpr size_t kListedPairs = 20;    // of those that intersect at the start
 constexpr double kSafeCapacity = 2;    // below this times the pressure, moving sheets may pass
 constexpr double kMargin = 60;         // default capacity over applied pressure
 
@@ -43,10 +47,48 @@ TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   }
 }
 
+// A barrier cannot separate what passes through each other already.
+void refuse_intersections(const std::string& where, const Points& X, const Triangles& triangles) {
+  const std::vector<std::array<int, 2>> pairs = intersecting_pairs(X, triangles);
+  if (pairs.empty()) return;
+  std::string list;
+  for (size_t k = 0; k < std::min(pairs.size(), kListedPairs); ++k)
+    list += (k > 0 ? ", " : "") + std::to_string(pairs[k][0]) + "-" + std::to_string(pairs[k][1]);
+  if (pairs.size() > kListedPairs) list += ", ...";
+  throw InputError(where + ": the mesh touches or passes through itself at the start, in " +
+                   std::to_string(pairs.size()) + " pairs of triangles (numbered from 0: " + list +
+                   "); a barrier needs a start without intersections");
+}
+
+TermPointer build_barrier(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  Model& model = context.model;
+  const TriangleMesh& mesh = model.mesh;
+  if (mesh.triangle_count() == 0) throw InputError(p.where() + ": contact needs a mesh");
+  refuse_intersections(p.where(), model.X, mesh.triangles);
+  ContactBarrierOptions options;
+  options.gap = p.number_or("gap", kGapPerEdge * mean_edge_length(mesh.vertices, mesh.triangles));
+  options.pressure = model.applied_pressure;
+  model.contact_range = std::max(model.contact_range, options.gap);
+  return make_contact_barrier(spec.name, model.X, mesh.triangles, options);
+}
+
 }  // namespace
 
 std::vector<TermType> contact_term_types() {
   return {
+      {.name = "contact_barrier",
+       .stage = BuildStage::AfterLoads,  // its strength comes from the applied pressure
+       .summary =
+           "Barrier on the distances between points, edges and facets that lets nothing through (Li et "
+           "al. 2020); its steps are limited by continuous collision detection.",
+       .spec = {.keys = {{.name = "gap",
+                          .dimension = kLength,
+                          .min = 0,
+                          .excludes_min = true,
+                          .doc = "Distance at which the repulsion begins; default: 0.3 mean edge lengths."}}},
+       .check = {},
+       .build = build_barrier},
       {.name = "contact_facet",
        .stage = BuildStage::AfterLoads,  // its default strength comes from the applied pressure
        .summary = "Smoothed repulsion of facets that come close (Burlina et al. 2010); a finite barrier, so "

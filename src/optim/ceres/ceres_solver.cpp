@@ -46,6 +46,7 @@ class IterateReport final : public ceres::IterationCallback {
 class SolverCeres final : public Solver {
  public:
   std::string_view name() const override { return "ceres"; }
+  bool honours_step_limits() const override { return false; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     HostedRun run(monitor, q);

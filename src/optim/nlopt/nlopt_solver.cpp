@@ -13,6 +13,7 @@ namespace {
 class SolverNlopt final : public Solver {
  public:
   std::string_view name() const override { return "nlopt"; }
+  bool honours_step_limits() const override { return false; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
     HostedRun run(monitor, q);

@@ -1,0 +1,166 @@
+#include "energy/contact/contact_surface.hpp"
+
+#include "mesh/triangle_mesh.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+// A box and the box of the displacements of what is in it.
+struct SweptBounds {
+  Bounds at, move;
+
+  void include(const SweptBounds& other) {
+    at.include(other.at);
+    move.include(other.move);
+  }
+};
+
+// Whether the two boxes, grown by reach, overlap.
+bool are_near(const Bounds& a, const Bounds& b, double reach) {
+  return (a.low <= b.high + reach).all() && (b.low <= a.high + reach).all();
+}
+
+// Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
+// the relative positions form an interval whose ends move linearly, and the times at which it holds zero are
+// an interval too. What moves alike, such as neighbours on the surface, is so told apart however far it goes.
+bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double slack) {
+  double from = 0, to = most;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = b.at.low[axis] - a.at.high[axis] - slack,
+                 high = b.at.high[axis] - a.at.low[axis] + slack;
+    const double low_rate = b.move.low[axis] - a.move.high[axis],
+                 high_rate = b.move.high[axis] - a.move.low[axis];
+    // low + s low_rate <= 0
+    if (low > 0) {
+      if (low_rate >= 0) return false;
+      from = std::max(from, -low / low_rate);
+    } else if (low_rate > 0) {
+      to = std::min(to, -low / low_rate);
+    }
+    // high + s high_rate >= 0
+    if (high < 0) {
+      if (high_rate <= 0) return false;
+      from = std::max(from, -high / high_rate);
+    } else if (high_rate < 0) {
+      to = std::min(to, -high / high_rate);
+    }
+  }
+  return from <= to * (1 + 1e-12);
+}
+
+template <class Bound>
+Bound joined(Bound a, const Bound& b) {
+  a.include(b);
+  return a;
+}
+
+}  // namespace
+
+ContactSurface::ContactSurface(const Points& rest, Triangles triangles, int membrane_count,
+                               std::vector<std::array<int, 2>> excluded)
+    : rest_(rest),
+      triangles_(std::move(triangles)),
+      excluded_(std::move(excluded)),
+      vertex_area_(static_cast<size_t>(rest.cols()), 0),
+      around_(static_cast<size_t>(rest.cols())),
+      own_vertices_(static_cast<size_t>(triangles_.cols())),
+      own_edges_(static_cast<size_t>(triangles_.cols())),
+      hierarchy_(rest, triangles_, membrane_count) {
+  for (auto& [s, t] : excluded_)
+    if (s > t) std::swap(s, t);
+  std::sort(excluded_.begin(), excluded_.end());
+  std::vector<double> third(static_cast<size_t>(triangles_.cols()));
+  for (int t = 0; t < triangles_.cols(); ++t) {
+    third[static_cast<size_t>(t)] = area_vector(rest_, triangles_.col(t)).norm() / 3;
+    for (int k = 0; k < 3; ++k) {
+      const size_t node = static_cast<size_t>(triangles_(k, t));
+      if (around_[node].empty()) own_vertices_[static_cast<size_t>(t)].push_back(static_cast<int>(node));
+      around_[node].push_back(t);
+      vertex_area_[node] += third[static_cast<size_t>(t)];
+    }
+  }
+  for (const Edge& edge : edges(triangles_)) {
+    double area = 0;
+    for (const int t : edge.triangles) area += third[static_cast<size_t>(t)];
+    own_edges_[static_cast<size_t>(edge.triangles.front())].push_back(static_cast<int>(edges_.size()));
+    edges_.push_back({edge.a, edge.b, area, edge.triangles});
+  }
+}
+
+double ContactSurface::area(const FeaturePair& pair) const {
+  const size_t first = static_cast<size_t>(pair.first), second = static_cast<size_t>(pair.second);
+  if (pair.kind == PairKind::EdgeEdge) return std::min(edges_[first].area, edges_[second].area);
+  return std::min(vertex_area_[first], area_vector(rest_, triangles_.col(pair.second)).norm());
+}
+
+bool ContactSurface::is_excluded(const std::vector<int>& around_first,
+                                 const std::vector<int>& around_second) const {
+  if (excluded_.empty()) return false;
+  for (const int s : around_first)
+    for (const int t : around_second)
+      if (!std::binary_search(excluded_.begin(), excluded_.end(),
+                              std::array<int, 2>{std::min(s, t), std::max(s, t)}))
+        return false;
+  return true;
+}
+
+// bound_of_node: Bound of one node.
+template <class Bound, class BoundOfNode, class IsNear>
+void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near,
+                                 const Visit& visit) const {
+  std::vector<Bound> nodes(around_.size()), of_triangles(static_cast<size_t>(triangles_.cols())), of_tree;
+  for (size_t node = 0; node < around_.size(); ++node)
+    if (!around_[node].empty()) nodes[node] = bound_of_node(static_cast<int>(node));
+  const auto bound = [&](int node) -> const Bound& { return nodes[static_cast<size_t>(node)]; };
+  for (int t = 0; t < triangles_.cols(); ++t)
+    for (int k = 0; k < 3; ++k) of_triangles[static_cast<size_t>(t)].include(bound(triangles_(k, t)));
+  hierarchy_.fit(of_triangles, of_tree);
+
+  const auto visit_points = [&](int s, int t) {
+    const int a = triangles_(0, t), b = triangles_(1, t), c = triangles_(2, t);
+    for (const int p : own_vertices_[static_cast<size_t>(s)]) {
+      if (p == a || p == b || p == c || !is_near(bound(p), of_triangles[static_cast<size_t>(t)])) continue;
+      if (is_excluded(around_[static_cast<size_t>(p)], {t})) continue;
+      visit({PairKind::PointTriangle, {p, a, b, c}, p, t});
+    }
+  };
+  hierarchy_.for_each_pair(of_triangles, of_tree, is_near, [&](int s, int t) {
+    visit_points(s, t);
+    visit_points(t, s);
+    for (const int e : own_edges_[static_cast<size_t>(s)]) {
+      const SurfaceEdge& first = edges_[static_cast<size_t>(e)];
+      const Bound of_first = joined(bound(first.a), bound(first.b));
+      for (const int f : own_edges_[static_cast<size_t>(t)]) {
+        const SurfaceEdge& second = edges_[static_cast<size_t>(f)];
+        if (first.a == second.a || first.a == second.b || first.b == second.a || first.b == second.b)
+          continue;
+        if (!is_near(of_first, joined(bound(second.a), bound(second.b)))) continue;
+        if (is_excluded(first.triangles, second.triangles)) continue;
+        visit({PairKind::EdgeEdge, {first.a, first.b, second.a, second.b}, e, f});
+      }
+    }
+  });
+}
+
+void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
+  visit_pairs<Bounds>(
+      [&](int node) {
+        return Bounds{x.col(node).array(), x.col(node).array()};
+      },
+      [&](const Bounds& a, const Bounds& b) { return are_near(a, b, reach); }, visit);
+}
+
+void ContactSurface::visit_swept(const Points& x, const Points& d, const double& most,
+                                 const Visit& visit) const {
+  const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
+  visit_pairs<SweptBounds>(
+      [&](int node) {
+        return SweptBounds{{x.col(node).array(), x.col(node).array()},
+                           {d.col(node).array(), d.col(node).array()}};
+      },
+      [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit);
+}
+
+}  // namespace coapt

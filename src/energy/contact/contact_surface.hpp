@@ -1,0 +1,68 @@
+// The features that may meet: vertices, edges and triangles of the membrane and of its obstacles, and the
+// search for pairs of them.
+#pragma once
+
+#include "energy/contact/box_hierarchy.hpp"
+#include "energy/contact/pair_barrier.hpp"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace coapt {
+
+// Two features that share no vertex; nodes as the columns of PairCorners. `first`, `second`: vertex and
+// triangle, or the two edges.
+struct FeaturePair {
+  PairKind kind;
+  std::array<int, 4> nodes;
+  int first, second;
+};
+
+class ContactSurface {
+ public:
+  // triangles: those of the membrane, then, from column `membrane_count` on, those of the obstacles, which do
+  // not meet each other. excluded: pairs of triangles that may pass through each other; a pair of features is
+  // left out when all its triangles are.
+  ContactSurface(const Points& rest, Triangles triangles, int membrane_count,
+                 std::vector<std::array<int, 2>> excluded);
+
+  const Points& rest() const { return rest_; }
+  const Triangles& triangles() const { return triangles_; }
+
+  // The smaller of the rest areas that belong to the two features: a third of the triangles around
+  // [length^2].
+  double area(const FeaturePair& pair) const;
+
+  using Visit = std::function<void(const FeaturePair&)>;
+
+  // Pairs whose boxes come within `reach` of each other at x, each once, in an order that does not depend on
+  // x.
+  void visit_near(const Points& x, double reach, const Visit& visit) const;
+
+  // Pairs that the boxes do not keep apart while x moves to x + s d, 0 <= s <= most. `most` may fall during
+  // the visit.
+  void visit_swept(const Points& x, const Points& d, const double& most, const Visit& visit) const;
+
+ private:
+  struct SurfaceEdge {
+    int a, b;
+    double area;
+    std::vector<int> triangles;
+  };
+
+  template <class Bound, class BoundOfNode, class IsNear>
+  void visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit) const;
+  bool is_excluded(const std::vector<int>& around_first, const std::vector<int>& around_second) const;
+
+  Points rest_;
+  Triangles triangles_;
+  std::vector<std::array<int, 2>> excluded_;  // ascending, the smaller number first
+  std::vector<SurfaceEdge> edges_;
+  std::vector<double> vertex_area_;                         // per node
+  std::vector<std::vector<int>> around_;                    // triangles around each node
+  std::vector<std::vector<int>> own_vertices_, own_edges_;  // of each triangle: every feature has one owner
+  BoxHierarchy hierarchy_;
+};
+
+}  // namespace coapt
