@@ -79,18 +79,9 @@ class ContactBarrier final : public EnergyTerm {
 
   double step_limit(const Points& x, const Points& d, double most) const override {
     double limit = most;
-    const auto shorten = [&](PairKind kind, const int* nodes) {
-      const PairCorners from = gather(x, nodes), move = gather(d, nodes);
-      limit = std::min(limit, kind == PairKind::PointTriangle
-                                  ? point_triangle_step(from, move, limit, kKeptDistance)
-                                  : edge_edge_step(from, move, limit, kKeptDistance));
-    };
-    if (is_within_skin(x) && is_within_skin(x + most * d)) {
-      for (size_t k = 0; k < rest_.size(); ++k) shorten(rest_[k].kind, &stencils_.nodes[4 * k]);
-    } else {
-      surface_.visit_swept(x, d, limit,
-                           [&](const FeaturePair& pair) { shorten(pair.kind, pair.nodes.data()); });
-    }
+    visit_moving(x, d, limit, [&](PairKind kind, const int* nodes) {
+      limit = std::min(limit, pair_step(kind, gather(x, nodes), gather(d, nodes), limit));
+    });
     return limit;
   }
 
@@ -109,6 +100,21 @@ class ContactBarrier final : public EnergyTerm {
     PairCorners corners;
     for (int a = 0; a < 4; ++a) corners.col(a) = x.col(nodes[a]);
     return corners;
+  }
+
+  static double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, double most) {
+    return kind == PairKind::PointTriangle ? point_triangle_step(x, d, most, kKeptDistance)
+                                           : edge_edge_step(x, d, most, kKeptDistance);
+  }
+
+  // Visits the pairs that may collide while x moves to x + s d, 0 <= s <= most; `most` may fall meanwhile.
+  template <class Visit>
+  void visit_moving(const Points& x, const Points& d, const double& most, const Visit& visit) const {
+    if (is_within_skin(x) && is_within_skin(x + most * d)) {
+      for (size_t k = 0; k < rest_.size(); ++k) visit(rest_[k].kind, &stencils_.nodes[4 * k]);
+    } else {
+      surface_.visit_swept(x, d, most, [&](const FeaturePair& pair) { visit(pair.kind, pair.nodes.data()); });
+    }
   }
 
   // A pair can come within range only after its nodes have moved by half the skin each.

@@ -77,10 +77,14 @@ const EnergyTerm* Objective::step_limiting_term() const {
 double Objective::step_limit(const Vector& q, const Vector& direction, double most) {
   if (step_limiting_term() == nullptr) return most;
   prepare(q);
+  return step_limit(x_, nodal(direction), most);
+}
+
+Points Objective::nodal(const Vector& direction) const {
   Points d = Points::Zero(3, node_count());
   for (size_t k = 0; k < active_.size(); ++k)
     d.col(active_[k]) = fixed_.col(active_[k]).select(0, direction.segment<3>(3 * k).array());
-  return step_limit(x_, d, most);
+  return d;
 }
 
 double Objective::step_limit(const Points& x, const Points& d, double most) {

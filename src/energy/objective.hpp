@@ -129,6 +129,7 @@ class Objective {
   const EvaluationCounts& counts() const { return counts_; }
 
  private:
+  Points nodal(const Vector& direction) const;
   double evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h, Projection projection);
   void prepare(const Vector& q);
   double factor(const EnergyTerm& term) const {

@@ -11,9 +11,11 @@ namespace {
 
 constexpr double kRangePerEdge = 0.5;  // default range over mean edge length
 constexpr double kGapPerEdge = 0.3;    // default gap of the barrier over mean edge length
-constexpr size_t kListedPairs = 20;    // of those that intersect at the start
-constexpr double kSafeCapacity = 2;    // below this times the pressure, moving sheets may pass
-constexpr double kMargin = 60;         // default capacity over applied pressure
+constexpr double kBarrierPressure =
+    5;                               // of the barrier, in applied pressures: folds press harder than the load
+constexpr size_t kListedPairs = 20;  // of those that intersect at the start
+constexpr double kSafeCapacity = 2;  // below this times the pressure, moving sheets may pass
+constexpr double kMargin = 60;       // default capacity over applied pressure
 
 TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
@@ -68,7 +70,7 @@ TermPointer build_barrier(const TermSpec& spec, BuildContext& context) {
   refuse_intersections(p.where(), model.X, mesh.triangles);
   ContactBarrierOptions options;
   options.gap = p.number_or("gap", kGapPerEdge * mean_edge_length(mesh.vertices, mesh.triangles));
-  options.pressure = model.applied_pressure;
+  options.pressure = kBarrierPressure * model.applied_pressure;
   model.contact_range = std::max(model.contact_range, options.gap);
   return make_contact_barrier(spec.name, model.X, mesh.triangles, options);
 }

@@ -1,0 +1,248 @@
+#include "energy/contact_barrier.hpp"
+
+#include "core/error.hpp"
+#include "energy/contact/pair_barrier.hpp"
+#include "mesh/intersections.hpp"
+#include "support/meshes.hpp"
+#include "support/term_suite.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace coapt {
+namespace {
+
+constexpr double kGap = 0.5;
+
+// Two triangles, at rest far apart; the second one is brought near the first in the state.
+TermCase two_triangles(const std::string& label, const Eigen::Matrix3d& second) {
+  TermCase c;
+  c.label = label;
+  Triangles triangles(3, 2);
+  triangles << 0, 3, 1, 4, 2, 5;
+  c.rest.resize(3, 6);
+  c.rest << 0, 4, 0, 0, 4, 0, 0, 0, 4, 0, 0, 4, 0, 0, 0, 9, 9, 9;
+  c.state = c.rest;
+  c.state.rightCols(3) = second;
+  c.reach = 0.02;
+  c.far_away = 10;
+  c.make = [rest = c.rest, triangles](const Frame& f) {
+    ContactBarrierOptions options;
+    options.gap = kGap * f.length;
+    options.pressure = 1.3 * f.force / (f.length * f.length);
+    return make_contact_barrier("contact", f.points(rest), f.triangles(triangles), options);
+  };
+  return c;
+}
+
+Eigen::Matrix3d corners(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Eigen::Matrix3d m;
+  m << a, b, c;
+  return m;
+}
+
+// One state for each place that the closest points can have.
+std::vector<TermCase> distance_regimes() {
+  return {
+      two_triangles("point over a face", corners({1.1, 0.9, 0.22}, {1.3, 1.2, 4}, {1.7, 0.6, 4.2})),
+      two_triangles("point beside an edge", corners({1.9, -0.15, 0.17}, {1.7, -3, 2}, {2.3, -3.1, 2.4})),
+      two_triangles("point before a vertex", corners({-0.14, -0.11, 0.1}, {-3, -2, 1}, {-2, -3, 1.3})),
+      two_triangles("edge across an edge", corners({2.1, -1.1, 0.31}, {1.8, 1.7, 0.05}, {2.3, -2, 4})),
+      two_triangles("edges that are almost parallel",
+                    corners({0.6, -0.2, 0.21}, {3.2, -0.23, 0.24}, {2, -3, 3})),
+      two_triangles("several pairs at once", corners({0.9, 0.8, 0.3}, {1.9, 0.9, 0.25}, {1.2, 1.9, 0.35})),
+  };
+}
+
+TEST(ContactBarrier, PassesTheSuiteWhereverTheClosestPointsLie) {
+  for (const TermCase& c : distance_regimes()) EXPECT_EQ(examine_term(c), "");
+}
+
+TEST(ContactBarrier, IsSmoothWhereItBegins) {
+  const BarrierValue at = barrier(1), before = barrier(1 - 1e-6);
+  EXPECT_EQ(at.energy, 0);
+  EXPECT_EQ(at.slope, 0);
+  EXPECT_EQ(at.curvature, 0);
+  EXPECT_NEAR(before.curvature, 0, 1e-5);
+  EXPECT_LT(before.slope, 0);
+}
+
+TEST(ContactBarrier, GrowsWithoutBoundTowardsContact) {
+  double last = 0;
+  for (double s = 0.5; s > 1e-12; s *= 0.1) {
+    EXPECT_GT(barrier(s).energy, last + 1);
+    last = barrier(s).energy;
+  }
+}
+
+PairCorners random_corners(std::mt19937& engine, PairKind kind, double distance) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  PairCorners x;
+  for (double& value : x.reshaped()) value = uniform(engine);
+  // Push the first side away from the second until they are about as far apart as wanted.
+  const ClosestPair closest = closest_points(kind, x);
+  const Vec3 away = x * closest.weights;
+  const int moved = kind == PairKind::PointTriangle ? 1 : 2;
+  x.leftCols(moved).colwise() += (distance / closest.distance - 1) * away;
+  return x;
+}
+
+BarrierRest rest_of(PairKind kind) { return {kind, 1, 1, kind == PairKind::EdgeEdge ? 0.05 : 0}; }
+
+TEST(ContactBarrier, HasAProjectedHessianThatBoundsTheExactOne) {
+  std::mt19937 engine(5);
+  int indefinite = 0, turned_down = 0;
+  for (int sample = 0; sample < 4000; ++sample) {
+    const PairKind kind = sample % 2 == 0 ? PairKind::PointTriangle : PairKind::EdgeEdge;
+    PairCorners x = random_corners(engine, kind, 0.02 + 0.9 * (sample % 17) / 17.0);
+    if (sample % 10 == 1) {  // almost parallel edges
+      x.col(3) = x.col(2) + (x.col(1) - x.col(0)) + 0.01 * (x.col(3) - x.col(2));
+      ++turned_down;
+    }
+    const ClosestPair closest = closest_points(kind, x);
+    if (closest.distance >= 1 || closest.distance < 1e-3) continue;
+    PairVector g;
+    PairMatrix exact, projected;
+    evaluate_barrier(rest_of(kind), x, closest, Projection::None, &g, &exact);
+    evaluate_barrier(rest_of(kind), x, closest, Projection::PositiveSemidefinite, &g, &projected);
+    const double size = exact.norm();
+    const Eigen::SelfAdjointEigenSolver<PairMatrix> of_exact(exact), of_projected(projected),
+        of_difference(projected - exact);
+    EXPECT_GE(of_projected.eigenvalues()[0], -1e-12 * size);
+    EXPECT_GE(of_difference.eigenvalues()[0], -1e-12 * size);
+    EXPECT_LE(projected.norm(), 3 * size);
+    if (of_exact.eigenvalues()[0] < -1e-6 * size) ++indefinite;
+  }
+  EXPECT_GT(indefinite, 1000);
+  EXPECT_GT(turned_down, 100);
+}
+
+std::unique_ptr<EnergyTerm> barrier_of(const Points& rest, const Triangles& triangles, double gap) {
+  ContactBarrierOptions options;
+  options.gap = gap;
+  options.pressure = 1;
+  return make_contact_barrier("contact", rest, triangles, options);
+}
+
+TEST(ContactBarrier, LetsAMeshAtRestFeelNothingHoweverFineItIs) {
+  const TriangleMesh sheet = grid_mesh(12, 9);
+  const auto term = barrier_of(sheet.vertices, sheet.triangles, 1.0);  // ten times the edges
+  const TermValues at_rest = evaluate_term(*term, sheet.vertices);
+  EXPECT_EQ(at_rest.energy, 0);
+  EXPECT_EQ(at_rest.gradient.norm(), 0);
+  EXPECT_GT(term->counters().candidates, 0);
+}
+
+// Two sheets of different meshes one above the other: the pressure between them, and that it hardly depends
+// on the mesh.
+double pressure_between_sheets(int cells, double gap, double distance) {
+  const TriangleMesh lower = grid_mesh(cells, cells), upper = grid_mesh(cells + 1, cells + 1);
+  const int n = lower.vertex_count();
+  Points rest(3, n + upper.vertex_count()), state = rest;
+  rest << lower.vertices, upper.vertices.colwise() + Vec3(0, 0, 5);
+  state << lower.vertices, upper.vertices.colwise() + Vec3(0, 0, distance);
+  Triangles triangles(3, lower.triangle_count() + upper.triangle_count());
+  triangles << lower.triangles, upper.triangles.array() + n;
+  const auto term = barrier_of(rest, triangles, gap);
+  const Points g = evaluate_term(*term, state).gradient;
+  EXPECT_NEAR(g.row(2).sum(), 0, 1e-12 * g.norm());
+  return g.row(2).leftCols(n).sum() / surface_area(lower.vertices, lower.triangles);
+}
+
+TEST(ContactBarrier, CarriesItsPressureBetweenSheetsOfAnyMesh) {
+  const double coarse = pressure_between_sheets(8, 0.03, 0.02),
+               fine = pressure_between_sheets(16, 0.015, 0.01);
+  EXPECT_GT(coarse, 0.3);
+  EXPECT_LT(coarse, 3);
+  EXPECT_NEAR(fine, coarse, 0.15 * coarse);
+}
+
+TEST(ContactBarrier, StopsASheetBeforeItFallsThroughAnother) {
+  const TriangleMesh sheet = grid_mesh(3, 3);
+  const int n = sheet.vertex_count();
+  Points x(3, 2 * n), d = Points::Zero(3, 2 * n);
+  x << sheet.vertices, sheet.vertices.colwise() + Vec3(0.1, 0.05, 2);
+  d.rightCols(n).row(2).setConstant(-50);
+  Triangles triangles(3, 2 * sheet.triangle_count());
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const auto term = barrier_of(x, triangles, 0.1);
+  term->prepare(x);
+  ASSERT_TRUE(term->limits_steps());
+  const double step = term->step_limit(x, d, 1);
+  EXPECT_LT(step, 2.0 / 50);        // before contact
+  EXPECT_GT(step, 0.7 * 2.0 / 50);  // and not much too early
+  EXPECT_EQ(term->step_limit(x, -d, 1), 1);
+  EXPECT_EQ(term->step_limit(x, Points::Constant(3, 2 * n, 7), 1), 1);  // moving together
+}
+
+TEST(ContactBarrier, BecomesStifferOnlyWhereItIsPressedTooHard) {
+  const TriangleMesh sheet = grid_mesh(2, 2);
+  const int n = sheet.vertex_count();
+  Points rest(3, 2 * n), near(3, 2 * n), pressed(3, 2 * n);
+  rest << sheet.vertices, sheet.vertices.colwise() + Vec3(0.1, 0.05, 2);
+  near << sheet.vertices, sheet.vertices.colwise() + Vec3(0.1, 0.05, 0.05);
+  pressed << sheet.vertices, sheet.vertices.colwise() + Vec3(0.1, 0.05, 0.0005);
+  Triangles triangles(3, 2 * sheet.triangle_count());
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const auto term = barrier_of(rest, triangles, 0.1);
+  const double before = evaluate_term(*term, near).energy;
+  EXPECT_FALSE(term->stiffen(rest));
+  EXPECT_FALSE(term->stiffen(near));
+  EXPECT_EQ(evaluate_term(*term, near).energy, before);
+  EXPECT_TRUE(term->stiffen(pressed));
+  EXPECT_GT(evaluate_term(*term, near).energy, 2 * before);
+}
+
+TEST(ContactBarrier, IsInfiniteOnContactAndNeverNegative) {
+  const TermCase c = two_triangles("touching", corners({1, 1, 0}, {1, 1, 4}, {2, 1, 4}));
+  const auto term = c.make({});
+  term->prepare(c.state);
+  Sink sink;
+  EXPECT_EQ(term->evaluate(c.state, sink), kInfinity);
+}
+
+TEST(ContactBarrier, LeavesOutThePairsThatItIsToldTo) {
+  const TermCase c = distance_regimes().front();
+  Triangles triangles(3, 2);
+  triangles << 0, 3, 1, 4, 2, 5;
+  ContactBarrierOptions options;
+  options.gap = kGap;
+  options.pressure = 1;
+  options.excluded = {{1, 0}};
+  const auto term = make_contact_barrier("contact", c.rest, triangles, options);
+  EXPECT_EQ(evaluate_term(*term, c.state).energy, 0);
+}
+
+TEST(ContactBarrier, MeetsObstaclesThatDoNotMeetEachOther) {
+  const TermCase c = distance_regimes().front();
+  Triangles first(3, 1), second(3, 1), none(3, 0), both(3, 2);
+  first << 0, 1, 2;
+  second << 3, 4, 5;
+  both << first, second;
+  ContactBarrierOptions options;
+  options.gap = kGap;
+  options.pressure = 1;
+  options.obstacles = second;
+  const auto against = make_contact_barrier("contact", c.rest, first, options);
+  EXPECT_GT(evaluate_term(*against, c.state).energy, 0);
+  options.obstacles = both;
+  const auto obstacles_alone = make_contact_barrier("contact", c.rest, none, options);
+  EXPECT_EQ(evaluate_term(*obstacles_alone, c.state).energy, 0);
+}
+
+TEST(ContactBarrier, NamesTheOptionThatIsOutOfRange) {
+  Triangles triangles(3, 0);
+  try {
+    make_contact_barrier("contact", Points(3, 0), triangles, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.defects().size(), 2u);
+    EXPECT_NE(std::string(error.what()).find("gap must be positive"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace coapt
