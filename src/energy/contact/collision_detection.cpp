@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-14;       // of coordinates and all that is computed from them, with reserve
 constexpr double kLittleProgress = 0.01;  // of the distance to keep
-constexpr int kMostAdvances = 100;        // what is reached by then is safe, only shorter than need be
+constexpr int kMostAdvances = 1000;       // what is reached by then is safe, only shorter than need be
 constexpr double kSmallest = 1e-140, kLargest = 1e140;  // lengths whose squares neither vanish nor overflow
 
 // Corners [0, kFirst) against the others.
