@@ -33,33 +33,54 @@ struct EdgeEdge {
   static Vec3 normal(const Corners4& x) { return Vec3(x.col(1) - x.col(0)).cross(Vec3(x.col(3) - x.col(2))); }
 };
 
-// The least distance of a corner of the first side from one of the second along n.
+// The least distance of a corner of the first side from one of the second, in the direction in which they are
+// given.
 template <class Pair>
-double gap(const Corners4& x, const Vec3& n) {
-  const Eigen::RowVector4d height = n.transpose() * x;
-  return height.template head<Pair::kFirst>().minCoeff() -
-         height.template tail<4 - Pair::kFirst>().maxCoeff();
+double gap(const Eigen::RowVector4d& heights) {
+  return heights.template head<Pair::kFirst>().minCoeff() -
+         heights.template tail<4 - Pair::kFirst>().maxCoeff();
 }
 
-// The step up to which all corners of the first side stay further than `distance + step * rate` from those of
-// the second along the unit vector n; 0 where they do not even now.
+// Whether the plane across the line between the closest points does for the whole step. Most pairs need no
+// more than this, so it takes one root and no division.
 template <class Pair>
-double advance(const Corners4& x, const Corners4& d, const Vec3& n, double distance, double rate) {
+bool is_free(const Corners4& x, const Corners4& d, double most, double kept) {
+  const Vec3 between = Pair::nearest(x);
+  const double distance_squared = between.squaredNorm();
+  if (!(distance_squared > kSmallest)) return false;  // products of squares below would vanish
+  const double size_squared = 2 * (x.squaredNorm() + most * most * d.squaredNorm());
+  const double least = kept * distance_squared + kRoundOff * std::sqrt(size_squared * distance_squared);
+  const Eigen::RowVector4d now = between.transpose() * x, end = now + most * (between.transpose() * d);
+  return gap<Pair>(now) > least && gap<Pair>(end) > least;
+}
+
+struct Advance {
+  double gap;   // the least distance of a corner of the first side from one of the second along the direction
+  double step;  // up to which they stay apart, at most the one asked for; 0 where they are not even now
+};
+
+// How long all corners of the first side stay further than `distance + step * rate` from those of the second,
+// along the unit vector n.
+template <class Pair>
+Advance advance(const Corners4& x, const Corners4& d, const Vec3& n, double distance, double rate,
+                double most) {
   const Eigen::RowVector4d height = n.transpose() * x, speed = n.transpose() * d;
-  double step = kInfinity;
+  Advance found{kInfinity, most};
   for (int i = 0; i < Pair::kFirst; ++i)
     for (int j = Pair::kFirst; j < 4; ++j) {
-      const double slack = height[i] - height[j] - distance, closing = speed[j] - speed[i] + rate;
-      if (!(slack > 0)) return 0;
-      if (closing > 0) step = std::min(step, slack / closing);
+      const double gap = height[i] - height[j], slack = gap - distance, closing = speed[j] - speed[i] + rate;
+      found.gap = std::min(found.gap, gap);
+      if (closing * found.step > slack) found.step = slack / closing;
     }
-  return step;
+  if (found.gap <= distance) found.step = 0;
+  return found;
 }
 
 template <class Pair>
 double safe_step(const Corners4& x, const Corners4& d, double most, double kept) {
-  const double size = x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
-               size_rate = d.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  if (is_free<Pair>(x, d, most, kept)) return most;
+  const double size = x.norm(),
+               size_rate = d.norm();  // bounds of the coordinates; not finite if one of them is not
   if (!(size + most * size_rate < kLargest)) return 0;
   // Seen from one of the corners, so that what is computed loses no digits far from the origin.
   const Corners4 start = x.colwise() - x.col(3), move = d.colwise() - d.col(3);
@@ -69,19 +90,18 @@ double safe_step(const Corners4& x, const Corners4& d, double most, double kept)
   double distance = between.norm(), step = 0;
   if (!(distance > kSmallest)) return 0;
   const double to_keep = kept * distance;
-  const double fastest = 2 * move.cwiseAbs().maxCoeff();
   for (int k = 0; k < kMostAdvances; ++k) {
-    Vec3 n = between / distance;
-    if (gap<Pair>(now, n) < 0.9 * distance) {  // so near that rounding has turned the direction
-      Vec3 other = Pair::normal(now).stableNormalized();
-      if (other.dot(between) < 0) other = -other;
-      if (gap<Pair>(now, other) > gap<Pair>(now, n)) n = other;
+    const double least = to_keep + kRoundOff * (size + step * size_rate), rate = kRoundOff * size_rate;
+    const auto along = [&](const Vec3& n) { return advance<Pair>(now, move, n, least, rate, most - step); };
+    Advance found = along(between / distance);
+    if (found.gap < 0.9 * distance) {  // so near that rounding has turned the direction
+      const Vec3 normal = Pair::normal(now).stableNormalized();
+      const Advance other = along(normal.dot(between) < 0 ? Vec3(-normal) : normal);
+      if (other.gap > found.gap) found = other;
     }
-    const double further =
-        advance<Pair>(now, move, n, to_keep + kRoundOff * (size + step * size_rate), kRoundOff * size_rate);
-    if (step + further >= most) return most;
-    step += further;
-    if (fastest * further <= kLittleProgress * to_keep) break;
+    if (found.step >= most - step) return most;
+    step += found.step;
+    if (2 * move.norm() * found.step <= kLittleProgress * to_keep) break;
     now = start + step * move;
     between = Pair::nearest(now);
     distance = between.norm();
