@@ -20,20 +20,27 @@ double closest_parameter(const Vec3& p, const Vec3& a, const Vec3& b) {
 // Candidates are a point inside the triangle and one on each edge. Each of them lies on the triangle, so the
 // nearest is right even where rounding picks the wrong region.
 ClosestOnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a, w = p - a;
+  const Vec3 u = b - a, v = c - a;
   const Vec3 normal = u.cross(v);
   const double normal_squared = normal.squaredNorm();
   ClosestOnTriangle best;
   best.distance_squared = kInfinity;
   if (normal_squared > 0) {
-    const double wb = w.cross(v).dot(normal) / normal_squared;
-    const double wc = u.cross(w).dot(normal) / normal_squared;
+    const double longest = std::max(u.squaredNorm(), v.squaredNorm());
+    const bool is_thin = normal_squared <= 1e-4 * longest * longest;
+    Vec3 w = p - a;
+    double wb = w.cross(v).dot(normal) / normal_squared;
+    double wc = u.cross(w).dot(normal) / normal_squared;
+    if (is_thin) {  // rounding is magnified by the ratio of length to width: once more for what it left
+      w -= wb * u + wc * v;
+      wb += w.cross(v).dot(normal) / normal_squared;
+      wc += u.cross(w).dot(normal) / normal_squared;
+    }
     if (wb >= 0 && wc >= 0 && wb + wc <= 1) {
       best.weights = {1 - wb - wc, wb, wc};
       best.point = a + wb * u + wc * v;
       best.distance_squared = (p - best.point).squaredNorm();
-      const double longest = std::max(u.squaredNorm(), v.squaredNorm());
-      if (normal_squared > 1e-12 * longest * longest) return best;  // far from degenerate: certain
+      if (!is_thin) return best;
     }
   }
   const Vec3* corners[] = {&a, &b, &c};
@@ -66,12 +73,18 @@ ClosestOnSegments closest_on_segments(const Vec3& a, const Vec3& b, const Vec3& 
     const double distance_squared = (first - second).squaredNorm();
     if (distance_squared < best.distance_squared) best = {first, second, s, t, distance_squared};
   };
-  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm();
-  const double determinant = u.cross(v).squaredNorm();  // uu vv - uv^2 without cancellation
-  if (determinant > 0) {
-    const double s = (uv * v.dot(w) - vv * u.dot(w)) / determinant;
-    const double t = (uu * v.dot(w) - uv * u.dot(w)) / determinant;
-    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) consider(s, t);
+  const Vec3 normal = u.cross(v);
+  const double normal_squared = normal.squaredNorm();
+  if (normal_squared > 0) {
+    // Of nearly parallel edges s is uncertain along both; the point of cd is taken for this s, not for the
+    // exact one.
+    const double s = v.cross(w).dot(normal) / normal_squared;
+    if (s >= 0 && s <= 1) {
+      const double t = closest_parameter(a + s * u, c, d);
+      consider(s, t);
+      if (t > 0 && t < 1 && normal_squared > 1e-4 * u.squaredNorm() * v.squaredNorm())
+        return best;  // certain
+    }
   }
   consider(0, closest_parameter(a, c, d));
   consider(1, closest_parameter(b, c, d));

@@ -61,5 +61,47 @@ TEST(CollisionDetection, MissesNoneOfAHundredThousandCollisionsJudgedExactly) { 
     }
 }
 
+// A point above the inside of the triangle, and an edge across another one, at distance 1 along z.
+const Corners4 kPoint = (Corners4() << 0.2, 0, 1, 0, 0.2, 0, 0, 1, 1, 0, 0, 0).finished();
+const Corners4 kEdges = (Corners4() << -1, 1, 0, 0, 0, 0, -1, 1, 1, 1, 0, 0).finished();
+const Vec3 kUp(0, 0, 1);
+
+Corners4 moving(int first, const Vec3& one_side, const Vec3& other_side = Vec3::Zero()) {
+  Corners4 d;
+  for (int k = 0; k < 4; ++k) d.col(k) = k < first ? one_side : other_side;
+  return d;
+}
+
+TEST(CollisionDetection, StopsAtTheShareThatIsKept) {
+  for (const double kept : {0.1, 0.5}) {
+    EXPECT_NEAR(point_triangle_step(kPoint, moving(1, -4 * kUp), 1, kept), (1 - kept) / 4, 1e-12);
+    EXPECT_NEAR(edge_edge_step(kEdges, moving(2, -2 * kUp, 2 * kUp), 1, kept), (1 - kept) / 4, 1e-12);
+    EXPECT_NEAR(edge_edge_step(kEdges, moving(2, -4 * kUp), 0.1, kept), 0.1, 0);
+  }
+}
+
+TEST(CollisionDetection, LetsPassWhatDoesNotCollide) {
+  for (const Vec3& away : {Vec3(0, 0, 5), Vec3(9, 0, 0), Vec3(0, -1e6, 0), Vec3(0, 0, -0.8)}) {
+    EXPECT_EQ(point_triangle_step(kPoint, moving(1, away), 1, 0.1), 1) << away;
+    EXPECT_EQ(edge_edge_step(kEdges, moving(2, away), 1, 0.1), 1) << away;
+  }
+  const Vec3 together(1e4, -3e4, 1e5);
+  EXPECT_EQ(point_triangle_step(kPoint, moving(1, together, together), 1, 0.1), 1);
+  EXPECT_EQ(edge_edge_step(kEdges, moving(2, together, together), 1, 0.1), 1);
+  EXPECT_EQ(point_triangle_step(kPoint, Corners4::Zero(), 1, 0.1), 1);
+}
+
+TEST(CollisionDetection, RefusesToMoveWhatTouchesOrIsNotFinite) {
+  Corners4 touching = kPoint, broken = kPoint;
+  touching(2, 0) = 0;
+  EXPECT_EQ(point_triangle_step(touching, moving(1, kUp), 1, 0.1), 0);
+  EXPECT_EQ(edge_edge_step(Corners4::Zero(), moving(2, kUp), 1, 0.1), 0);
+  for (const double bad : {kNaN, kInfinity, 1e300}) {
+    broken(1, 2) = bad;
+    EXPECT_EQ(point_triangle_step(broken, moving(1, kUp), 1, 0.1), 0);
+    EXPECT_EQ(edge_edge_step(kEdges, broken, 1, 0.1), 0);
+  }
+}
+
 }  // namespace
 }  // namespace coapt

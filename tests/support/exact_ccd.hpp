@@ -92,7 +92,7 @@ class MovingPair {
     const std::vector<Exact3> at = differences(0);
     const Plane plane = best_plane(at);
     double bound = plane.gap;
-    while (bound > 0 && !is_apart(at, plane.normal, bound)) bound *= 1 - 1e-12;
+    while (bound > 0 && !is_apart(at, plane.normal, bound)) bound *= 1 - 1e-15;
     return std::max(bound, 0.0);
   }
 
