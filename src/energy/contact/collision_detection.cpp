@@ -10,10 +10,15 @@
 namespace coapt {
 namespace {
 
-constexpr double kRoundOff = 1e-14;       // of coordinates and all that is computed from them, with reserve
-constexpr double kLittleProgress = 0.01;  // of the distance to keep
-constexpr int kMostAdvances = 1000;       // what is reached by then is safe, only shorter than need be
-constexpr double kSmallest = 1e-140, kLargest = 1e140;  // lengths whose squares neither vanish nor overflow
+// Rounding of the coordinates and of all that is computed from them, as a share of their norm: thrice the
+// bound.
+constexpr double kRoundOff = 4e-15;
+// The search ends when the sides move less than this share of the distance to keep, or after so many
+// advances: what is reached by then is safe, only shorter than need be.
+constexpr double kLittleProgress = 0.01;
+constexpr int kMostAdvances = 1000;
+// Lengths whose squares neither vanish nor overflow.
+constexpr double kSmallest = 1e-140, kLargest = 1e140;
 
 // Corners [0, kFirst) against the others.
 struct PointTriangle {
@@ -33,8 +38,8 @@ struct EdgeEdge {
   static Vec3 normal(const Corners4& x) { return Vec3(x.col(1) - x.col(0)).cross(Vec3(x.col(3) - x.col(2))); }
 };
 
-// The least distance of a corner of the first side from one of the second, in the direction in which they are
-// given.
+// The least distance of a corner of the first side from one of the second, by their heights in some
+// direction.
 template <class Pair>
 double gap(const Eigen::RowVector4d& heights) {
   return heights.template head<Pair::kFirst>().minCoeff() -
@@ -79,8 +84,8 @@ Advance advance(const Corners4& x, const Corners4& d, const Vec3& n, double dist
 template <class Pair>
 double safe_step(const Corners4& x, const Corners4& d, double most, double kept) {
   if (is_free<Pair>(x, d, most, kept)) return most;
-  const double size = x.norm(),
-               size_rate = d.norm();  // bounds of the coordinates; not finite if one of them is not
+  // Bounds of the coordinates; not finite where one of them is not.
+  const double size = x.norm(), size_rate = d.norm();
   if (!(size + most * size_rate < kLargest)) return 0;
   // Seen from one of the corners, so that what is computed loses no digits far from the origin.
   const Corners4 start = x.colwise() - x.col(3), move = d.colwise() - d.col(3);
@@ -101,7 +106,7 @@ double safe_step(const Corners4& x, const Corners4& d, double most, double kept)
     }
     if (found.step >= most - step) return most;
     step += found.step;
-    if (2 * move.norm() * found.step <= kLittleProgress * to_keep) break;
+    if (2 * move.norm() * found.step <= kLittleProgress * least) break;
     now = start + step * move;
     between = Pair::nearest(now);
     distance = between.norm();
