@@ -13,16 +13,17 @@ namespace coapt::cli {
 namespace {
 
 struct Arguments {
-  std::string what, folder, contact = "none", pressure, membrane = "tension_field";
+  std::string what, folder, contact, pressure, membrane = "tension_field";
   int triangles = 2500;
   unsigned seed = 0;
 };
 
 void add_common_options(CLI::App& command, Arguments& arguments) {
   command.add_option("-o,--output", arguments.folder, "Folder to write into")->required();
-  command.add_option("--contact", arguments.contact, "Contact term of the scene")
-      ->check(CLI::IsMember({"none", "facet"}))
-      ->capture_default_str();
+  command
+      .add_option("--contact", arguments.contact,
+                  "Contact term of the scene (default: barrier for a valve, none for a shape)")
+      ->check(CLI::IsMember({"none", "barrier", "facet"}));
   command
       .add_option("--membrane", arguments.membrane,
                   "Leaflets of a valve: a tension field with bending, or for comparison one that resists "
@@ -36,7 +37,7 @@ void add_common_options(CLI::App& command, Arguments& arguments) {
 
 ImportOptions import_options(const Arguments& arguments) {
   ImportOptions options;
-  options.contact = arguments.contact;
+  if (!arguments.contact.empty()) options.contact = arguments.contact;
   options.membrane = arguments.membrane;
   if (!arguments.pressure.empty()) options.pressure_model = arguments.pressure;
   return options;

@@ -110,9 +110,13 @@ std::string millimetres(double length) {
   return text;
 }
 
+bool has_contact(const ShapeOptions& options) {
+  return !options.contact.empty() && options.contact != "none";
+}
+
 std::string scene_text(const Shape& shape, const ShapeOptions& options) {
   std::string terms = shape.terms;
-  if (options.contact == "facet") terms += ",\n    { \"type\": \"contact_facet\" }";
+  if (has_contact(options)) terms += ",\n    { \"type\": \"contact_" + options.contact + "\" }";
   const std::string model = options.pressure.empty() ? shape.default_model : options.pressure;
   std::string text = "{ // " + shape.title + ".\n  // Lengths in mm unless a unit is written.\n";
   text += "  \"name\": \"" + shape.name + "\",\n";
@@ -134,8 +138,8 @@ void check_options(const Shape& shape, const ShapeOptions& options) {
   if (options.pressure == "field")
     defects.push_back(
         "--pressure field: only a valve has a commissure line; choose follower, volume or frozen");
-  if (options.contact == "facet" && shape.mesh == nullptr)
-    defects.push_back("--contact facet: the " + shape.name + " has no facets");
+  if (has_contact(options) && shape.mesh == nullptr)
+    defects.push_back("--contact " + options.contact + ": the " + shape.name + " has no facets");
   if (!defects.empty()) throw InputError(defects);
 }
 

@@ -8,9 +8,9 @@
 namespace coapt::cli {
 
 struct ShapeOptions {
-  int triangles = 2500;          // wanted; the catenary has none and always 40 links
-  std::string contact = "none";  // none or facet
-  std::string pressure;          // follower, volume or frozen; empty: what suits the shape
+  int triangles = 2500;  // wanted; the catenary has none and always 40 links
+  std::string contact;   // none, barrier or facet; empty: none
+  std::string pressure;  // follower, volume or frozen; empty: what suits the shape
 };
 
 // "disc", "square", "sphere", "tent", "catenary", "airbag", "strip".

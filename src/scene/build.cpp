@@ -14,6 +14,7 @@ Model begun(const Groundwork& ground) {
   model.origin = ground.model.origin;
   model.X = ground.model.X;
   model.mesh = ground.model.mesh;
+  model.obstacles = ground.model.obstacles;
   model.sets = ground.model.sets;
   model.closed_reference = ground.model.closed_reference;
   model.warnings = ground.model.warnings;

@@ -15,6 +15,7 @@ namespace {
 // Everything that is gathered on the way.
 struct Assembly : Groundwork {
   std::map<std::string, Points> points;  // named positions, in the frame of the files [mm]
+  std::vector<int> held;                 // nodes prescribed unless the scene frees them
 
   void keep(const InputError& error) {
     defects.insert(defects.end(), error.defects().begin(), error.defects().end());
@@ -108,6 +109,29 @@ void read_valves(const Scene& scene, Assembly& assembly) {
   }
 }
 
+// The nodes of the obstacles follow all others.
+void read_obstacles(const Scene& scene, Assembly& assembly) {
+  Model& model = assembly.model;
+  for (const SceneObstacle& obstacle : scene.obstacles) try {
+      const TriangleMesh mesh = read_scaled(obstacle.file, obstacle.scale, assembly);
+      const auto first = model.X.cols(), facets = model.obstacles.cols();
+      model.X.conservativeResize(3, first + mesh.vertex_count());
+      model.X.rightCols(mesh.vertex_count()) = mesh.vertices;
+      model.obstacles.conservativeResize(3, facets + mesh.triangle_count());
+      model.obstacles.rightCols(mesh.triangle_count()) = mesh.triangles.array() + static_cast<int>(first);
+      std::vector<int>& nodes = model.sets[obstacle.name];
+      if (!nodes.empty())
+        assembly.defects.push_back(obstacle.where + ".name: \"" + obstacle.name +
+                                   "\" names other nodes already");
+      for (auto node = first; node < model.X.cols(); ++node) {
+        nodes.push_back(static_cast<int>(node));
+        assembly.held.push_back(static_cast<int>(node));
+      }
+    } catch (const InputError& error) {
+      assembly.keep(error);
+    }
+}
+
 // Moves the nodes to zero where they lie so far from it that digits would be lost.
 void recentre(Assembly& assembly) {
   Model& model = assembly.model;
@@ -155,6 +179,7 @@ Groundwork lay_groundwork(const Scene& scene) {
   read_surface(scene, assembly);
   read_reference(scene, assembly);
   read_valves(scene, assembly);
+  read_obstacles(scene, assembly);
   assembly.stop_on_defects();
   check_surface(scene, model, assembly.defects);
   assembly.stop_on_defects();
@@ -162,9 +187,13 @@ Groundwork lay_groundwork(const Scene& scene) {
   name_sets(scene, assembly);
 
   const auto papillary = model.sets.find("papillary");
-  const bool has_anchors = papillary != model.sets.end() && !assembly.networks.empty();
-  assembly.prescribed = prescribe(scene.boundary, has_anchors ? papillary->second : std::vector<int>{}, model,
-                                  assembly.points, assembly.defects);
+  if (papillary != model.sets.end() && !assembly.networks.empty())
+    assembly.held.insert(assembly.held.end(), papillary->second.begin(), papillary->second.end());
+  assembly.prescribed = prescribe(scene.boundary, assembly.held, model, assembly.points, assembly.defects);
+  if (!assembly.prescribed.fixed(Eigen::all, model.obstacles.reshaped()).all())
+    assembly.defects.push_back(
+        scene.file.string() +
+        ": boundary: sets nodes of an obstacle free; they have no stiffness of their own");
   hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
   return std::move(static_cast<Groundwork&>(assembly));
 }

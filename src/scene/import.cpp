@@ -38,8 +38,8 @@ void check_options(const ImportOptions& options) {
   if (model != "follower" && model != "frozen" && model != "field")
     defects.push_back("pressure model: read \"" + model +
                       "\"; a valve's free edge moves, so it takes one of follower, frozen, field");
-  if (options.contact != "none" && options.contact != "facet")
-    defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, facet");
+  if (options.contact != "none" && options.contact != "barrier" && options.contact != "facet")
+    defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, barrier, facet");
   if (options.membrane != "tension_field" && options.membrane != "stvk")
     defects.push_back("membrane: read \"" + options.membrane + "\"; expected one of tension_field, stvk");
   if (!defects.empty()) throw InputError(defects);
@@ -106,7 +106,7 @@ std::string terms_text(const Valve& valve, const ImportOptions& options) {
         "    { \"type\": \"cable\", \"name\": \"chords\", \"network\": \"valve.json\", \"young\": " +
         quoted(options.chord_young) + " }");
   terms.push_back(load_text(valve, options));
-  if (options.contact == "facet") terms.push_back("    { \"type\": \"contact_facet\" }");
+  if (options.contact != "none") terms.push_back("    { \"type\": \"contact_" + options.contact + "\" }");
   std::string text;
   for (const std::string& term : terms) text += (text.empty() ? "\n" : ",\n") + term;
   return "[" + text + "\n  ]";

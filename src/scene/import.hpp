@@ -16,7 +16,7 @@ struct ImportOptions {
   std::string chord_young = "40 MPa";       // Hammer et al. 2011
   std::string pressure = "";                // empty: the valve's, else 120 mmHg
   std::string pressure_model = "follower";  // follower, volume, frozen, or field (toward the commissure line)
-  std::string contact = "none";             // none or facet
+  std::string contact = "barrier";          // none, barrier or facet
   double default_thickness = 0.65;          // where the valve states none [mm]
   double tolerance = 1e-8;
 };

@@ -31,6 +31,24 @@ std::optional<SceneMesh> mesh_from(const Parameters& scene, Reading& reading) {
   return mesh;
 }
 
+std::vector<SceneObstacle> obstacles_from(const Parameters& scene, double mesh_scale, Reading& reading) {
+  std::vector<SceneObstacle> obstacles;
+  if (!scene.has("obstacles")) return obstacles;
+  std::set<std::string> names;
+  for (const Parameters& values : scene.objects("obstacles")) {
+    SceneObstacle obstacle;
+    obstacle.where = values.where();
+    if (values.has("name")) obstacle.name = values.text("name");
+    if (values.has("file")) obstacle.file = values.text("file");
+    obstacle.scale = length_scale(values, mesh_scale, reading);
+    if (values.has("name") && !names.insert(obstacle.name).second)
+      reading.defects.push_back(values.where("name") + ": \"" + obstacle.name +
+                                "\" is the name of another obstacle too");
+    obstacles.push_back(std::move(obstacle));
+  }
+  return obstacles;
+}
+
 std::vector<BoundaryEntry> boundary_from(const Parameters& scene, double mesh_scale, Reading& reading) {
   std::vector<BoundaryEntry> entries;
   if (!scene.has("boundary")) return entries;
@@ -121,6 +139,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   scene.mesh = mesh_from(values, reading);
   const double mesh_scale = scene.mesh ? scene.mesh->scale : 1;
   if (values.has("sets")) scene.sets = values.selections("sets");
+  scene.obstacles = obstacles_from(values, mesh_scale, reading);
   scene.boundary = boundary_from(values, mesh_scale, reading);
   if (values.has("motion") && values.object("motion").has("steps"))
     scene.motion_steps = values.object("motion").integer("steps");

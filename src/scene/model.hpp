@@ -32,13 +32,14 @@ struct MembraneProperties {
   double residual = 0;   // then: fraction of the compressive stiffness that is left
 };
 
-// Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions).
-// Lengths in mm, forces in N. Positions are kept relative to `origin` (the centre of the nodes), so that
-// a mesh far from zero loses no digits; add it back on output.
+// Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions), then
+// the vertices of each obstacle. Lengths in mm, forces in N. Positions are kept relative to `origin` (the
+// centre of the nodes), so that a mesh far from zero loses no digits; add it back on output.
 struct Model {
   Vec3 origin = Vec3::Zero();                    // [mm]
   Points X;                                      // reference positions, 3 x node_count [mm]
   TriangleMesh mesh;                             // its vertices are the first columns of X
+  Triangles obstacles = Triangles(3, 0);         // facets of all obstacles, by node number
   std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
   std::vector<Line> lines;
   std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term

@@ -28,6 +28,14 @@ struct BoundaryEntry {
   double scale = 1;              // mm per unit of the files in `path`
 };
 
+// A surface that the membrane meets; its nodes are prescribed and known by its name.
+struct SceneObstacle {
+  std::string where;  // for messages
+  std::string name;
+  std::filesystem::path file;
+  double scale = 1;  // mm per unit of the file
+};
+
 struct TermSpec {
   std::string type, name;  // the name is unique within the scene
   Parameters parameters;
@@ -53,6 +61,7 @@ struct Scene {
   std::string name;
   std::optional<SceneMesh> mesh;
   std::map<std::string, NodeSelection> sets;
+  std::vector<SceneObstacle> obstacles;
   std::vector<BoundaryEntry> boundary;
   int motion_steps = 0;  // 0 = no prescribed node moves by more than one mean edge length in a step
   std::vector<TermSpec> terms;

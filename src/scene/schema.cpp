@@ -22,6 +22,26 @@ KeySpec mesh_key() {
       .doc = "The surface; a scene of cables alone has none."};
 }
 
+KeySpec obstacles_key() {
+  return {
+      .name = "obstacles",
+      .kind = KeyKind::Objects,
+      .object = {.keys = {{.name = "name",
+                           .kind = KeyKind::Text,
+                           .required = true,
+                           .doc = "Name of its nodes, for `boundary` and wherever nodes are asked for."},
+                          {.name = "file",
+                           .kind = KeyKind::File,
+                           .required = true,
+                           .doc = "Triangle mesh: OBJ, PLY, STL, OFF or VTP."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .doc = "Unit of length of the file's coordinates; default: that of the mesh."}}},
+      .doc =
+          "Surfaces that the membrane meets where a `contact_barrier` is among the terms: a ventricle wall, "
+          "a ring, a sphere. They stand still unless `boundary` moves them."};
+}
+
 KeySpec boundary_key() {
   return {
       .name = "boundary",
@@ -168,6 +188,7 @@ const ObjectSpec& scene_spec() {
           {.name = "sets",
            .kind = KeyKind::NodeSets,
            .doc = "Named node selections, for use wherever nodes are asked for."},
+          obstacles_key(),
           boundary_key(),
           {.name = "motion",
            .kind = KeyKind::Object,

@@ -51,12 +51,7 @@ TermPointer build_field(const TermSpec& spec, BuildContext& context) {
                   context.multiplicity(p.has("nodes") ? &p.nodes("nodes") : nullptr, p.where("nodes"));
   } else {
     magnitudes = magnitudes.cwiseProduct(rest_areas(model));
-    if (p.has("pressure")) {
-      magnitudes *= p.number("pressure");
-      model.applied_pressure = std::max(model.applied_pressure, std::abs(p.number("pressure")));
-    } else {
-      magnitudes *= p.number("density") * p.number("thickness");
-    }
+    magnitudes *= p.has("pressure") ? p.number("pressure") : p.number("density") * p.number("thickness");
   }
   Points forces;
   if (p.has("toward_line")) {
@@ -66,6 +61,10 @@ TermPointer build_field(const TermSpec& spec, BuildContext& context) {
     const Vec3 along = p.has("gravity") ? p.vector("gravity") : Vec3(p.vector("direction").normalized());
     forces = area_forces(magnitudes, along);
   }
+  const Vector areas = rest_areas(model);
+  for (int node = 0; node < areas.size(); ++node)
+    if (areas[node] > 0)
+      model.applied_pressure = std::max(model.applied_pressure, forces.col(node).norm() / areas[node]);
   if (forces.isZero(0))
     model.warnings.push_back(p.where() + ": loads no node (no area, or all nodes on the line).");
   return std::make_unique<LoadDead>(spec.name, spec.type, forces, model.X);

@@ -82,6 +82,7 @@ Groundwork thinned(const Groundwork& finest, const TriangleMesh& coarse, const s
   model.origin = fine.origin;
   model.mesh = coarse;
   model.X = fine.X(Eigen::all, nodes);
+  model.obstacles = fine.obstacles.array() - gone;  // their nodes follow those of the mesh
   for (const auto& [name, set] : fine.sets) {
     std::vector<int>& here = model.sets[name];
     for (const int node : set)
