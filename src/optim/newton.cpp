@@ -16,7 +16,7 @@ constexpr double kRise = 4;         // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
-constexpr double kNear = 1e-3;                   // residual from which on a double root is looked for
+constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
@@ -32,7 +32,7 @@ class Newton {
       if (const auto status = monitor_.accept(at_.q, at_.energy, at_.g)) return *status;
       if (unit_ == 0) start_shift();
       if (!hessian_.factorise(objective_, monitor_, at_.q, at_.g, shift_)) return Status::Stalled;
-      bool is_found = false;
+      bool is_found = is_beyond_the_potential() && approach();
       while (!is_found) {
         find_direction();
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
@@ -72,6 +72,37 @@ class Newton {
     if (at_.slope < 0) return;
     direction_ = symmetric_;  // GMRES stopped early
     at_.slope = at_.g.dot(direction_);
+  }
+
+  // Where the force has no potential the symmetric part of the tangent need not be positive definite at an
+  // equilibrium; steps that take it to be so approach it slowly.
+  bool is_beyond_the_potential() const {
+    return objective_.has_skew_tangent() && !hessian_.is_exact() &&
+           objective_.relative_residual(at_.g) < kNear;
+  }
+
+  // Newton's step with the exact tangent, preconditioned by the projected one. No energy can judge it: it has
+  // to halve the out-of-balance force.
+  bool approach() {
+    {
+      PhaseTimer timer(monitor_.phases(), "direction");
+      work_ = -at_.g;
+      hessian_.solve(work_, symmetric_);
+      gmres_.solve(
+          [this](const Vector& v, Vector& out) {
+            work_.setZero();
+            hessian_.add_exact_product(v, work_);
+            objective_.add_skew_product(v, work_);
+            hessian_.solve(work_, out);
+            out -= v;
+          },
+          symmetric_, kForcing, direction_);
+    }
+    if (gmres_.residual() > kForcing || monitor_.step_limit(at_.q, direction_, 1) < 1) return false;
+    next_.step = 1;
+    next_.q = at_.q + direction_;
+    next_.energy = monitor_.gradient(next_.q, next_.g);
+    return std::isfinite(next_.energy) && next_.g.norm() < 0.5 * at_.g.norm();
   }
 
   bool search() {

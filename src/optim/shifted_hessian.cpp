@@ -44,9 +44,16 @@ bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vec
     if (!std::isfinite(mean)) return false;
     shift_ = 0;
     least_shift_ = kLeastShift * std::abs(mean);
+    if (is_exact_) exact_ = Eigen::Map<const Vector>(h_.valuePtr(), h_.nonZeros());
     if (factorise_shifted(monitor, shift)) return true;
   }
   return raise(monitor, shift);
+}
+
+void ShiftedHessian::add_exact_product(const Vector& v, Vector& product) const {
+  const Eigen::Map<const SparseMatrix> exact(h_.rows(), h_.cols(), h_.nonZeros(), h_.outerIndexPtr(),
+                                             h_.innerIndexPtr(), exact_.data());
+  product += exact.selfadjointView<Eigen::Lower>() * v;
 }
 
 bool ShiftedHessian::raise(Monitor& monitor, double& shift) {

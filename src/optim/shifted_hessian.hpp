@@ -25,12 +25,16 @@ class ShiftedHessian {
 
   bool is_exact() const { return is_exact_; }
 
+  // product += K v with the exact Hessian of the last evaluation, unshifted. Pre: !is_exact().
+  void add_exact_product(const Vector& v, Vector& product) const;
+
  private:
   void analyse(Monitor& monitor);
   bool factorise_shifted(Monitor& monitor, double shift);
 
   std::unique_ptr<Factorisation> factor_;
   SparseMatrix h_;
+  Vector exact_;               // values of the exact Hessian, where it was not positive definite
   std::vector<int> diagonal_;  // places of the diagonal among the values
   long pattern_version_ = -1;  // that was analysed
   double shift_ = 0;           // that the diagonal carries now

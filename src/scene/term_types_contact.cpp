@@ -16,7 +16,7 @@ constexpr double kGapPerEdge = 0.3;    // default gap of the barrier over mean e
 constexpr double kBarrierPressure =
     5;  // of the barrier, in applied pressures: folds press harder than the load
 constexpr double kSomePressure = 1e-3;  // where nothing tells [MPa]
-constexpr size_t kListedPairs = 20;     // of those that intersect at the start
+constexpr size_t kListed = 20;          // defects of one kind
 constexpr double kSafeCapacity = 2;     // below this times the pressure, moving sheets may pass
 constexpr double kMargin = 60;          // default capacity over applied pressure
 
