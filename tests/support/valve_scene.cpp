@@ -1,5 +1,6 @@
 #include "support/valve_scene.hpp"
 
+#include "energy/contact_barrier.hpp"
 #include "energy/load_pressure.hpp"
 #include "mesh/generators/mitral.hpp"
 
@@ -14,6 +15,7 @@ constexpr double kPressure = -120 * 133.322e-6;      // 120 mmHg against the nor
 ValveScene::ValveScene(const ValveOptions& wanted) : options(wanted) {
   MitralOptions mitral;
   mitral.triangles = wanted.triangles;
+  mitral.seed = wanted.seed;
   const Valve valve = mitral_valve(mitral);
   const ChordNetwork& network = valve.chords;
   const int first_tip = valve.leaflets.vertex_count(),
@@ -71,6 +73,12 @@ Terms ValveScene::terms(const Frame& frame, bool is_reversed) const {
   const double p = kPressure * resultant / frame.length;
   list.push_back(
       make_follower_pressure("pressure", Y, corners, is_reversed != is_mirrored ? -p : p, fixed_in(frame)));
+  if (options.contact_gap > 0) {
+    ContactBarrierOptions contact;
+    contact.gap = options.contact_gap * frame.length;
+    contact.pressure = 5 * std::abs(p);
+    list.push_back(make_contact_barrier("contact", Y, corners, contact));
+  }
   return list;
 }
 

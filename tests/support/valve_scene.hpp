@@ -12,6 +12,8 @@ struct ValveOptions {
   int triangles = 625;
   double young = 1, chord_young = 40;  // [MPa]
   double bending = 1;                  // times the physical stiffness E h^3 / 12 (1 - nu^2)
+  double contact_gap = 0;              // of a barrier [mm]; 0: no contact
+  unsigned seed = 0;                   // of the dimensions, 0: the mean valve
   double smoothing = 0.002;            // of the chords' kinks, over their length
 };
 
