@@ -10,8 +10,9 @@
 //
 // Guarantee, in floating point: at every step in [0, s] the distance, also that of the rounded positions x +
 // s d, is at least kept times the present one, hence positive. It rests on nothing but the signs of these
-// linear functions, evaluated with a margin of 1e-14 times the size of the coordinates; badly conditioned
-// closest points can only make the step shorter.
+// linear functions, evaluated with a margin of 4e-15 times the norm of all coordinates; badly conditioned
+// closest points can only make the step shorter, which they may where the distance is below 1e-8 of the
+// pair's extent.
 #pragma once
 
 #include "core/types.hpp"
@@ -22,9 +23,10 @@ namespace coapt {
 using Corners4 = Eigen::Matrix<double, 3, 4>;
 
 // A step s in [0, most] such that the pair moving from x to x + s d keeps at least the share `kept` of its
-// present distance all along; within about a hundredth of that distance the greatest such step. 0 where the
-// pair touches already, or is closer than rounding can tell, and for positions or displacements that are not
-// finite. Pre: 0 <= most < infinity, 0 <= kept < 1.
+// present distance all along; near the greatest such step. 0 where the pair touches already, or is closer
+// than rounding can tell, and for positions or displacements that are not finite. The least step of many
+// pairs comes soonest when each is asked with `most` = the least so far. Pre: 0 <= most < infinity, 0 <= kept
+// < 1.
 double point_triangle_step(const Corners4& x, const Corners4& d, double most, double kept);
 double edge_edge_step(const Corners4& x, const Corners4& d, double most, double kept);
 
