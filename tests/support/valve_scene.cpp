@@ -1,7 +1,7 @@
 #include "support/valve_scene.hpp"
 
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/mitral.hpp"
+#include "support/refined_valve.hpp"
 
 namespace coapt {
 namespace {
@@ -12,9 +12,7 @@ constexpr double kPressure = -120 * 133.322e-6;      // 120 mmHg against the nor
 }  // namespace
 
 ValveScene::ValveScene(const ValveOptions& wanted) : options(wanted) {
-  MitralOptions mitral;
-  mitral.triangles = wanted.triangles;
-  const Valve valve = mitral_valve(mitral);
+  const Valve valve = refined_mitral_valve(wanted.triangles, wanted.refinements);
   const ChordNetwork& network = valve.chords;
   const int first_tip = valve.leaflets.vertex_count(),
             first_junction = first_tip + static_cast<int>(network.papillary.cols());

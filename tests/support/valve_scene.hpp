@@ -10,6 +10,7 @@ namespace coapt {
 
 struct ValveOptions {
   int triangles = 625;
+  int refinements = 0;                 // each triangle cut into four so often, with the same chords
   double young = 1, chord_young = 40;  // [MPa]
   double bending = 1;                  // times the physical stiffness E h^3 / 12 (1 - nu^2)
   double smoothing = 0.002;            // of the chords' kinks, over their length
