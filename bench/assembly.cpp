@@ -1,10 +1,9 @@
-// Time of one assembly (energy, gradient and Hessian in place) on one core, by term and projection: per
+// Time of one assembly (energy, gradient and Hessian in place) by term, projection and threads: per
 // triangle of the generated valve, and for bending per hinge.
-#include "energy/element_term.hpp"
 #include "energy/kernels/bending.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/mitral.hpp"
+#include "valve_sheet.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -15,15 +14,6 @@ namespace {
 using namespace coapt;
 
 enum class Law { StVK, TensionField, Bending, TensionFieldAndPressure };
-
-template <typename Kernel>
-std::unique_ptr<EnergyTerm> membrane(const Points& X, const Triangles& t) {
-  std::vector<typename Kernel::Rest> rest;
-  for (int k = 0; k < t.cols(); ++k)
-    rest.push_back(Kernel::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)), 1, 0.45, 0.8));
-  return std::make_unique<ElementTerm<Kernel>>("membrane", std::vector<int>(t.data(), t.data() + t.size()),
-                                               rest);
-}
 
 std::unique_ptr<EnergyTerm> bending(const Points& X, const Triangles& t) {
   std::vector<int> nodes;
@@ -39,21 +29,18 @@ std::unique_ptr<EnergyTerm> bending(const Points& X, const Triangles& t) {
 }
 
 void assembly(benchmark::State& state, Law law, Projection projection) {
-  MitralOptions options;
-  options.triangles = static_cast<int>(state.range(0));
-  const Valve valve = mitral_valve(options);
-  const Points& X = valve.leaflets.vertices;
-  const Triangles& t = valve.leaflets.triangles;
-  FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
-  for (const int node : valve.annulus) fixed.col(node).setConstant(true);
+  const bench::ValveSheet sheet(static_cast<int>(state.range(0)));
+  const Points& X = sheet.X;
+  const Triangles& t = sheet.triangles;
   std::vector<std::unique_ptr<EnergyTerm>> terms;
-  if (law == Law::StVK) terms.push_back(membrane<CstStVK>(X, t));
+  if (law == Law::StVK) terms.push_back(sheet.membrane<CstStVK>());
   if (law == Law::TensionField || law == Law::TensionFieldAndPressure)
-    terms.push_back(membrane<CstTensionField>(X, t));
+    terms.push_back(sheet.membrane<CstTensionField>());
   if (law == Law::Bending) terms.push_back(bending(X, t));
   if (law == Law::TensionFieldAndPressure)
-    terms.push_back(make_follower_pressure("pressure", X, t, -valve.pressure, fixed));
-  Objective objective(X, fixed, std::move(terms));
+    terms.push_back(make_follower_pressure("pressure", X, t, -sheet.pressure, sheet.fixed));
+  Objective objective(X, sheet.fixed, std::move(terms));
+  objective.use_threads(static_cast<int>(state.range(1)));
   if (objective.has_circulatory_force()) objective.follow_path(objective.unknowns(X));
 
   // Waves along and across, so that all regimes occur side by side.
@@ -72,8 +59,9 @@ void assembly(benchmark::State& state, Law law, Projection projection) {
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
-  for (int triangles : {10000, 40000}) bench->Arg(triangles);
-  bench->Unit(benchmark::kMicrosecond);
+  bench->ArgNames({"triangles", "threads"})->Unit(benchmark::kMicrosecond);
+  for (const int threads : {1, 2})
+    for (const int triangles : {10000, 40000}) bench->Args({triangles, threads});
 }
 
 constexpr Projection kExact = Projection::None, kProjected = Projection::PositiveSemidefinite;

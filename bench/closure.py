@@ -6,11 +6,11 @@
 CPU time of the solve (best of N runs), iterations, gradients and peak memory for each size, solver and load;
 `ceres` is the named peer of `lbfgs` in the same run. The last column is the CPU time over that of `lbfgs`.
 """
-import argparse
-import json
 import pathlib
 import subprocess
 import tempfile
+
+from runs import parsed_arguments, print_header, solved
 
 CASES = [  # triangles, contact, pressure, solvers
     (625, "none", "follower", ["lbfgs", "ceres", "nlopt", "bfgs"]),
@@ -27,23 +27,13 @@ CASES = [  # triangles, contact, pressure, solvers
 
 
 def closed(coapt: str, scene: pathlib.Path, solver: str, limit: float) -> dict:
-    out = scene.parent / solver
-    command = [coapt, "solve", str(scene), "-o", str(out), "--solver", solver, "--tolerance", "1e-6",
-               "--max-seconds", str(limit)]
-    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-    return json.loads((out / "result.json").read_text())
+    return solved(coapt, scene, "--solver", solver, "--tolerance", "1e-6", "--max-seconds", str(limit))
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("coapt", nargs="?", default="build/release/bin/coapt")
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--max-seconds", type=float, default=60)
-    parser.add_argument("--largest", type=int, default=160000)
-    options = parser.parse_args()
-    print("| triangles | contact | pressure | solver | status | residual | iterations | gradients | CPU s | "
-          "memory MB | kB/triangle | CPU / lbfgs |")
-    print("|" + "---|" * 12)
+    options = parsed_arguments(__doc__, max_seconds=60)
+    print_header("triangles", "contact", "pressure", "solver", "status", "residual", "iterations", "gradients", "CPU s",
+                 "memory MB", "kB/triangle", "CPU / lbfgs")
     for triangles, contact, pressure, solvers in CASES:
         if triangles > options.largest:
             continue

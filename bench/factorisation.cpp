@@ -2,10 +2,8 @@
 // or of a membrane with bending: every edge then couples the four nodes of its two triangles.
 #include "optim/factorisation.hpp"
 
-#include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
-#include "energy/objective.hpp"
-#include "mesh/generators/mitral.hpp"
+#include "valve_sheet.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"
@@ -56,28 +54,18 @@ std::vector<int> opposite_nodes(const Triangles& triangles) {
 
 // Stretched by a tenth on all sides, hence positive definite.
 SparseMatrix stiffness(int triangles, bool with_hinges) {
-  MitralOptions options;
-  options.triangles = triangles;
-  const Valve valve = mitral_valve(options);
-  const Points& X = valve.leaflets.vertices;
-  const Triangles& t = valve.leaflets.triangles;
-  FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
-  for (int node : valve.annulus) fixed.col(node).setConstant(true);
-  std::vector<int> corners(t.data(), t.data() + t.size());
-  std::vector<CstStVK::Rest> rest;
-  for (int k = 0; k < t.cols(); ++k)
-    rest.push_back(CstStVK::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)), 1, 0.45, 0.8));
+  const bench::ValveSheet sheet(triangles);
   std::vector<std::unique_ptr<EnergyTerm>> terms;
-  terms.push_back(std::make_unique<ElementTerm<CstStVK>>("membrane", corners, rest));
+  terms.push_back(sheet.membrane<CstStVK>());
   if (with_hinges) {
-    const std::vector<int> nodes = opposite_nodes(t);
+    const std::vector<int> nodes = opposite_nodes(sheet.triangles);
     terms.push_back(std::make_unique<ElementTerm<OppositePair>>(
         "hinges", nodes, std::vector<OppositePair::Rest>(nodes.size() / 2)));
   }
-  Objective objective(1.1 * X, fixed, std::move(terms));
+  Objective objective(1.1 * sheet.X, sheet.fixed, std::move(terms));
   Vector g;
   SparseMatrix h;
-  objective.hessian(1.1 * objective.unknowns(X), g, h);
+  objective.hessian(1.1 * objective.unknowns(sheet.X), g, h);
   return h;
 }
 

@@ -1,10 +1,9 @@
 // Time of one gradient of membrane and pressure, per triangle, on one core. The baseline in the same run is
 // the bare loop: the same gathers and scatters with next to no mathematics in between.
-#include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/mitral.hpp"
+#include "valve_sheet.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -30,31 +29,21 @@ struct BareLoop {
 enum class Load { None, Frozen, Follower };
 
 std::unique_ptr<Objective> valve_objective(int triangles, bool bare, Load load) {
-  MitralOptions options;
-  options.triangles = triangles;
-  const Valve valve = mitral_valve(options);
-  const Points& X = valve.leaflets.vertices;
-  const Triangles& t = valve.leaflets.triangles;
-  std::vector<int> corners(t.data(), t.data() + t.size());
-  FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
-  for (int node : valve.annulus) fixed.col(node).setConstant(true);
-
+  const bench::ValveSheet sheet(triangles);
+  const Points& X = sheet.X;
+  const Triangles& t = sheet.triangles;
   std::vector<std::unique_ptr<EnergyTerm>> terms;
-  if (bare) {
-    terms.push_back(
-        std::make_unique<ElementTerm<BareLoop>>("bare", corners, std::vector<BareLoop::Rest>(t.cols())));
-  } else {
-    std::vector<CstStVK::Rest> rest;
-    for (int k = 0; k < t.cols(); ++k)
-      rest.push_back(CstStVK::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)), 1, 0.45, 0.8));
-    terms.push_back(std::make_unique<ElementTerm<CstStVK>>("membrane", corners, rest));
-  }
+  if (bare)
+    terms.push_back(std::make_unique<ElementTerm<BareLoop>>("bare", sheet.corners(),
+                                                            std::vector<BareLoop::Rest>(t.cols())));
+  else
+    terms.push_back(sheet.membrane<CstStVK>());
   if (load == Load::Frozen)
     terms.push_back(std::make_unique<LoadDead>("pressure", "load_pressure",
-                                               frozen_pressure_forces(X, t, -valve.pressure), X));
+                                               frozen_pressure_forces(X, t, -sheet.pressure), X));
   if (load == Load::Follower)
-    terms.push_back(make_follower_pressure("pressure", X, t, -valve.pressure, fixed));
-  auto objective = std::make_unique<Objective>(X, fixed, std::move(terms));
+    terms.push_back(make_follower_pressure("pressure", X, t, -sheet.pressure, sheet.fixed));
+  auto objective = std::make_unique<Objective>(X, sheet.fixed, std::move(terms));
   if (objective->has_circulatory_force()) objective->follow_path(objective->unknowns(X));
   return objective;
 }

@@ -8,11 +8,11 @@ pressurised disc; the square airbag. CPU time of the solve (best of N runs) to a
 in units of one factorisation and one assembly of the Hessian measured in the same run. Up to 10,000 triangles the
 valve's ratio to preconditioned lbfgs, and up to 2,500 to plain lbfgs, is given too.
 """
-import argparse
-import json
 import pathlib
 import subprocess
 import tempfile
+
+from runs import parsed_arguments, print_header, solved
 
 VALVES = [625, 2500, 10000, 40000, 160000]
 OTHERS = [("disc", 10086), ("disc", 40344), ("airbag", 2450), ("airbag", 10082)]
@@ -28,12 +28,8 @@ def scene_of(coapt: str, shape: str, triangles: int, folder: pathlib.Path) -> pa
     return scene
 
 
-def solved(coapt: str, scene: pathlib.Path, runs: int, *arguments: str) -> dict:
-    results = []
-    for _ in range(runs):
-        subprocess.run([coapt, "solve", str(scene), "-o", str(scene.parent / "out"), "--tolerance", "1e-8",
-                        "--max-seconds", "300", *arguments], stdout=subprocess.DEVNULL, check=False)
-        results.append(json.loads((scene.parent / "out" / "result.json").read_text()))
+def best(coapt: str, scene: pathlib.Path, runs: int, *arguments: str) -> dict:
+    results = [solved(coapt, scene, "--tolerance", "1e-8", "--max-seconds", "300", *arguments) for _ in range(runs)]
     return min(results, key=lambda result: result["time"]["cpu_s"])
 
 
@@ -56,36 +52,31 @@ def row(name: str, result: dict) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("coapt", nargs="?", default="build/release/bin/coapt")
-    parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--largest", type=int, default=160000)
-    options = parser.parse_args()
-    print("| case | triangles | status | residual | iterations | factorisations | CPU s | "
-          "factorisation + assembly ms | CPU in these |")
-    print("|" + "---|" * 9)
+    options = parsed_arguments(__doc__)
+    print_header("case", "triangles", "status", "residual", "iterations", "factorisations", "CPU s",
+                 "factorisation + assembly ms", "CPU in these")
     for triangles in [size for size in VALVES if size <= options.largest]:
         with tempfile.TemporaryDirectory() as folder:
             runs = options.runs if triangles <= 10000 else 1
             scene = scene_of(options.coapt, "mitral", triangles, pathlib.Path(folder))
-            direct = solved(options.coapt, scene, runs)
+            direct = best(options.coapt, scene, runs)
             print(row("valve", direct), flush=True)
             if triangles > 625:
-                print(row("valve, cascade", solved(options.coapt, variant(scene, '"cascade": true'), runs)), flush=True)
+                print(row("valve, cascade", best(options.coapt, variant(scene, '"cascade": true'), runs)), flush=True)
             peers = []
             if triangles <= 10000:
                 peers.append(("preconditioned lbfgs", variant(scene, '"preconditioned": true')))
             if triangles <= 2500:
                 peers.append(("lbfgs", scene))
             for name, peer in peers:
-                result = solved(options.coapt, peer, 1, "--solver", "lbfgs")
+                result = best(options.coapt, peer, 1, "--solver", "lbfgs")
                 print(f"| valve, {name} | {triangles} | {result['status']} | {result['residual']:.0e} | "
                       f"{result['iterations']} | | {result['time']['cpu_s']:.3f} | | "
                       f"{result['time']['cpu_s'] / direct['time']['cpu_s']:.1f} times newton |", flush=True)
     for shape, triangles in [other for other in OTHERS if other[1] <= options.largest]:
         with tempfile.TemporaryDirectory() as folder:
             scene = scene_of(options.coapt, shape, triangles, pathlib.Path(folder))
-            print(row(shape, solved(options.coapt, scene, options.runs)), flush=True)
+            print(row(shape, best(options.coapt, scene, options.runs)), flush=True)
 
 
 if __name__ == "__main__":

@@ -37,6 +37,13 @@ concept ProjectsItself = ElementKernel<K> &&
   { K::evaluate_projected(rest, x, g, H) } -> std::same_as<double>;
 };
 
+// A kernel whose law has a kink:
+//   rounded  rest data of the same element with the kink rounded over at least a share of its length
+template <class K>
+concept HasKink = ElementKernel<K> && requires(const typename K::Rest& rest, double share) {
+  { K::rounded(rest, share) } -> std::same_as<typename K::Rest>;
+};
+
 template <ElementKernel K>
 class ElementTerm final : public EnergyTerm {
  public:
@@ -52,6 +59,15 @@ class ElementTerm final : public EnergyTerm {
   TermRole role() const override { return K::kRole; }
   const Stencils& stencils() const override { return stencils_; }
   const std::vector<typename K::Rest>& rest() const { return rest_; }
+
+  bool round_kinks(double share) override {
+    if constexpr (HasKink<K>) {
+      if (sharp_.empty()) sharp_ = rest_;
+      std::transform(sharp_.begin(), sharp_.end(), rest_.begin(),
+                     [share](const typename K::Rest& rest) { return K::rounded(rest, share); });
+    }
+    return HasKink<K>;
+  }
 
   double evaluate(const Points& x, Sink& sink) const override {
     if (sink.wants_hessian()) return evaluate_with_hessian(x, sink);
@@ -137,6 +153,7 @@ class ElementTerm final : public EnergyTerm {
 
   Stencils stencils_;
   std::vector<typename K::Rest> rest_;
+  std::vector<typename K::Rest> sharp_;  // as it was given, once kinks have been rounded
 };
 
 }  // namespace coapt

@@ -63,6 +63,12 @@ void Objective::scale(double load, double stiffness) {
   stiffness_factor_ = stiffness;
 }
 
+bool Objective::round_kinks(double share) {
+  bool has_kinks = false;
+  for (const auto& term : terms_) has_kinks = term->round_kinks(share) || has_kinks;
+  return has_kinks;
+}
+
 double Objective::pour(const EnergyTerm& term, Sink sink) const {
   sink.set_factor(factor(term));
   return factor(term) * term.evaluate(x_, sink);

@@ -54,6 +54,9 @@ class Objective {
   // scaled alike leave an equilibrium where it is.
   void scale(double load, double stiffness);
 
+  // Rounds the kinks of all terms, as EnergyTerm::round_kinks() does. Returns whether there are any.
+  bool round_kinks(double share);
+
   // Threads that may assemble the Hessian; 1 from the start. The result has the same bits whatever their
   // number.
   void use_threads(int count) { threads_ = count; }

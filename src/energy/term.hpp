@@ -59,6 +59,10 @@ class EnergyTerm {
   // stencils changed. Never changes a value: what is not in the list contributes exactly zero.
   virtual bool prepare(const Points& /*x*/) { return false; }
 
+  // Rounds the kinks of the law over at least this share of the length of each element, for continuation;
+  // 0: as the law was given. Returns whether it has any.
+  virtual bool round_kinks(double /*share*/) { return false; }
+
   // --- Loads without a potential -------------------------------------------------------------------
   // A circulatory force depends on the positions and is no gradient (pressure on a free edge). Such a
   // term splits its load in two: evaluate() gives a potential whose force is close to the true one,

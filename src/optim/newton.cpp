@@ -20,15 +20,31 @@ constexpr double kNear = 1e-3;                   // residual at which an equilib
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
+// Rounding of the kinks, as a share of the element's length.
+constexpr double kOverloaded = 2;  // residual of a start that asks for it
+constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;
+constexpr double kSharpen = 0.3;   // its fall
+constexpr double kSettled = 0.03;  // residual at which it falls
+
 class Newton {
  public:
   Newton(const SolverOptions& options, Objective& objective, Monitor& monitor)
       : objective_(objective), monitor_(monitor), options_(options), hessian_(options.factorisation) {}
+  ~Newton() {
+    if (rounding_ > 0) objective_.round_kinks(0);
+  }
+  Newton(const Newton&) = delete;
+  Newton& operator=(const Newton&) = delete;
 
   Status minimize(Vector& q) {
     at_.q = q;
-    at_.energy = monitor_.gradient(at_.q, at_.g);
+    evaluate();
+    if (wants_rounding() && objective_.round_kinks(kFirstRounding)) {
+      rounding_ = kFirstRounding;
+      evaluate();
+    }
     while (true) {
+      sharpen();
       if (const auto status = monitor_.accept(at_.q, at_.energy, at_.g)) return *status;
       if (unit_ == 0) start_shift();
       if (!hessian_.factorise(objective_, monitor_, at_.q, at_.g, shift_)) return Status::Stalled;
@@ -46,6 +62,28 @@ class Newton {
   }
 
  private:
+  void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
+
+  // From a start whose forces exceed its loads, because stiff chords already pull, many of them become slack
+  // and taut again and again, and the Hessian sees neither coming. With kinks as wide as the chords are long
+  // it does. Not with contact: loose chords let sheets pass through each other where a repulsion is finite.
+  bool wants_rounding() const {
+    const auto& terms = objective_.terms();
+    return objective_.relative_residual(at_.g) > kOverloaded &&
+           std::none_of(terms.begin(), terms.end(), [](const auto& term) {
+             return term->role() == TermRole::Contact && !term->limits_steps();
+           });
+  }
+
+  // Narrows the kinks, step by step, when the iterates have settled for those there are.
+  void sharpen() {
+    while (rounding_ > 0 && objective_.relative_residual(at_.g) <= std::max(kSettled, monitor_.tolerance())) {
+      rounding_ = rounding_ * kSharpen < kLeastRounding ? 0 : rounding_ * kSharpen;
+      objective_.round_kinks(rounding_);
+      evaluate();
+    }
+  }
+
   // Force over length: what resists a displacement of the scene's size with the scene's force.
   void start_shift() {
     const double extent = at_.q.maxCoeff() - at_.q.minCoeff();
@@ -157,6 +195,7 @@ class Newton {
   ShiftedHessian hessian_;
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
+  double rounding_ = 0;
   LinePoint at_, next_;
   Vector work_, symmetric_, direction_, last_;
 };

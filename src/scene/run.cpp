@@ -7,6 +7,7 @@
 #include "scene/suggestion.hpp"
 
 #include <cmath>
+#include <iterator>
 
 namespace coapt {
 namespace {
@@ -88,6 +89,10 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   report.reference = compare_with_reference(model, report.fields);
   if (stability.modes > 0 && !has_smallest_modes())
     report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
+  const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);
+  if (2 * slack > lines)
+    report.warnings.push_back(std::to_string(slack) + " of " + std::to_string(lines) +
+                              " chords and cables are slack in the result: are their rest lengths right?");
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");

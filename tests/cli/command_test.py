@@ -101,6 +101,17 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.result()["status"], "time_limit")
         self.assertFalse(self.result()["converged"])
 
+    def test_warns_when_most_chords_are_slack(self):
+        scene = self.generate("mitral", "--triangles", 400)
+        coapt("solve", scene)
+        self.assertNotIn("slack", " ".join(self.result()["warnings"]))
+        text = scene.read_text()
+        scene.write_text(text.replace('"type": "cable",', '"type": "cable", "length_scale": 3,'))
+        self.assertNotEqual(scene.read_text(), text)
+        run = coapt("solve", scene, "--max-seconds", 1)
+        self.assertRegex(" ".join(self.result()["warnings"]), r"\d+ of \d+ chords and cables are slack")
+        self.assertIn("are slack", run.stdout + run.stderr)
+
     def test_an_interrupt_saves_the_best_state(self):
         for number in [signal.SIGINT, signal.SIGTERM]:
             scene = self.generate("mitral", "--triangles", 20000)

@@ -144,6 +144,26 @@ TEST(Cable, PassesTheSuiteWithinTheRoundedKinkAndBeyond) {
   }
 }
 
+TEST(Cable, CanBeRoundedMoreForAWhile) {
+  const auto cable = [](double smoothing) {
+    return ElementTerm<Cable>("cable", {0, 1}, {Cable::Rest{3, 2, smoothing, 0}});
+  };
+  Points x = Points::Zero(3, 2);
+  x(0, 1) = 2.3;  // within a rounding of 0.6, beyond one of 0.1
+  Sink value_only;
+  auto term = cable(0.1);
+  const double sharp = term.evaluate(x, value_only);
+  EXPECT_TRUE(term.round_kinks(0.3));  // of the length 2
+  EXPECT_EQ(term.evaluate(x, value_only), cable(0.6).evaluate(x, value_only));
+  EXPECT_LT(term.evaluate(x, value_only), 0.9 * sharp);
+  term.round_kinks(0.01);  // less than its own
+  EXPECT_EQ(term.evaluate(x, value_only), sharp);
+  term.round_kinks(1);
+  term.round_kinks(0);
+  EXPECT_EQ(term.evaluate(x, value_only), sharp);
+  EXPECT_FALSE(ElementTerm<TetherCubic>("tether", {0, 1}, {{1, 2, 1}}).round_kinks(0.3));
+}
+
 TEST(Cable, PassesTheSuiteWithConstantTension) {
   TermCase c = cable_case("constant tension", 0, 0, 1.7, 1.1);
   c.reach = 0.3;

@@ -1,10 +1,9 @@
 // What a factorisation promises, for each that the build has.
 #include "optim/factorisation.hpp"
 
-#include "energy/element_term.hpp"
-#include "energy/kernels/cst_stvk.hpp"
 #include "energy/objective.hpp"
 #include "mesh/generators/mitral.hpp"
+#include "support/sheets.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"
@@ -51,13 +50,7 @@ struct Stiffness {
     FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
     for (int node : valve.annulus) fixed.col(node).setConstant(true);
     for (int node = 7; node < X.cols(); node += 20) fixed(node % 3, node) = true;
-    std::vector<int> corners(t.data(), t.data() + t.size());
-    std::vector<CstStVK::Rest> rest;
-    for (int k = 0; k < t.cols(); ++k)
-      rest.push_back(CstStVK::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)), 1, 0.45, 0.8));
-    std::vector<std::unique_ptr<EnergyTerm>> terms;
-    terms.push_back(std::make_unique<ElementTerm<CstStVK>>("membrane", corners, rest));
-    Objective objective(stretch * X, fixed, std::move(terms));
+    Objective objective(stretch * X, fixed, terms_of(sheet_term(Material::StVK, X, t, {0.8, 0.45, 0})));
     Vector g;
     objective.hessian(stretch * objective.unknowns(X), g, matrix);
   }

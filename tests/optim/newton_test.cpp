@@ -135,6 +135,50 @@ TEST(Newton, ReachesOneShapeByEveryRoute) {
   EXPECT_LT(4 * others[1].iterations, plain_lbfgs.iterations);  // what the metric is there for
 }
 
+// The branches of the chords pull from the start, far harder than the load: the kinks are rounded, and sharp
+// again in the end.
+struct TightValve {
+  TightValve() {
+    for (Eigen::Index k = 0; k < scene.chords.cols(); ++k)
+      if (!scene.fixed(0, scene.chords(0, k))) scene.chord_lengths[k] *= 0.5;
+  }
+  ValveScene scene{{}};
+
+  Result solved(const std::string& solver, int max_iterations, double* sharp_residual) const {
+    Objective objective(scene.X, scene.fixed, scene.terms()), untouched(scene.X, scene.fixed, scene.terms());
+    StopRule stop;
+    stop.tolerance = 1e-9;
+    stop.max_iterations = max_iterations;
+    const Vector q0 = objective.unknowns(scene.X);
+    Vector g;
+    objective.gradient(q0, g);
+    EXPECT_GT(objective.relative_residual(g), 2);
+    const Result result = solve(*built_in_solvers().at(solver)({}), {objective, q0}, stop);
+    *sharp_residual = untouched.true_residual(result.q);
+    EXPECT_EQ(objective.true_residual(result.q), *sharp_residual);
+    return result;
+  }
+};
+
+TEST(RoundedKinks, LeadToTheSharpEquilibrium) {
+  const TightValve valve;
+  double residual = 1, other_residual = 1;
+  const Result result = valve.solved("newton", 1000, &residual);
+  EXPECT_EQ(result.status, Status::Converged) << result.message;
+  EXPECT_LE(residual, 1e-9);
+  EXPECT_LE(result.iterations, 40);
+  const Result other = valve.solved("lbfgs", 100000, &other_residual);
+  EXPECT_EQ(other.status, Status::Converged) << other.message;
+  EXPECT_NEAR(result.energy, other.energy, 1e-7 * std::abs(other.energy));
+}
+
+TEST(RoundedKinks, AreSharpAgainWhenTheRunIsCutShort) {
+  double residual = 0;
+  const Result result = TightValve().solved("newton", 2, &residual);
+  EXPECT_EQ(result.status, Status::IterationLimit);
+  EXPECT_EQ(result.residual, residual);
+}
+
 TEST(Threads, AssembleTheSameBits) {
   ValveOptions options;
   options.triangles = 5000;  // more than a batch of elements

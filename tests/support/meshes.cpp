@@ -114,27 +114,32 @@ TriangleMesh icosahedron() {
 
 }  // namespace
 
+Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle) {
+  std::map<std::pair<int, int>, int> middle;
+  const auto middle_of = [&](int a, int b) {
+    const auto [where, is_new] = middle.try_emplace(std::minmax(a, b));
+    if (is_new) where->second = add_middle(a, b);
+    return where->second;
+  };
+  Triangles fine(3, 4 * triangles.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3i c = triangles.col(t);
+    const int ab = middle_of(c[0], c[1]), bc = middle_of(c[1], c[2]), ca = middle_of(c[2], c[0]);
+    fine.middleCols<4>(4 * t) << c[0], c[1], c[2], ab, ab, bc, ca, bc, ca, ab, bc, ca;
+  }
+  return fine;
+}
+
 TriangleMesh sphere_mesh(int subdivisions) {
   TriangleMesh mesh = icosahedron();
-  for (int level = 0; level < subdivisions; ++level) {
-    std::vector<Vec3> points;
-    for (int v = 0; v < mesh.vertex_count(); ++v) points.push_back(mesh.vertices.col(v));
-    std::map<std::pair<int, int>, int> middle;
-    const auto middle_of = [&](int a, int b) {
-      const auto [where, is_new] = middle.try_emplace(std::minmax(a, b), static_cast<int>(points.size()));
-      if (is_new) points.push_back((points[a] + points[b]).normalized());
-      return where->second;
-    };
-    Triangles fine(3, 4 * mesh.triangle_count());
-    for (int t = 0; t < mesh.triangle_count(); ++t) {
-      const Eigen::Vector3i c = mesh.triangles.col(t);
-      const int ab = middle_of(c[0], c[1]), bc = middle_of(c[1], c[2]), ca = middle_of(c[2], c[0]);
-      fine.middleCols<4>(4 * t) << c[0], c[1], c[2], ab, ab, bc, ca, bc, ca, ab, bc, ca;
-    }
-    mesh.triangles = fine;
-    mesh.vertices.resize(3, static_cast<Eigen::Index>(points.size()));
-    for (size_t v = 0; v < points.size(); ++v) mesh.vertices.col(static_cast<Eigen::Index>(v)) = points[v];
-  }
+  std::vector<Vec3> points(mesh.vertices.colwise().begin(), mesh.vertices.colwise().end());
+  for (int level = 0; level < subdivisions; ++level)
+    mesh.triangles = cut_in_four(mesh.triangles, [&](int a, int b) {
+      points.push_back((points[a] + points[b]).normalized());
+      return static_cast<int>(points.size()) - 1;
+    });
+  mesh.vertices.resize(3, static_cast<Eigen::Index>(points.size()));
+  for (size_t v = 0; v < points.size(); ++v) mesh.vertices.col(static_cast<Eigen::Index>(v)) = points[v];
   return mesh;
 }
 

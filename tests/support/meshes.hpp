@@ -38,6 +38,10 @@ TriangleMesh quarter_disc_mesh(int n);
 // (u sqrt(1 - v^2/2), v sqrt(1 - u^2/2)): the square onto the disc.
 Vec3 disc_point(double u, double v);
 
+// Cuts each triangle into four. add_middle: makes the vertex between two others and returns its number;
+// called once for each edge.
+Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle);
+
 // Unit sphere: an icosahedron, each triangle cut into four `subdivisions` times (20 * 4^n triangles),
 // nodes on the sphere. Normals point outwards.
 TriangleMesh sphere_mesh(int subdivisions);

@@ -3,6 +3,7 @@
 #include "energy/contact_barrier.hpp"
 #include "energy/load_pressure.hpp"
 #include "mesh/generators/mitral.hpp"
+#include "support/refined_valve.hpp"
 
 namespace coapt {
 namespace {
@@ -13,10 +14,9 @@ constexpr double kPressure = -120 * 133.322e-6;      // 120 mmHg against the nor
 }  // namespace
 
 ValveScene::ValveScene(const ValveOptions& wanted) : options(wanted) {
-  MitralOptions mitral;
-  mitral.triangles = wanted.triangles;
-  mitral.seed = wanted.seed;
-  const Valve valve = mitral_valve(mitral);
+  const Valve valve = wanted.refinements > 0
+                          ? refined_mitral_valve(wanted.triangles, wanted.refinements)
+                          : mitral_valve({.triangles = wanted.triangles, .seed = wanted.seed});
   const ChordNetwork& network = valve.chords;
   const int first_tip = valve.leaflets.vertex_count(),
             first_junction = first_tip + static_cast<int>(network.papillary.cols());

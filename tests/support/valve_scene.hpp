@@ -10,6 +10,7 @@ namespace coapt {
 
 struct ValveOptions {
   int triangles = 625;
+  int refinements = 0;                 // each triangle cut into four so often, with the same chords
   double young = 1, chord_young = 40;  // [MPa]
   double bending = 1;                  // times the physical stiffness E h^3 / 12 (1 - nu^2)
   double contact_gap = 0;              // of a barrier [mm]; 0: no contact

@@ -10,6 +10,8 @@
 #include "energy/kernels/axial.hpp"
 #include "energy/term.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 
 struct Cable {
@@ -23,6 +25,12 @@ struct Cable {
     double smoothing = 0;  // s [length]
     double tension = 0;    // T [force]
   };
+
+  // The same cable with its kink rounded over at least this share of its length.
+  static Rest rounded(Rest rest, double share) {
+    rest.smoothing = std::max(rest.smoothing, share * rest.length);
+    return rest;
+  }
 
   // The elastic part's energy, force and stiffness at elongation e.
   static AxialLaw elastic(const Rest& rest, double e) {

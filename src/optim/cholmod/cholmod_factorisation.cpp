@@ -31,18 +31,8 @@ class Session {
 };
 
 cholmod_sparse view(const SparseMatrix& lower) {
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = lower.cols();
-  matrix.nzmax = lower.nonZeros();
-  matrix.p = const_cast<int*>(lower.outerIndexPtr());
-  matrix.i = const_cast<int*>(lower.innerIndexPtr());
-  matrix.x = const_cast<double*>(lower.valuePtr());
-  matrix.stype = -1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = CHOLMOD_REAL;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.sorted = matrix.packed = 1;
-  return matrix;
+  return detail::lower_view(lower.cols(), lower.nonZeros(), lower.outerIndexPtr(), lower.innerIndexPtr(),
+                            lower.valuePtr());
 }
 
 cholmod_dense view(Vector& values) {

@@ -12,20 +12,6 @@
 namespace coapt::detail {
 namespace {
 
-cholmod_sparse view(NodeGraph& graph) {
-  cholmod_sparse pattern{};
-  pattern.nrow = pattern.ncol = graph.size();
-  pattern.nzmax = graph.row.size();
-  pattern.p = graph.start.data();
-  pattern.i = graph.row.data();
-  pattern.stype = -1;
-  pattern.itype = CHOLMOD_INT;
-  pattern.xtype = CHOLMOD_PATTERN;
-  pattern.dtype = CHOLMOD_DOUBLE;
-  pattern.sorted = pattern.packed = 1;
-  return pattern;
-}
-
 int* new_array(size_t size, cholmod_common& common) {
   auto* array = static_cast<int*>(cholmod_malloc(size, sizeof(int), &common));
   if (array == nullptr) throw std::bad_alloc();
@@ -66,6 +52,22 @@ cholmod_factor* expand(const cholmod_factor& nodes, cholmod_common& common) {
 
 }  // namespace
 
+cholmod_sparse lower_view(size_t size, size_t entries, const int* start, const int* row,
+                          const double* values) {
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = size;
+  matrix.nzmax = entries;
+  matrix.p = const_cast<int*>(start);
+  matrix.i = const_cast<int*>(row);
+  matrix.x = const_cast<double*>(values);
+  matrix.stype = -1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = values == nullptr ? CHOLMOD_PATTERN : CHOLMOD_REAL;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.sorted = matrix.packed = 1;
+  return matrix;
+}
+
 cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& order,
                               cholmod_common& common) {
   common.nmethods = 1;
@@ -75,7 +77,8 @@ cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& 
   // on valves of 625 to 40,000 triangles, with and without bending.
   std::copy_n(std::array<size_t, 3>{2, 8, 24}.data(), 3, common.nrelax);
   std::copy_n(std::array<double, 3>{0.6, 0.2, 0.05}.data(), 3, common.zrelax);
-  cholmod_sparse pattern = view(graph);
+  cholmod_sparse pattern =
+      lower_view(graph.size(), graph.row.size(), graph.start.data(), graph.row.data(), nullptr);
   const auto release = [&](cholmod_factor* factor) { cholmod_free_factor(&factor, &common); };
   const std::unique_ptr<cholmod_factor, decltype(release)> nodes(cholmod_analyze(&pattern, &common), release);
   if (nodes == nullptr) throw std::bad_alloc();

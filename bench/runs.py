@@ -1,0 +1,28 @@
+"""What the benchmarks of whole solves share: their command line, and one run of the command."""
+import argparse
+import json
+import pathlib
+import subprocess
+
+
+def parsed_arguments(description: str, **more: float) -> argparse.Namespace:
+    """Path of coapt, --runs, --largest, and an option with a default for each of `more`."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("coapt", nargs="?", default="build/release/bin/coapt")
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--largest", type=int, default=160000)
+    for name, default in more.items():
+        parser.add_argument("--" + name.replace("_", "-"), type=float, default=default)
+    return parser.parse_args()
+
+
+def solved(coapt: str, scene: pathlib.Path, *arguments: str) -> dict:
+    out = scene.parent / "out"
+    subprocess.run([coapt, "solve", str(scene), "-o", str(out), *arguments], stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL, check=False)
+    return json.loads((out / "result.json").read_text())
+
+
+def print_header(*columns: str) -> None:
+    print("| " + " | ".join(columns) + " |")
+    print("|" + "---|" * len(columns))
