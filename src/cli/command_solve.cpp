@@ -60,8 +60,10 @@ void print_summary(const RunReport& run) {
   if (m.orifice_area_mm2 && m.annulus_area_mm2)
     std::printf("  %-22s %.2f of %.1f mm2\n", "orifice area", *m.orifice_area_mm2, *m.annulus_area_mm2);
   print_value("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f");
+  print_value("coaptation length", m.coaptation_length_mm, "mm", "%.2f");
   print_value("coaptation height", m.coaptation_height_mm, "mm", "%.2f");
   print_value("tenting height", m.tenting_height_mm, "mm", "%.2f");
+  print_value("prolapse height", m.prolapse_height_mm, "mm", "%.2f");
   if (run.model.mesh.triangle_count() > 0)
     std::printf("  %-22s %.6g mm2 (open: %.6g mm2)\n", "area", m.leaflet_area_closed_mm2,
                 m.leaflet_area_open_mm2);
@@ -71,8 +73,9 @@ void print_summary(const RunReport& run) {
   std::printf("  %-22s %ld\n", "intersections", m.intersections);
   if (report.reference) print_reference(*report.reference);
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
-  std::printf("written to %s (result.json, closed.vtp, closed.obj, trace.csv, metrics.csv)\n",
-              run.folder.string().c_str());
+  std::string files;
+  for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;
+  std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
 }
 
 }  // namespace

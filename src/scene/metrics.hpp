@@ -1,6 +1,7 @@
 // The numbers that a user came for. Definitions, sources and conventions: docs/metrics.md.
 #pragma once
 
+#include "scene/closure.hpp"
 #include "scene/fields.hpp"
 
 #include <optional>
@@ -15,9 +16,13 @@ struct Metrics {
   std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
   std::optional<double> orifice_area_percent;  // of the annulus area
+  std::optional<double> regurgitant_area_mm2;  // of the orifice, wider than the contact distance
   std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another
-  std::optional<double> coaptation_height_mm;  // extent of contact along the annulus normal, 90th percentile
-  std::optional<double> tenting_height_mm;  // greatest depth of the coaptation line below the annulus plane
+  std::optional<double> coaptation_length_mm;  // of the coaptation line
+  std::optional<double> coaptation_height_mm;  // extent of contact below that line, 90th percentile
+  std::optional<double> tenting_height_mm;   // greatest depth of the coaptation line below the annulus plane
+  std::optional<double> tenting_volume_mm3;  // between the leaflets and the surface that the annulus spans
+  std::optional<double> prolapse_height_mm;  // greatest height above every line across the annulus
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
@@ -25,10 +30,12 @@ struct Metrics {
   std::optional<double> max_chord_force_n;
   std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;
-  long contact_vertices = 0;
+  long contact_vertices = 0, contact_facets = 0;
   std::optional<double> smallest_gap_mm;
   std::optional<long> slack_chords;  // lines that carry no tension
   double max_displacement_mm = 0;
+  std::optional<Closure>
+      closure;  // lines, outlines and leaflets behind the figures; empty without an annulus
 };
 
 // Measures the state q. fields: those of the same state.
@@ -43,5 +50,8 @@ struct MetricRow {
   std::optional<double> value;
 };
 std::vector<MetricRow> metric_rows(const Metrics& metrics);
+
+// The same for one leaflet, its name left out.
+std::vector<MetricRow> leaflet_rows(const LeafletMetrics& leaflet);
 
 }  // namespace coapt
