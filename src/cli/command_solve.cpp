@@ -70,7 +70,7 @@ void print_summary(const RunReport& run) {
   print_value("greatest strain", m.max_principal_strain, "", "%.4f");
   print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
   print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
-  std::printf("  %-22s %ld\n", "intersections", m.intersections);
+  std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
   if (report.reference) print_reference(*report.reference);
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::string files;
@@ -107,6 +107,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
     if (modes->count() > 0) options.modes = arguments->modes;
     options.factorisations = all_factorisations();
+    options.judge = intersection_judge();
     options.observer = make_observer();
     const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);
     end_progress();

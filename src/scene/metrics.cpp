@@ -1,7 +1,6 @@
 #include "scene/metrics.hpp"
 
 #include "core/error.hpp"
-#include "mesh/intersections.hpp"
 #include "mesh/projected_area.hpp"
 
 #include <algorithm>
@@ -52,22 +51,24 @@ void measure_lines(const Fields& fields, Metrics& metrics) {
 
 }  // namespace
 
-Metrics measure(const Model& model, const Vector& q, const Fields& fields) {
+Metrics measure(const Model& model, const Vector& q, const Fields& fields, const IntersectionJudge& judge) {
   Metrics metrics;
+  metrics.intersection_judge = judge.name;
   const Triangles& triangles = model.mesh.triangles;
   metrics.leaflet_area_open_mm2 = surface_area(model.X, triangles);
   metrics.leaflet_area_closed_mm2 = surface_area(fields.x, triangles);
   metrics.max_displacement_mm =
       fields.displacement.cols() == 0 ? 0 : fields.displacement.colwise().norm().maxCoeff();
-  if (triangles.cols() > 0) {
+  const bool is_finite = fields.x.allFinite();
+  if (triangles.cols() > 0 && is_finite) {
     const Points surface = fields.x.leftCols(model.mesh.vertex_count());
-    metrics.intersections = static_cast<long>(intersecting_pairs(surface, triangles).size());
-    metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
+    metrics.intersections = static_cast<long>(judge.pairs(surface, triangles).size());
   }
+  if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
   measure_lines(fields, metrics);
   measure_regimes(model, fields, metrics);
 
-  if (const std::vector<int>* annulus = annulus_of(model)) try {
+  if (const std::vector<int>* annulus = annulus_of(model); annulus && is_finite) try {
       measure_annulus(model, fields, *annulus, metrics);
     } catch (const InputError&) {  // an annulus on one line encloses nothing: its metrics stay undefined
     }

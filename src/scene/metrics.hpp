@@ -1,6 +1,7 @@
 // The numbers that a user came for. Definitions, sources and conventions: docs/metrics.md.
 #pragma once
 
+#include "mesh/intersections.hpp"
 #include "scene/closure.hpp"
 #include "scene/fields.hpp"
 
@@ -13,6 +14,7 @@ namespace coapt {
 // Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
 struct Metrics {
   long intersections = 0;                      // pairs of facets that pass through each other
+  std::string intersection_judge;              // who counted them
   std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
   std::optional<double> orifice_area_percent;  // of the annulus area
@@ -38,9 +40,10 @@ struct Metrics {
       closure;  // lines, outlines and leaflets behind the figures; empty without an annulus
 };
 
-// Measures the state q. fields: those of the same state.
+// Measures the state q. fields: those of the same state. judge: counts the intersections.
 // Pre: the set "annulus" of the model, where there is one, is an ordered loop of at least three vertices.
-Metrics measure(const Model& model, const Vector& q, const Fields& fields);
+Metrics measure(const Model& model, const Vector& q, const Fields& fields,
+                const IntersectionJudge& judge = {});
 
 // The same as a table, for files and summaries: one row per metric, in the order of the struct.
 struct MetricRow {

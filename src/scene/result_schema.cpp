@@ -199,6 +199,7 @@ std::string result_schema() {
                                {"unknowns", count("free coordinates")}},
                               "size of the problem")},
               {"metrics", metrics()},
+              {"judge", text("who counted the intersections: cgal, or own exact predicates")},
               {"leaflets", leaflets(), Need::Optional},
               {"distance_to_reference", reference_distance(), Need::Optional},
               {"counters", counters()},

@@ -230,7 +230,8 @@ std::string result_json(const Model& model, const Report& report) {
         {"triangles", model.mesh.triangle_count()},
         {"nodes", model.X.cols()},
         {"unknowns", model.objective->free_count()}}},
-      {"metrics", rows_json(metric_rows(report.metrics))}};
+      {"metrics", rows_json(metric_rows(report.metrics))},
+      {"judge", report.metrics.intersection_judge}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   json["counters"] = counters_json(model, result);
