@@ -165,18 +165,21 @@ double depth_of(const Scenery& scenery, const Vec3& point) {
   return std::max(0.0, -(point - scenery.view.frame.centre).dot(scenery.view.frame.up));
 }
 
-// Depth of the coaptation line below the annulus plane; without a line, of what is seen of the leaflets.
-void measure_tenting_height(const Scenery& scenery, Closure& closure) {
-  const auto deepen = [&](double& depth, double candidate) { depth = std::max(depth, candidate); };
-  for (const Seam& seam : closure.line)
-    for (size_t k = 0; k < seam.triangles.size(); ++k)
-      for (const Eigen::Index end : {0, 1}) {
-        const double depth = depth_of(scenery, seam.points.col(static_cast<Eigen::Index>(k) + end));
-        deepen(closure.tenting_height_mm, depth);
-        for (const int t : seam.triangles[k])
-          deepen(closure.leaflets[static_cast<size_t>(scenery.region(t))].tenting_height_mm, depth);
-      }
-  if (!closure.line.empty()) return;
+using WeightedDepth = std::pair<double, double>;  // depth and length of a stretch
+
+// The depth that nine tenths of the length do not exceed; 0 for no length.
+double ninth_decile_depth(std::vector<WeightedDepth> depths) {
+  std::sort(depths.begin(), depths.end());
+  double total = 0, below = 0;
+  for (const auto& [depth, length] : depths) total += length;
+  for (const auto& [depth, length] : depths)
+    if ((below += length) >= 0.9 * total) return depth;
+  return 0;
+}
+
+// Without a line: the greatest depth of what is seen.
+void measure_seen_depth(const Scenery& scenery, Closure& closure) {
+  const auto deepen = [](double& depth, double candidate) { depth = std::max(depth, candidate); };
   for (size_t n = 0; n < scenery.closed.height.size(); ++n) {
     const int top = scenery.top(n);
     if (!scenery.view.is_inside[n] || top < 0) continue;
@@ -184,6 +187,27 @@ void measure_tenting_height(const Scenery& scenery, Closure& closure) {
     deepen(closure.leaflets[static_cast<size_t>(scenery.region(top))].tenting_height_mm,
            -scenery.closed.height[n]);
   }
+}
+
+// Depth of the coaptation line below the annulus plane. Its ends dive where they reach an orifice: not the
+// deepest place counts, but the ninth decile of the length.
+void measure_tenting_height(const Scenery& scenery, Closure& closure) {
+  if (closure.line.empty()) return measure_seen_depth(scenery, closure);
+  std::vector<WeightedDepth> all;
+  std::vector<std::vector<WeightedDepth>> of_leaflet(closure.leaflets.size());
+  for (const Seam& seam : closure.line)
+    for (size_t k = 0; k < seam.triangles.size(); ++k) {
+      const Vec3 a = seam.points.col(static_cast<Eigen::Index>(k)),
+                 b = seam.points.col(static_cast<Eigen::Index>(k) + 1);
+      const WeightedDepth stretch = {depth_of(scenery, 0.5 * (a + b)), (b - a).norm()};
+      const int one = scenery.region(seam.triangles[k][0]), other = scenery.region(seam.triangles[k][1]);
+      all.push_back(stretch);
+      of_leaflet[static_cast<size_t>(one)].push_back(stretch);
+      if (other != one) of_leaflet[static_cast<size_t>(other)].push_back(stretch);
+    }
+  closure.tenting_height_mm = ninth_decile_depth(all);
+  for (size_t r = 0; r < of_leaflet.size(); ++r)
+    closure.leaflets[r].tenting_height_mm = ninth_decile_depth(of_leaflet[r]);
 }
 
 // Vertices in contact of one leaflet, or of all (-1), each once.

@@ -19,7 +19,7 @@ struct LeafletMetrics {
   long contact_vertices = 0, contact_facets = 0;
   double coaptation_length_mm = 0;  // of the coaptation line along it
   double coaptation_height_mm = 0;  // of its contact across the line: 90th percentile
-  double tenting_height_mm = 0;     // greatest depth of its part of the line below the annulus plane
+  double tenting_height_mm = 0;     // depth of its part of the line below the annulus plane
   double tenting_volume_mm3 = 0;    // between what is seen of it and the annulus surface above it
   double prolapse_height_mm = 0;    // greatest height above every straight line across the annulus
 };

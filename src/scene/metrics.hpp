@@ -22,9 +22,9 @@ struct Metrics {
   std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another
   std::optional<double> coaptation_length_mm;  // of the coaptation line
   std::optional<double> coaptation_height_mm;  // extent of contact below that line, 90th percentile
-  std::optional<double> tenting_height_mm;   // greatest depth of the coaptation line below the annulus plane
-  std::optional<double> tenting_volume_mm3;  // between the leaflets and the surface that the annulus spans
-  std::optional<double> prolapse_height_mm;  // greatest height above every line across the annulus
+  std::optional<double> tenting_height_mm;     // depth of the coaptation line below the annulus plane
+  std::optional<double> tenting_volume_mm3;    // between the leaflets and the surface that the annulus spans
+  std::optional<double> prolapse_height_mm;    // greatest height above every line across the annulus
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime

@@ -1,5 +1,6 @@
 // Coaptation, orifice, tenting and prolapse of valves for which they are known.
 #include "mesh/generators/shapes.hpp"
+#include "mesh/mesh_topology.hpp"
 #include "scene/coaptation_height.hpp"
 #include "scene/metrics.hpp"
 #include "scene/result_surfaces.hpp"
@@ -166,17 +167,19 @@ TEST(Closure, DoesNotTakeASaddleShapedAnnulusForProlapse) {
 }
 
 TEST(Closure, CountsAnOpenFunnelDownToItsRimAsTented) {
-  const TriangleMesh funnel = grid_sheet(80, 6, [](double u, double v) {
-    const double radius = 4 + 6 * v;
-    return Vec3(radius * std::cos(2 * kPi * u), radius * std::sin(2 * kPi * u), -3 * (1 - v));
-  });
+  const WeldedMesh welded = weld(grid_sheet(80, 6, [](double u, double v) {
+    const double radius = 4 + 6 * v, angle = u == 1 ? 0 : 2 * kPi * u;
+    return Vec3(radius * std::cos(angle), radius * std::sin(angle), -3 * (1 - v));
+  }));
+  const TriangleMesh& funnel = welded.mesh;
   std::vector<int> rim;
-  for (int k = 0; k < 80; ++k) rim.push_back(6 * 81 + k);
+  for (int k = 0; k < 80; ++k) rim.push_back(welded.new_index[static_cast<size_t>(6 * 81 + k)]);
   const Model model = valve_model(funnel, rim, 0.2);
   const Metrics m = measured(model, funnel.vertices);
   EXPECT_NEAR(m.tenting_volume_mm3.value(), kPi * 3 / 3 * (100 + 40 + 16), 0.01 * kPi * 156);
   EXPECT_NEAR(m.regurgitant_area_mm2.value(), kPi * 16, 0.01 * kPi * 16);
   EXPECT_NEAR(m.tenting_height_mm.value(), 3, 0.05);
+  EXPECT_TRUE(m.closure->line.empty());
 }
 
 TEST(Closure, FindsTheFoldOfOneLeafletAsALineOfItsOwn) {
