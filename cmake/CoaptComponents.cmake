@@ -1,15 +1,14 @@
 # Optional components: one call each, one table at the end, one licence.
 #
 #   coapt_component(<NAME> PACKAGE <find_package name> TARGET <imported target> LICENCE <SPDX>
-#                   GIVES <what a user gets> [NEEDS <NAME>...] [PLANNED])
+#                   GIVES <what a user gets> [NEEDS <NAME>...])
 #
-# Defines the cache variable COAPT_WITH_<NAME> = AUTO | ON | OFF and sets COAPT_HAS_<NAME>. PLANNED: the
-# package is looked for, and ON insists on it, but nothing uses it yet and COAPT_HAS_<NAME> stays false.
+# Defines the cache variable COAPT_WITH_<NAME> = AUTO | ON | OFF and sets COAPT_HAS_<NAME>.
 
 set(COAPT_COMPONENTS "")
 
 function(coapt_component name)
-  cmake_parse_arguments(ARG "PLANNED" "PACKAGE;TARGET;LICENCE;GIVES" "NEEDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "PACKAGE;TARGET;LICENCE;GIVES" "NEEDS" ${ARGN})
   set(COAPT_WITH_${name} AUTO CACHE STRING "${ARG_PACKAGE}: ${ARG_GIVES} (AUTO, ON or OFF)")
   set_property(CACHE COAPT_WITH_${name} PROPERTY STRINGS AUTO ON OFF)
   string(TOUPPER "${COAPT_WITH_${name}}" wish)
@@ -33,10 +32,6 @@ function(coapt_component name)
       message(FATAL_ERROR "COAPT_WITH_${name}=ON, but ${ARG_PACKAGE}: ${state}. "
                           "Install it, or configure with -DCOAPT_WITH_${name}=OFF.")
     endif()
-  endif()
-  if(ARG_PLANNED AND has)
-    set(has FALSE)
-    set(state "found, idle")
   endif()
   list(APPEND COAPT_COMPONENTS ${name})
   set(COAPT_COMPONENTS "${COAPT_COMPONENTS}" PARENT_SCOPE)

@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(coapt_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/coapt)
 
-foreach(target IN ITEMS coapt coapt_cholmod coapt_ceres coapt_nlopt)
+foreach(target IN ITEMS coapt coapt_cgal coapt_cholmod coapt_ceres coapt_nlopt)
   if(TARGET ${target})
     install(TARGETS ${target} EXPORT coaptTargets
             ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -60,19 +60,22 @@ void print_summary(const RunReport& run) {
   if (m.orifice_area_mm2 && m.annulus_area_mm2)
     std::printf("  %-22s %.2f of %.1f mm2\n", "orifice area", *m.orifice_area_mm2, *m.annulus_area_mm2);
   print_value("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f");
+  print_value("coaptation length", m.coaptation_length_mm, "mm", "%.2f");
   print_value("coaptation height", m.coaptation_height_mm, "mm", "%.2f");
   print_value("tenting height", m.tenting_height_mm, "mm", "%.2f");
+  print_value("prolapse height", m.prolapse_height_mm, "mm", "%.2f");
   if (run.model.mesh.triangle_count() > 0)
     std::printf("  %-22s %.6g mm2 (open: %.6g mm2)\n", "area", m.leaflet_area_closed_mm2,
                 m.leaflet_area_open_mm2);
   print_value("greatest strain", m.max_principal_strain, "", "%.4f");
   print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
   print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
-  std::printf("  %-22s %ld\n", "intersections", m.intersections);
+  std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
   if (report.reference) print_reference(*report.reference);
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
-  std::printf("written to %s (result.json, closed.vtp, closed.obj, trace.csv, metrics.csv)\n",
-              run.folder.string().c_str());
+  std::string files;
+  for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;
+  std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
 }
 
 }  // namespace
@@ -104,6 +107,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
     if (modes->count() > 0) options.modes = arguments->modes;
     options.factorisations = all_factorisations();
+    options.judge = intersection_judge();
     options.observer = make_observer();
     const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);
     end_progress();

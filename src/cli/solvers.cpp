@@ -1,5 +1,8 @@
 #include "cli/solvers.hpp"
 
+#ifdef COAPT_HAS_CGAL
+#include "mesh/cgal/intersections_cgal.hpp"
+#endif
 #ifdef COAPT_HAS_CERES
 #include "optim/ceres/ceres_solver.hpp"
 #endif
@@ -29,6 +32,14 @@ FactorisationTable all_factorisations() {
   table["cholmod"] = [] { return make_cholmod_factorisation(); };
 #endif
   return table;
+}
+
+IntersectionJudge intersection_judge() {
+#ifdef COAPT_HAS_CGAL
+  return {"cgal", intersecting_pairs_cgal};
+#else
+  return {};
+#endif
 }
 
 }  // namespace coapt::cli

@@ -1,11 +1,15 @@
-// The solvers of this build of the command.
+// The solvers and judges of this build of the command.
 #pragma once
 
+#include "mesh/intersections.hpp"
 #include "optim/solver.hpp"
 
 namespace coapt::cli {
 
 SolverTable all_solvers();
 FactorisationTable all_factorisations();
+
+// The most independent one of this build: CGAL where it is in.
+IntersectionJudge intersection_judge();
 
 }  // namespace coapt::cli

@@ -4,6 +4,8 @@
 #include "core/types.hpp"
 
 #include <array>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace coapt {
@@ -21,5 +23,11 @@ std::vector<Intersection> intersections(const Points& points, const Triangles& t
 
 // The same as pairs of triangle numbers.
 std::vector<std::array<int, 2>> intersecting_pairs(const Points& points, const Triangles& triangles);
+
+// Who counts the intersections of a result.
+struct IntersectionJudge {
+  std::string name = "own exact predicates";
+  std::function<std::vector<std::array<int, 2>>(const Points&, const Triangles&)> pairs = intersecting_pairs;
+};
 
 }  // namespace coapt

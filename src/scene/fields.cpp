@@ -3,12 +3,12 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/tether_cubic.hpp"
-#include "mesh/triangle_distance.hpp"
-#include "mesh/triangle_tree.hpp"
+#include "mesh/vertex_gaps.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace coapt {
@@ -89,55 +89,38 @@ void add_line_forces(const Model& model, Fields& fields) {
     }
 }
 
-// The vertices around each vertex.
-std::vector<std::vector<int>> vertex_neighbours(const Triangles& triangles, Eigen::Index vertex_count) {
-  std::vector<std::vector<int>> neighbours(static_cast<size_t>(vertex_count));
-  for (const Edge& edge : edges(triangles)) {
-    neighbours[edge.a].push_back(edge.b);
-    neighbours[edge.b].push_back(edge.a);
-  }
-  return neighbours;
+void add_contact(const Model& model, Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  const Points surface = fields.x.leftCols(model.mesh.vertex_count());
+  fields.contact_distance = contact_distance(model);
+  fields.gap_reach = std::max(2 * fields.contact_distance, 3 * mean_edge_length(fields.x, triangles));
+  fields.gap = vertex_gaps(surface, triangles, fields.gap_reach);
+  fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
+  for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
+    fields.is_contact[static_cast<size_t>(v)] = fields.gap[v] <= fields.contact_distance;
+  const auto touches = [&](int v) { return fields.is_contact[static_cast<size_t>(v)] != 0; };
+  for (const auto& t : triangles.colwise())
+    fields.is_contact_facet.push_back(touches(t[0]) && touches(t[1]) && touches(t[2]));
 }
 
-// Distance from vertex v to the nearest triangle in the box without a marked corner.
-double nearest_unmarked(const TriangleTree& tree, const Points& x, const Triangles& triangles, int v,
-                        double half_size, const std::vector<int>& mark) {
-  const Vec3 p = x.col(v);
-  const Vec3 half = Vec3::Constant(half_size);
-  double nearest = kInfinity;
-  for (const int t : tree.overlapping({p - half, p + half})) {
-    const Eigen::Vector3i corners = triangles.col(t);
-    if (mark[corners[0]] == v || mark[corners[1]] == v || mark[corners[2]] == v) continue;
-    nearest = std::min(nearest,
-                       point_triangle_distance(p, x.col(corners[0]), x.col(corners[1]), x.col(corners[2])));
-  }
-  return nearest;
+// Part of a triangle over which a linear function with these values at the corners is at most `level`.
+double part_below(std::array<double, 3> values, double level) {
+  std::sort(values.begin(), values.end());
+  const auto [a, b, c] = values;
+  if (c <= level) return 1;
+  if (a >= level) return 0;
+  if (b >= level) return (level - a) * (level - a) / ((b - a) * (c - a));
+  return 1 - (c - level) * (c - level) / ((c - a) * (c - b));
 }
 
 }  // namespace
 
-Vector vertex_gaps(const Points& x, const Triangles& triangles, double reach) {
-  Vector gaps = Vector::Constant(x.cols(), kNaN);
-  if (triangles.cols() == 0 || !x.allFinite()) return gaps;
-  const auto neighbours = vertex_neighbours(triangles, x.cols());
-  const TriangleTree tree(x, triangles);
-  std::vector<int> mark(static_cast<size_t>(x.cols()), -1);  // == v: within two rings of v
-  for (int v = 0; v < x.cols(); ++v) {
-    mark[v] = v;
-    for (const int ring1 : neighbours[v]) {
-      mark[ring1] = v;
-      for (const int ring2 : neighbours[ring1]) mark[ring2] = v;
-    }
-    // The box grows until what it found is certainly the nearest.
-    for (double size = reach / 8; size <= reach; size *= 2) {
-      const double nearest = nearest_unmarked(tree, x, triangles, v, size, mark);
-      if (nearest > size) continue;
-      gaps[v] = nearest;
-      break;
-    }
-  }
-  return gaps;
+const std::vector<int>* annulus_of(const Model& model) {
+  const auto annulus = model.sets.find("annulus");
+  return annulus != model.sets.end() && annulus->second.size() >= 3 ? &annulus->second : nullptr;
 }
+
+bool looks_for_contact(const Model& model) { return model.contact_range > 0 || annulus_of(model) != nullptr; }
 
 double contact_distance(const Model& model) {
   if (model.contact_range > 0) return model.contact_range;
@@ -150,14 +133,20 @@ Fields compute_fields(const Model& model, const Points& x) {
   fields.displacement = x - model.X;
   add_strain_and_stress(model, fields);
   add_line_forces(model, fields);
-  const Points surface = x.leftCols(model.mesh.vertex_count());
-  fields.contact_distance = contact_distance(model);
-  const double reach = std::max(2 * fields.contact_distance, 5 * mean_edge_length(x, model.mesh.triangles));
-  fields.gap = vertex_gaps(surface, model.mesh.triangles, reach);
-  fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
-  for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
-    fields.is_contact[static_cast<size_t>(v)] = fields.gap[v] <= fields.contact_distance;
+  if (looks_for_contact(model)) add_contact(model, fields);
   return fields;
+}
+
+Vector contact_areas(const Model& model, const Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  const auto gap = [&](int v) { return std::isnan(fields.gap[v]) ? fields.gap_reach : fields.gap[v]; };
+  Vector areas(triangles.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3i c = triangles.col(t);
+    areas[t] = area_vector(fields.x, c).norm() *
+               part_below({gap(c[0]), gap(c[1]), gap(c[2])}, fields.contact_distance);
+  }
+  return areas;
 }
 
 }  // namespace coapt

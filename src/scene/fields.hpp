@@ -14,9 +14,12 @@ struct Fields {
   Eigen::Matrix2Xd principal_stress;   // second Piola-Kirchhoff [MPa], largest first, per triangle; no
                                        // columns for a model without membrane properties
   std::vector<MembraneRegime> regime;  // per triangle; empty for a model without membrane properties
-  Vector gap;                          // per mesh vertex, see vertex_gaps [mm]
-  std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance
+  Vector gap;                          // per mesh vertex, see mesh/vertex_gaps.hpp [mm]; empty where nobody
+                                       // asks for contact, see looks_for_contact
+  std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance; empty like gap
+  std::vector<char> is_contact_facet;  // per triangle: all its corners are in contact; empty like gap
   double contact_distance = 0;         // [mm]
+  double gap_reach = 0;                // how far gaps were looked for [mm]
   Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
   Vector line_force;                   // tension of each line of the model [N]; negative for compression
 };
@@ -27,13 +30,19 @@ struct Fields {
 // would be.
 Fields compute_fields(const Model& model, const Points& x);
 
-// Distance from each vertex to the nearest facet that is not its own neighbourhood: facets with a corner
-// within two rings (two edges) of the vertex are left out. NaN where no such facet lies within `reach`.
-// [length] Pre: reach > 0.
-Vector vertex_gaps(const Points& x, const Triangles& triangles, double reach);
+// Whether contact means anything to the model: it has an annulus or a contact term. Others pay nothing for
+// it.
+bool looks_for_contact(const Model& model);
+
+// The annulus of the model, an ordered loop of at least three vertices; null without one.
+const std::vector<int>* annulus_of(const Model& model);
 
 // The distance below which a vertex counts as in contact: the range of the contact term, or, in a model
 // without one, half the mean edge length of the reference mesh [mm].
 double contact_distance(const Model& model);
+
+// Of each closed triangle the area over which the gap, linear between its corners, is at most the contact
+// distance; corners without a gap count as those at the end of the reach. [mm2] Pre: fields of contact.
+Vector contact_areas(const Model& model, const Fields& fields);
 
 }  // namespace coapt

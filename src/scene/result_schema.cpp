@@ -70,14 +70,25 @@ Json terms() {
       "every term of the scene");
 }
 
-Json metrics() {
+std::vector<Property> properties_of(const std::vector<MetricRow>& rows) {
   std::vector<Property> properties;
-  for (const MetricRow& row : metric_rows({})) {
+  for (const MetricRow& row : rows) {
     const std::string meaning = row.meaning + (row.unit.empty() ? "" : " [" + row.unit + "]");
     Json schema = {{"type", Json::array({row.is_count ? "integer" : "number", "null"})}};
     properties.push_back({row.name, described(schema, meaning)});
   }
-  return object(properties, "what was measured on the closed shape; null where not defined for the scene");
+  return properties;
+}
+
+Json leaflets() {
+  std::vector<Property> properties = properties_of(leaflet_rows({}));
+  properties.insert(properties.begin(), {"name", text("of the mesh region")});
+  return list(object(properties, "one leaflet"), "the regions of the mesh, of a scene with an annulus");
+}
+
+Json metrics() {
+  return object(properties_of(metric_rows({})),
+                "what was measured on the closed shape; null where not defined for the scene");
 }
 
 Json reference_distance() {
@@ -188,6 +199,8 @@ std::string result_schema() {
                                {"unknowns", count("free coordinates")}},
                               "size of the problem")},
               {"metrics", metrics()},
+              {"judge", text("who counted the intersections: cgal, or own exact predicates")},
+              {"leaflets", leaflets(), Need::Optional},
               {"distance_to_reference", reference_distance(), Need::Optional},
               {"counters", counters()},
               {"solver", object({{"type", text("name of the solver")},
@@ -195,6 +208,7 @@ std::string result_schema() {
                                  {"route", text("how pressure was treated")}},
                                 "what was asked for")},
               {"levels", levels(statuses), Need::Optional},
+              {"files", list({{"type", "string"}}, "names of the files beside this one, and its own")},
               {"warnings", list({{"type", "string"}}, "whole sentences")}},
              "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";

@@ -4,7 +4,7 @@
 #include "core/error.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
-#include "mesh/vtp_writer.hpp"
+#include "scene/result_surfaces.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -37,15 +37,29 @@ Json terms_json(const Result& result) {
   return terms;
 }
 
-Json metrics_json(const Metrics& metrics) {
+Json rows_json(const std::vector<MetricRow>& rows) {
   Json json = Json::object();
-  for (const MetricRow& row : metric_rows(metrics)) {
+  for (const MetricRow& row : rows) {
     if (!row.value)
       json[row.name] = nullptr;
     else if (row.is_count)
       json[row.name] = std::lround(*row.value);
     else
       json[row.name] = number(*row.value);
+  }
+  return json;
+}
+
+bool has_leaflets(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->leaflets.empty();
+}
+
+Json leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
+  Json json = Json::array();
+  for (const LeafletMetrics& leaflet : leaflets) {
+    Json entry = {{"name", leaflet.name}};
+    entry.update(rows_json(leaflet_rows(leaflet)));
+    json.push_back(entry);
   }
   return json;
 }
@@ -145,61 +159,35 @@ std::string metrics_csv(const Report& report) {
   std::ostringstream out;
   out.precision(10);
   out << "metric,value,unit\n";
-  for (const MetricRow& row : metric_rows(report.metrics)) {
-    out << row.name << ',';
-    if (row.value && std::isfinite(*row.value)) out << *row.value;
-    out << ',' << row.unit << '\n';
-  }
+  const auto write = [&out](const std::string& prefix, const std::vector<MetricRow>& rows) {
+    for (const MetricRow& row : rows) {
+      out << prefix << row.name << ',';
+      if (row.value && std::isfinite(*row.value)) out << *row.value;
+      out << ',' << row.unit << '\n';
+    }
+  };
+  write("", metric_rows(report.metrics));
+  if (has_leaflets(report))
+    for (const LeafletMetrics& leaflet : report.metrics.closure->leaflets)
+      write(leaflet.name + ".", leaflet_rows(leaflet));
   return out.str();
 }
 
-// A distance at the mesh vertices over all nodes; -1 where it has no meaning (points of the networks) or no
-// facet was found within reach. Readers trip over NaN.
-Eigen::MatrixXd over_nodes(const Vector& of_vertices, Eigen::Index node_count) {
-  Eigen::MatrixXd row = Eigen::MatrixXd::Constant(1, node_count, -1);
-  for (Eigen::Index v = 0; v < of_vertices.size(); ++v)
-    if (std::isfinite(of_vertices[v])) row(0, v) = of_vertices[v];
-  return row;
+bool has_line(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->line.empty();
 }
 
-VtpSurface vtp_surface(const Model& model, const Fields& fields) {
-  VtpSurface surface;
-  const Eigen::Index nodes = fields.x.cols();
-  surface.vertices = fields.x.colwise() + model.origin;
-  surface.triangles = model.mesh.triangles;
-  Vector contact(static_cast<Eigen::Index>(fields.is_contact.size()));
-  for (Eigen::Index v = 0; v < contact.size(); ++v) contact[v] = fields.is_contact[static_cast<size_t>(v)];
-  Eigen::MatrixXd contact_row = Eigen::MatrixXd::Zero(1, nodes);
-  contact_row.leftCols(contact.size()) = contact.transpose();
-  surface.point_arrays = {{"displacement", fields.displacement, false},
-                          {"gap", over_nodes(fields.gap, nodes), false},
-                          {"contact", contact_row, true}};
-  if (fields.reference_distance.size() > 0)
-    surface.point_arrays.push_back(
-        {"distance_to_reference", over_nodes(fields.reference_distance, nodes), false});
+bool has_orifice(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->orifices.empty();
+}
 
-  surface.triangle_arrays = {{"principal_strain_1", fields.principal_strain.row(0), false},
-                             {"principal_strain_2", fields.principal_strain.row(1), false}};
-  if (fields.principal_stress.cols() > 0) {
-    Eigen::MatrixXd regime(1, model.mesh.triangle_count());
-    for (Eigen::Index t = 0; t < regime.cols(); ++t)
-      regime(0, t) = static_cast<double>(fields.regime[static_cast<size_t>(t)]);
-    surface.triangle_arrays.push_back({"regime", regime, true});
-    surface.triangle_arrays.push_back({"principal_stress_1_mpa", fields.principal_stress.row(0), false});
-    surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
-  }
-  if (!model.mesh.regions.empty()) {
-    Eigen::MatrixXd region(1, model.mesh.triangle_count());
-    for (int t = 0; t < model.mesh.triangle_count(); ++t) region(0, t) = model.mesh.regions[t];
-    surface.triangle_arrays.push_back({"region", region, true});
-    surface.texts.push_back({"region_names", model.mesh.region_names});
-  }
-  surface.lines.resize(2, static_cast<Eigen::Index>(model.lines.size()));
-  for (size_t k = 0; k < model.lines.size(); ++k)
-    surface.lines.col(static_cast<Eigen::Index>(k)) << model.lines[k].a, model.lines[k].b;
-  if (!model.lines.empty()) surface.line_arrays = {{"line_force_n", fields.line_force.transpose(), false}};
-  surface.texts.push_back({"units", {"mm"}});
-  return surface;
+// One that an earlier solve left would be taken for this one's.
+void write_or_remove(bool is_there, const fs::path& file, const std::function<void()>& write) {
+  std::error_code ignored;
+  if (is_there)
+    write();
+  else
+    fs::remove(file, ignored);
 }
 
 }  // namespace
@@ -242,15 +230,27 @@ std::string result_json(const Model& model, const Report& report) {
         {"triangles", model.mesh.triangle_count()},
         {"nodes", model.X.cols()},
         {"unknowns", model.objective->free_count()}}},
-      {"metrics", metrics_json(report.metrics)}};
+      {"metrics", rows_json(metric_rows(report.metrics))},
+      {"judge", report.metrics.intersection_judge}};
+  if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   json["counters"] = counters_json(model, result);
   json["solver"] = {
       {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
   if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
+  json["files"] = result_files(model, report);
   json["warnings"] = report.warnings;
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> result_files(const Model& model, const Report& report) {
+  std::vector<std::string> files = {"result.json", "closed.vtp"};
+  if (model.mesh.triangle_count() > 0) files.push_back("closed.obj");
+  files.insert(files.end(), {"trace.csv", "metrics.csv"});
+  if (has_line(report)) files.push_back("coaptation_line.vtp");
+  if (has_orifice(report)) files.push_back("orifice.vtp");
+  return files;
 }
 
 void prepare_result_folder(const fs::path& folder) {
@@ -270,10 +270,18 @@ void prepare_result_folder(const fs::path& folder) {
 
 void write_results(const fs::path& folder, const Model& model, const Report& report) {
   prepare_result_folder(folder);
-  write_vtp(folder / "closed.vtp", vtp_surface(model, report.fields));
-  TriangleMesh closed = model.mesh;
-  closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
-  if (closed.triangle_count() > 0) write_mesh(folder / "closed.obj", closed);
+  write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
+  const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
+                 mesh = folder / "closed.obj";
+  write_or_remove(has_line(report), line,
+                  [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
+  write_or_remove(has_orifice(report), orifice,
+                  [&] { write_vtp(orifice, orifice_outlines(model, *report.metrics.closure)); });
+  write_or_remove(model.mesh.triangle_count() > 0, mesh, [&] {
+    TriangleMesh closed = model.mesh;
+    closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
+    write_mesh(mesh, closed);
+  });
   formats::write_whole(folder / "trace.csv", trace_csv(report.result));
   formats::write_whole(folder / "metrics.csv", metrics_csv(report));
   // Last: where it is, the others are.

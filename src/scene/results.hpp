@@ -1,4 +1,5 @@
-// Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv.
+// Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv; for a valve also
+// coaptation_line.vtp and orifice.vtp.
 #pragma once
 
 #include "scene/cascade.hpp"
@@ -30,6 +31,9 @@ std::string pressure_route(const Model& model, const Result& result);
 
 // The text of result.json; its schema is result_schema(). Numbers that are not finite become null.
 std::string result_json(const Model& model, const Report& report);
+
+// Names of the files that write_results makes of the report.
+std::vector<std::string> result_files(const Model& model, const Report& report);
 
 // Creates the folder where it is missing and throws InputError when nothing can be written into it; called
 // before a long solve, it saves the user the disappointment after.

@@ -85,7 +85,7 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   const Result& result = report.result;
   report.pressure_route = pressure_route(model, result);
   report.fields = compute_fields(model, model.objective->positions(result.q));
-  report.metrics = measure(model, result.q, report.fields);
+  report.metrics = measure(model, result.q, report.fields, options.judge);
   report.reference = compare_with_reference(model, report.fields);
   if (stability.modes > 0 && !has_smallest_modes())
     report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");

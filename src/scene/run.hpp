@@ -19,6 +19,7 @@ struct RunOptions {
 
   // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
+  IntersectionJudge judge;  // of the result
 };
 
 struct RunReport {

@@ -3,13 +3,17 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
 #include "mesh/generators/shapes.hpp"
+#include "mesh/vertex_gaps.hpp"
 #include "scene/reference_distance.hpp"
 #include "scene/valve_json.hpp"
+#include "support/trough_valve.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 namespace coapt {
@@ -26,14 +30,6 @@ Model model_of(TriangleMesh mesh) {
 
 Metrics measure_at(const Model& model, const Points& x) {
   return measure(model, model.objective->unknowns(x), compute_fields(model, x));
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const int vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
-  mesh.vertices.conservativeResize(3, vertices + other.vertex_count());
-  mesh.vertices.rightCols(other.vertex_count()) = other.vertices;
-  mesh.triangles.conservativeResize(3, triangles + other.triangle_count());
-  mesh.triangles.rightCols(other.triangle_count()) = other.triangles.array() + vertices;
 }
 
 // Two square plates of side 10 at a distance along z.
@@ -81,6 +77,19 @@ TEST(VertexGaps, AreUndefinedBeyondReachAndWithinTwoRings) {
   EXPECT_TRUE(vertex_gaps(two_triangles.vertices, two_triangles.triangles, 5).array().isNaN().all());
 }
 
+TEST(VertexGaps, DoNotTakeAFineSheetForItsOwnOpponent) {
+  const TriangleMesh fine = square(1, 20000);  // edges of 0.01: two rings end far within the reach
+  EXPECT_TRUE(vertex_gaps(fine.vertices, fine.triangles, 0.2).array().isNaN().all());
+  TriangleMesh folded = fine;  // about x = 0.5, into a fold 0.06 wide
+  for (auto p : folded.vertices.colwise())
+    if (p[0] > 0.5) p = Vec3(p[0] < 0.56 ? 0.5 : 1.06 - p[0], p[1], std::min(p[0] - 0.5, 0.06));
+  const Vector gaps = vertex_gaps(folded.vertices, folded.triangles, 0.2);
+  for (Eigen::Index v = 0; v < gaps.size(); ++v)
+    if (folded.vertices(0, v) > 0.1 && folded.vertices(0, v) < 0.3) {
+      EXPECT_NEAR(gaps[v], 0.06, 1e-12) << v;
+    }
+}
+
 TEST(Metrics, CountHalfTheContactingAreaAsCoaptation) {
   Model model = plates(0.3);
   model.contact_range = 0.5;
@@ -114,24 +123,22 @@ TEST(Metrics, MeasureTheDepthOfAFunnelAsTenting) {
   EXPECT_NEAR(measure_at(model, bulged).tenting_height_mm.value(), 0, 0.3);
 }
 
-TEST(Metrics, MeasureTheHeightOfTwoHangingSheetsAsCoaptation) {
-  // Two sheets 10 wide hang 4 deep, 0.2 apart; the annulus is a wide loop around their tops.
-  TriangleMesh sheet = rectangle(10, 4, 640);
-  const Points flat = sheet.vertices;
-  sheet.vertices.row(2) = flat.row(1).array() - 4;
-  sheet.vertices.row(1).setConstant(0);
-  TriangleMesh mesh = sheet;
-  sheet.vertices.row(1).setConstant(0.2);
-  append(mesh, sheet);
-  TriangleMesh frame = square(20, 8);
-  frame.vertices.row(0).array() -= 5;
-  frame.vertices.row(1).array() -= 10;
-  const int first = mesh.vertex_count();
-  append(mesh, frame);
+TEST(Metrics, CountFacetsAndAreaWherePlatesOverlap) {
+  TriangleMesh mesh = square(10, 5000), upper = mesh;  // cells of 0.2
+  upper.vertices.row(0).array() += 4;
+  upper.vertices.row(2).array() += 0.3;
+  append(mesh, upper);
   Model model = model_of(std::move(mesh));
-  model.contact_range = 0.25;
-  model.sets["annulus"] = {first, first + 2, first + 8, first + 6};
-  EXPECT_NEAR(measure_at(model, model.X).coaptation_height_mm.value(), 4, 0.3);
+  model.contact_range = 0.35;  // reaches less than a cell beyond the overlap
+  const Fields fields = compute_fields(model, model.X);
+  const Metrics metrics = measure_at(model, model.X);
+  EXPECT_EQ(metrics.contact_facets, 2 * 30 * 50 * 2);
+  EXPECT_NEAR(metrics.coaptation_area_mm2.value(), 60 + 0.18 * 10,
+              0.2);  // as far as the range reaches beyond
+  for (size_t t = 0; t < 5000; ++t) {
+    const Eigen::Vector3i corners = model.mesh.triangles.col(static_cast<Eigen::Index>(t));
+    EXPECT_EQ(fields.is_contact_facet[t] != 0, model.X(0, corners).minCoeff() > 3.99) << t;
+  }
 }
 
 TEST(Metrics, AreUndefinedWithoutAnnulusChordsAndContact) {
@@ -241,6 +248,23 @@ TEST(Metrics, AgreeWithThePublishedFiguresOfTheClosedTricuspidValve) {
   EXPECT_NEAR(metrics.leaflet_area_closed_mm2 / metrics.leaflet_area_open_mm2, 1.295, 1e-3);
   EXPECT_NEAR(static_cast<double>(metrics.contact_vertices), 2729, 100);
   EXPECT_NEAR(metrics.max_displacement_mm, 18.29, 0.01);
+
+  // The vertices that the data names, and ours.
+  const Fields fields = compute_fields(model, valve.valve.closed_reference->vertices);
+  std::ifstream stream(file);
+  long both = 0, published = 0;
+  const nlohmann::json published_valve = nlohmann::json::parse(stream);
+  for (const int v : published_valve["reference_contact_vertices"]) {
+    ++published;
+    both += fields.is_contact[static_cast<size_t>(v)];
+  }
+  EXPECT_EQ(published, 2729);
+  EXPECT_GT(static_cast<double>(both) / static_cast<double>(metrics.contact_vertices), 0.92);  // precision
+  EXPECT_GT(static_cast<double>(both) / static_cast<double>(published), 0.89);                 // recall
+  EXPECT_NEAR(metrics.coaptation_length_mm.value(), 96, 4);
+  double outlined = 0;
+  for (const Orifice& orifice : metrics.closure->orifices) outlined += orifice.outline.area;
+  EXPECT_NEAR(outlined, 0.249, 0.12);  // what is narrower than a cell of 0.07 is not outlined
 }
 
 }  // namespace
