@@ -17,9 +17,10 @@ struct SweptBounds {
   }
 };
 
-// Whether the two boxes, grown by reach, overlap.
-bool are_near(const Bounds& a, const Bounds& b, double reach) {
-  return (a.low <= b.high + reach).all() && (b.low <= a.high + reach).all();
+// Written out, as this is what a search spends its time on.
+bool overlap(const Bounds& a, const Bounds& b) {
+  return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] && b.low[1] <= a.high[1] &&
+         a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
 // Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
@@ -147,9 +148,9 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
   visit_pairs<Bounds>(
       [&](int node) {
-        return Bounds{x.col(node).array(), x.col(node).array()};
+        return Bounds{x.col(node).array() - 0.5 * reach, x.col(node).array() + 0.5 * reach};
       },
-      [&](const Bounds& a, const Bounds& b) { return are_near(a, b, reach); }, visit);
+      overlap, visit);
 }
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, const double& most,
