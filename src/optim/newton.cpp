@@ -17,8 +17,7 @@ constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
 constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
-constexpr double kForcing = 1e-3;                // GMRES, relative; near the equilibrium
-constexpr double kLooseForcing = 0.1;            // far from it, where the step is cut or shifted anyway
+constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
 // Rounding of the kinks, as a share of the element's length.
@@ -106,7 +105,7 @@ class Newton {
             objective_.add_skew_product(v, work_);
             hessian_.solve(work_, out);
           },
-          symmetric_, std::clamp(objective_.relative_residual(at_.g), kForcing, kLooseForcing), direction_);
+          symmetric_, kForcing, direction_);
     at_.slope = at_.g.dot(direction_);
     if (at_.slope < 0) return;
     direction_ = symmetric_;  // GMRES stopped early

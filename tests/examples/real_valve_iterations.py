@@ -1,10 +1,10 @@
-"""Closes the published human tricuspid valve without contact, coarse and full, and counts newton's iterations.
+"""Closes the published human tricuspid valve, coarse and full, and counts newton's iterations.
 
-    real_valve_iterations.py COAPT SHARED_DATA_FOLDER
+    real_valve_iterations.py COAPT SHARED_DATA_FOLDER none|barrier
 
 Exit code 77, "skipped", where the data is not there. Tension field of one linear modulus, 0.05 MPa, bending, follower
-pressure, free junctions; residual 1e-8. 45 and 39 iterations were measured; with the kinks of the chords left as sharp
-as they are, 120 and 70.
+pressure, free junctions; residual 1e-8. Without contact 45 and 39 iterations were measured (with the kinks of the
+chords left as sharp as they are, 120 and 70); with the barrier 54 and 93, and nothing passes through.
 """
 import json
 import pathlib
@@ -13,13 +13,13 @@ import sys
 import tempfile
 
 SKIPPED = 77
-MOST_ITERATIONS = 60
+MOST_ITERATIONS = {"none": 60, "barrier": 120}
 CHORDS = {"valve_coarse.json": 507, "valve.json": 1836}
 
 
-def closed(coapt: str, valve: pathlib.Path, scratch: pathlib.Path) -> dict:
-    subprocess.run([coapt, "import", str(valve), "-o", str(scratch), "--pressure", "follower", "--contact", "none"],
-                   check=True, stdout=subprocess.DEVNULL)
+def closed(coapt: str, valve: pathlib.Path, contact: str, scratch: pathlib.Path) -> dict:
+    subprocess.run([coapt, "import", str(valve), "-o", str(scratch), "--pressure", "follower", "--contact",
+                    contact], check=True, stdout=subprocess.DEVNULL)
     scene = scratch / "scene.json"
     text = scene.read_text()
     softer = text.replace('"young": "1 MPa"', '"young": "0.05 MPa"')
@@ -35,15 +35,17 @@ def main() -> int:
     if not (folder / "valve.json").exists():
         print("skipped: data not found")
         return SKIPPED
+    contact = sys.argv[3]
     failed = False
     for name, chords in CHORDS.items():
         with tempfile.TemporaryDirectory() as scratch:
-            result = closed(sys.argv[1], folder / name, pathlib.Path(scratch))
+            result = closed(sys.argv[1], folder / name, contact, pathlib.Path(scratch))
         print(f"{name}: {result['status']}, residual {result['residual']:.1e}, {result['iterations']} iterations, "
               f"{result['time']['cpu_s']:.2f} s of CPU")
         failed |= not (result["converged"] and result["residual"] <= 1e-8 and result["solver"]["type"] == "newton"
                        and result["counters"]["cable_elements"] == chords
-                       and result["iterations"] <= MOST_ITERATIONS)
+                       and (contact == "none" or result["metrics"]["intersections"] == 0)
+                       and result["iterations"] <= MOST_ITERATIONS[contact])
     return 1 if failed else 0
 
 

@@ -79,7 +79,7 @@ TEST(DegenerateContact, SpikeInACrack) {
     const Vec3 x = scene.sheet.vertices.col(v);
     if (x[0] == 0 || x[1] == 0 || x[0] == 1 || x[1] == 1) scene.held.push_back(v);
   }
-  scene.obstacle = spike({0.5, 0.5, 0.25}, 0.5, 0.012);
+  scene.obstacle = spike({0.5, 0.5, 0.065}, 0.25, 0.12);
   scene.gap = 0.008;
   scene.traction = {0, 0, -0.2};
   expect_contact_without_intersection("spike in a crack", scene.solve());
@@ -162,7 +162,7 @@ TEST(DegenerateContact, SheetFoldedOntoItself) {
 struct PressedSheets {
   double pressure = 0.02;
   Judged with_barrier(const std::string& solver) const {
-    ContactScene scene = held_above(8, 0.1);
+    ContactScene scene = held_above(8, 0.03);
     scene.obstacle = moved(grid_mesh(7, 7, 1.4, 1.4), {-0.2, -0.2, 0});
     scene.traction = {0, 0, -pressure};
     return scene.solve(solver, 1e-6);
@@ -182,7 +182,7 @@ TEST(Tunnelling, NoPressurePassesTheBarrier) {
 }
 
 TEST(Tunnelling, TheFacetLawIsCaughtInTheAct) {
-  ContactScene scene = held_above(8, 0.1);
+  ContactScene scene = held_above(8, 0.03);
   scene.obstacle = moved(grid_mesh(7, 7, 1.4, 1.4), {-0.2, -0.2, 0});
   const Points X = scene.start();
   FixedMask fixed = fixed_nodes(X.cols(), scene.held);
