@@ -126,7 +126,11 @@ Certificate certify(Objective& objective, const Vector& q, double tolerance, con
   certificate.is_balance_clear = has_clear_forces(objective, q);
   certificate.free_parts = free_parts(objective, x);
   if (!(certificate.residual <= tolerance)) certificate.imbalance = largest_imbalance(objective, x);
-  if (judges_stability && options.factorisation) certificate.stability = stability_at(objective, q, options);
+  if (judges_stability && options.factorisation) {
+    StabilityOptions judged = options;
+    judged.finds_descent = certificate.is_conservative;  // else there is no energy to descend
+    certificate.stability = stability_at(objective, q, judged);
+  }
   return certificate;
 }
 

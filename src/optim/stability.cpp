@@ -42,7 +42,7 @@ class Judgement {
       report_.verdict = report_.zero_modes == 0 ? Stability::StrictMinimum : Stability::Flat;
     } else {
       report_.verdict = Stability::Saddle;
-      find_descent();
+      if (options_.finds_descent) find_descent();
       const std::optional<int> negative = below(-zero_);
       report_.negative_modes = negative.value_or(-1);
       count(report_.negative_modes);

@@ -21,6 +21,7 @@ std::string_view stability_name(Stability stability);  // "strict_minimum", "fla
 struct StabilityOptions {
   FactorisationFactory factorisation;  // empty: nothing is judged
   int modes = 0;                       // smallest eigenvalues wanted
+  bool finds_descent = true;           // whether a saddle gets its way down
   int most_unknowns = 30000;           // beyond these modes are not counted: that takes a slow factorisation
 };
 
