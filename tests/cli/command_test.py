@@ -212,6 +212,22 @@ class CommandTest(unittest.TestCase):
         run = coapt("check", path)
         self.assert_bad_input(run, f"scene.exclude.csv:{number - 1}: ", f"scene.exclude.csv:{number}: ", "0 to 143")
 
+    def test_excluded_coincident_sheets_are_solved(self):
+        path, scene = self.two_sheets(lambda i, j: (i, j, 0))
+        self.assert_bad_input(coapt("solve", path), "pairs of facets")
+        self.assertEqual(coapt("check", path, "--repair", "exclude").returncode, 0)
+        scene["terms"][2]["exclude"] = "scene.exclude.csv"
+        path.write_text(json.dumps(scene))
+        run = coapt("solve", path)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+    def test_refuses_the_barrier_with_solvers_that_choose_their_steps_themselves(self):
+        path, _ = self.two_sheets(lambda i, j: (i, j, 1))
+        for solver in ["ceres", "nlopt"]:
+            run = coapt("solve", path, "--solver", solver)
+            if "unknown solver" not in run.stderr:  # not in this build
+                self.assert_bad_input(run, f'"{solver}"', "contact_barrier")
+
     def test_repair_writes_where_it_is_told_to_and_says_where_it_does_not_apply(self):
         path, scene = self.poking_sheets()
         for method, name in [("push", "out.ply"), ("exclude", "out.csv")]:
