@@ -2,13 +2,15 @@
 #include "cli/exit_code.hpp"
 #include "core/error.hpp"
 #include "scene/check.hpp"
+#include "scene/repair.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace coapt::cli {
@@ -33,21 +35,72 @@ void print_table(const std::vector<DerivativeReport>& reports) {
   }
 }
 
+// Prints what was done, or why nothing was.
+ExitCode print_repair(const std::string& scene, RepairMethod method, const RepairReport& report) {
+  const std::string pairs = std::to_string(report.pairs) + " pairs of facets that touch or intersect";
+  switch (report.outcome) {
+    case RepairOutcome::NoContact:
+      std::printf("%s: there is no contact_barrier that needs a start without intersections\n",
+                  scene.c_str());
+      return kConverged;
+    case RepairOutcome::NothingToRepair:
+      std::printf("%s: no facets touch or intersect at the start, there is nothing to repair\n",
+                  scene.c_str());
+      return kConverged;
+    case RepairOutcome::Failed:
+      std::printf(
+          "%s: of %s %zu are left after %d passes (%s); nothing was written. Such sheets have no short way "
+          "out: change the mesh, or use --repair exclude\n",
+          scene.c_str(), pairs.c_str(), report.left.size(), report.passes, listed(report.left).c_str());
+      return kNotConverged;
+    case RepairOutcome::Repaired:
+      break;
+  }
+  if (method == RepairMethod::Push)
+    std::printf(
+        "%s: pushed apart %s, in %d passes; largest move %.3g mm, gap %.3g mm\n"
+        "written to %s; name it in the scene: \"mesh\": {\"file\": ...}\n",
+        scene.c_str(), pairs.c_str(), report.passes, report.largest_move_mm, report.gap_mm,
+        report.file.string().c_str());
+  else
+    std::printf("%s: %s\nwritten to %s; add to the term contact_barrier: \"exclude\": \"%s\"\n",
+                scene.c_str(), pairs.c_str(), report.file.string().c_str(),
+                report.file.lexically_proximate(std::filesystem::path(scene).parent_path()).string().c_str());
+  return kConverged;
+}
+
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  const auto scene = std::make_shared<std::string>();
+  struct Options {
+    std::string scene, repair, output;
+  };
+  const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("check", "Name every defect of a scene and its mesh, and check its derivatives");
-  command->add_option("SCENE", *scene, "Scene file (JSON)")->required();
-  command->callback([scene, &exit_code] {
-    const CheckReport report = check(*scene);
+  command->add_option("SCENE", options->scene, "Scene file (JSON)")->required();
+  CLI::Option* repair_option =
+      command
+          ->add_option("--repair", options->repair,
+                       "Instead: where facets touch or intersect at the start, push them apart (writes a "
+                       "mesh) or exclude the pairs from contact (writes their list)")
+          ->check(CLI::IsMember({"push", "exclude"}));
+  command->add_option("-o,--output", options->output, "File that --repair writes")->needs(repair_option);
+  command->callback([options, &exit_code] {
+    if (!options->repair.empty()) {
+      const RepairMethod method = options->repair == "push" ? RepairMethod::Push : RepairMethod::Exclude;
+      const auto output =
+          options->output.empty() ? std::nullopt : std::optional<std::filesystem::path>(options->output);
+      exit_code = print_repair(options->scene, method, repair(options->scene, method, output));
+      return;
+    }
+    const CheckReport report = check(options->scene);
     for (const std::string& warning : report.warnings) std::printf("warning: %s\n", warning.c_str());
     if (!report.defects.empty()) throw InputError(report.defects);
     print_table(report.derivatives);
     std::printf(report.is_sound() ? "%s: no defects, derivatives passed\n"
                                   : "%s: no defects, but a derivative did not pass\n",
-                scene->c_str());
+                options->scene.c_str());
     exit_code = report.is_sound() ? kConverged : kNotConverged;
   });
 }

@@ -162,7 +162,7 @@ Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Mon
   }
   // A run that was cut short is judged, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
-  outcome.is_on_the_way = step < steps;
+  outcome.is_on_the_way = step < steps || is_blocked;
   if (is_blocked) {
     outcome.status = Status::Stalled;
     outcome.note =

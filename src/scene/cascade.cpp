@@ -2,7 +2,9 @@
 
 #include "core/error.hpp"
 #include "mesh/prolong.hpp"
+#include "mesh/separate.hpp"
 #include "scene/build.hpp"
+#include "scene/contact_pairs.hpp"
 #include "scene/thinning.hpp"
 
 #include <algorithm>
@@ -69,6 +71,12 @@ Points finer(const Step& step, const Points& x) {
 Problem started_at(const Points& x, Model& model) {
   if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
   return {*model.objective, model.objective->unknowns(x)};
+}
+
+// Whether a barrier can start from x: no facets pass through each other.
+bool can_start_at(const Points& x, const Model& model) {
+  if (model.objective->step_limiting_term() == nullptr) return true;
+  return pairs_to_separate(x, all_facets(model), model.mesh.triangle_count(), {}).empty();
 }
 
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
@@ -145,6 +153,8 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
     try {
       Model model = build(scene, thinned(ground, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
+      if (!is_coarsest && !can_start_at(start.x, model))
+        throw InputError("the shape found on a coarser one passes through itself there");
       const Problem problem =
           is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
                       : started_at(start.x, model);
@@ -176,7 +186,13 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                              const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
   const int triangles = model.mesh.triangle_count();
-  if (const std::optional<Start> start = coarse_start(scene, ground, cascade)) {
+  std::optional<Start> start = coarse_start(scene, ground, cascade);
+  if (start && !can_start_at(start->x, model)) {
+    cascade.outcome.warnings.push_back(
+        "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
+    start.reset();
+  }
+  if (start) {
     Problem problem = started_at(start->x, model);
     problem.stability = stability;
     if (was_interrupted(start->status)) {

@@ -1,12 +1,11 @@
 #include "core/error.hpp"
 #include "energy/contact_barrier.hpp"
 #include "energy/contact_facet.hpp"
-#include "mesh/intersections.hpp"
-#include "scene/detail/read_json.hpp"
+#include "mesh/separate.hpp"
+#include "scene/contact_pairs.hpp"
 #include "scene/term_types.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 namespace coapt {
 namespace {
@@ -16,7 +15,6 @@ constexpr double kGapPerEdge = 0.3;    // default gap of the barrier over mean e
 constexpr double kBarrierPressure =
     5;  // of the barrier, in applied pressures: folds press harder than the load
 constexpr double kSomePressure = 1e-3;  // where nothing tells [MPa]
-constexpr size_t kListed = 20;          // defects of one kind
 constexpr double kSafeCapacity = 2;     // below this times the pressure, moving sheets may pass
 constexpr double kMargin = 60;          // default capacity over applied pressure
 
@@ -52,63 +50,17 @@ TermPointer build_contact(const TermSpec& spec, BuildContext& context) {
   }
 }
 
-// The membrane's facets, then those of the obstacles.
-Triangles all_facets(const Model& model) {
-  Triangles all(3, model.mesh.triangle_count() + model.obstacles.cols());
-  all << model.mesh.triangles, model.obstacles;
-  return all;
-}
-
-using FacetPairs = std::vector<std::array<int, 2>>;
-
-// Two facet numbers a line, as `coapt check --repair exclude` writes them.
-FacetPairs read_excluded(const std::string& path, int facet_count) {
-  const std::string text = read_text(path);
-  FacetPairs pairs;
-  std::vector<std::string> defects;
-  std::istringstream lines(text);
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#') continue;
-    std::array<int, 2> pair{};
-    char comma = 0;
-    std::istringstream fields(line);
-    if (!(fields >> pair[0] >> comma >> pair[1]) || comma != ',' || !(fields >> std::ws).eof())
-      defects.push_back(path + ":" + std::to_string(number) + ": expected two facet numbers, such as 12,345");
-    else if (std::min(pair[0], pair[1]) < 0 || std::max(pair[0], pair[1]) >= facet_count)
-      defects.push_back(path + ":" + std::to_string(number) + ": facets are numbered from 0 to " +
-                        std::to_string(facet_count - 1));
-    else
-      pairs.push_back({std::min(pair[0], pair[1]), std::max(pair[0], pair[1])});
-    if (defects.size() >= kListed) break;
-  }
-  if (!defects.empty()) throw InputError(defects);
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
 // A barrier cannot separate what passes through each other already. Obstacles may do so among themselves.
 void refuse_intersections(const std::string& where, const Model& model, const FacetPairs& excluded) {
-  const int membrane = model.mesh.triangle_count();
-  FacetPairs pairs = intersecting_pairs(model.X, all_facets(model));
-  std::erase_if(pairs, [&](const std::array<int, 2>& pair) {
-    return pair[0] >= membrane || std::binary_search(excluded.begin(), excluded.end(), pair);
-  });
+  const FacetPairs pairs =
+      pairs_to_separate(model.X, all_facets(model), model.mesh.triangle_count(), excluded);
   if (pairs.empty()) return;
-  std::string list;
-  for (size_t k = 0; k < std::min(pairs.size(), kListed); ++k)
-    list.append(k > 0 ? ", " : "")
-        .append(std::to_string(pairs[k][0]))
-        .append("-")
-        .append(std::to_string(pairs[k][1]));
-  if (pairs.size() > kListed) list += ", ...";
-  throw InputError(
-      where + ": " + std::to_string(pairs.size()) +
-      " pairs of facets touch or pass through each other at the start (" + list + ", numbered from 0" +
-      (model.obstacles.cols() > 0 ? ", obstacles after the mesh" : "") +
-      "); a barrier needs a start without: `coapt check --repair` can push them apart or exclude "
-      "the pairs");
+  throw InputError(where + ": " + std::to_string(pairs.size()) +
+                   " pairs of facets touch or pass through each other at the start (" + listed(pairs) +
+                   ", numbered from 0" + (model.obstacles.cols() > 0 ? ", obstacles after the mesh" : "") +
+                   "); a barrier needs a start without: `coapt check --repair push` can push them apart, "
+                   "`--repair exclude` "
+                   "excludes the pairs");
 }
 
 // What contact has to carry: several times the loads, as folds press harder than these. Where nothing but
@@ -126,9 +78,12 @@ TermPointer build_barrier(const TermSpec& spec, BuildContext& context) {
   const TriangleMesh& mesh = model.mesh;
   if (mesh.triangle_count() == 0) throw InputError(p.where() + ": contact needs a mesh");
   ContactBarrierOptions options;
+  if (p.has("exclude") && context.multiplicity(nullptr, p.where()) > 1)
+    throw InputError(p.where("exclude") +
+                     ": names facets of the scene's own mesh, which a coarser one has not");
   if (p.has("exclude"))
     options.excluded =
-        read_excluded(p.text("exclude"), mesh.triangle_count() + static_cast<int>(model.obstacles.cols()));
+        read_facet_pairs(p.text("exclude"), mesh.triangle_count() + static_cast<int>(model.obstacles.cols()));
   refuse_intersections(p.where(), model, options.excluded);
   options.gap = p.number_or("gap", kGapPerEdge * mean_edge_length(mesh.vertices, mesh.triangles));
   options.pressure = contact_pressure(model);

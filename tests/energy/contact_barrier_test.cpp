@@ -1,15 +1,18 @@
 #include "energy/contact_barrier.hpp"
 
 #include "core/error.hpp"
+#include "core/timing.hpp"
 #include "energy/contact/pair_barrier.hpp"
 #include "mesh/intersections.hpp"
 #include "support/meshes.hpp"
+#include "support/sanitized.hpp"
 #include "support/term_suite.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 namespace coapt {
@@ -232,6 +235,45 @@ TEST(ContactBarrier, MeetsObstaclesThatDoNotMeetEachOther) {
   options.obstacles = both;
   const auto obstacles_alone = make_contact_barrier("contact", c.rest, none, options);
   EXPECT_EQ(evaluate_term(*obstacles_alone, c.state).energy, 0);
+}
+
+// Two sheets of n x n cells each, the upper one a bowl that comes within the gap around its middle only; the
+// share of the surface that does so is the same for every n.
+struct SearchCost {
+  long triangles, candidates, active;
+  double search_s;
+};
+SearchCost cost_of_search(int cells) {
+  const double edge = 1.0 / cells, gap = 0.5 * edge;
+  const TriangleMesh sheet = grid_mesh(cells, cells);
+  const int n = sheet.vertex_count();
+  Points rest(3, 2 * n), state(3, 2 * n);
+  rest << sheet.vertices, sheet.vertices.colwise() + Vec3(0, 0, 5);
+  state << sheet.vertices, sheet.vertices.colwise() + Vec3(0.3 * edge, 0.2 * edge, 0.7 * gap);
+  for (int v = n; v < 2 * n; ++v)
+    state(2, v) += 30 * edge * (state.col(v).head<2>() - Eigen::Vector2d(0.5, 0.5)).squaredNorm();
+  Triangles triangles(3, 2 * sheet.triangle_count());
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const auto term = barrier_of(rest, triangles, gap);
+  const double start = cpu_seconds();
+  term->prepare(state);
+  const double search_s = cpu_seconds() - start;
+  Sink sink;
+  EXPECT_GT(term->evaluate(state, sink), 0);
+  return {triangles.cols(), term->counters().candidates, term->counters().elements, search_s};
+}
+
+TEST(Nightly, SearchesAMillionTrianglesInTimeAndMemoryThatGrowLinearly) {
+  if (is_sanitized()) return;
+  const SearchCost quarter = cost_of_search(250), whole = cost_of_search(500);
+  std::printf("%ld triangles: %ld candidates, %ld in contact, %.2f s; %ld triangles: %ld, %ld, %.2f s\n",
+              quarter.triangles, quarter.candidates, quarter.active, quarter.search_s, whole.triangles,
+              whole.candidates, whole.active, whole.search_s);
+  EXPECT_EQ(whole.triangles, 1000000);
+  EXPECT_GT(whole.active, 100000);
+  EXPECT_LT(whole.candidates, 20 * whole.triangles);
+  EXPECT_LT(whole.candidates, 4.5 * static_cast<double>(quarter.candidates));
+  EXPECT_LT(whole.search_s, 7 * quarter.search_s);
 }
 
 TEST(ContactBarrier, NamesTheOptionThatIsOutOfRange) {
