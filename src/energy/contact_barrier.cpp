@@ -11,7 +11,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kSkin = 0.25;          // of the gap: candidates are found this much ahead
+constexpr double kSkin = 0.25;         // of the gap: candidates are found this much ahead
 constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the range never exceeds
 constexpr double kParallel = 1e-3;     // sin^2 of the angle below which two edges count as parallel
 constexpr double kKeptDistance = 0.2;  // share of its distance that a pair keeps in one step

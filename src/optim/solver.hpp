@@ -114,8 +114,8 @@ struct Result {
 };
 
 // Runs a solver on a problem: follows the prescribed motion, renews loads without a potential until the
-// exact residual is small, and judges the outcome by the objective's residual alone. Throws InputError, before
-// anything is done, when a term limits steps and the solver does not honour it.
+// exact residual is small, and judges the outcome by the objective's residual alone. Throws InputError,
+// before anything is done, when a term limits steps and the solver does not honour it.
 Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer = {});
 
 // How a step is kept from going too far.
