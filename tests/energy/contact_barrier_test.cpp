@@ -251,7 +251,7 @@ SearchCost cost_of_search(int cells) {
   rest << sheet.vertices, sheet.vertices.colwise() + Vec3(0, 0, 5);
   state << sheet.vertices, sheet.vertices.colwise() + Vec3(0.3 * edge, 0.2 * edge, 0.7 * gap);
   for (int v = n; v < 2 * n; ++v)
-    state(2, v) += 30 * edge * (state.col(v).head<2>() - Eigen::Vector2d(0.5, 0.5)).squaredNorm();
+    state(2, v) += 20 * edge * (state.col(v).head<2>() - Eigen::Vector2d(0.5, 0.5)).squaredNorm();
   Triangles triangles(3, 2 * sheet.triangle_count());
   triangles << sheet.triangles, sheet.triangles.array() + n;
   const auto term = barrier_of(rest, triangles, gap);

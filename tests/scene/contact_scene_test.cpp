@@ -46,12 +46,16 @@ class ContactSceneTest : public testing::Test {
 
 Points final_positions(const RunReport& run) { return run.model.objective->positions(run.report.result.q); }
 
-// Force of the contact on some nodes.
-Vec3 contact_force(const RunReport& run, const std::vector<int>& nodes) {
+// Forces of the contact on all nodes.
+Points contact_forces(const RunReport& run) {
+  const Points x = final_positions(run);
   for (const auto& term : run.model.objective->terms())
-    if (term->role() == TermRole::Contact)
-      return -evaluate_term(*term, final_positions(run)).gradient(Eigen::all, nodes).rowwise().sum();
-  return Vec3::Zero();
+    if (term->role() == TermRole::Contact) return -evaluate_term(*term, x).gradient;
+  return Points::Zero(3, x.cols());
+}
+
+Vec3 contact_force(const RunReport& run, const std::vector<int>& nodes) {
+  return contact_forces(run)(Eigen::all, nodes).rowwise().sum();
 }
 
 // --- A ball pressed into a film --------------------------------------------------------------------------
@@ -88,20 +92,28 @@ TEST_F(ContactSceneTest, ABallPressedIntoAFilmLeavesItAsACatenoid) {
   const RunReport run = run_scene(R"({
     "mesh": {"file": "film.obj"}, "obstacles": [{"name": "ball", "file": "ball.obj"}],
     "boundary": [{"nodes": "boundary", "fix": true},
-                 {"nodes": "ball", "move_to": {"translate": [0, 0, "-3.5 mm"]}}],
-    "terms": [{"type": "surface_tension", "tension": "0.1 N/mm"}, {"type": "contact_barrier", "gap": "0.1 mm"}],
+                 {"nodes": "ball", "move_to": {"translate": [0, 0, "-2.5 mm"]}}],
+    "terms": [{"type": "surface_tension", "tension": "0.1 N/mm"},
+              {"type": "cst_stvk", "young": "0.05 MPa", "poisson": 0.3, "thickness": "0.1 mm"},
+              {"type": "contact_barrier", "gap": "0.3 mm"}],
     "solver": {"type": "newton", "tolerance": 1e-6, "max_iterations": 2000}})");
   ASSERT_EQ(run.report.result.status, Status::Converged) << run.report.result.message;
   EXPECT_EQ(run.report.metrics.intersections, 0);
 
   const Points x = final_positions(run);
-  const Vec3 centre(0, 0, kBall - 3);
-  double nearest = kInfinity;
-  for (int v = 0; v < run.model.mesh.vertex_count(); ++v)
-    nearest = std::min(nearest, (x.col(v) - centre).norm());
-  EXPECT_GT(nearest, 0.99 * kBall);
-  EXPECT_LT(nearest, kBall + 0.1);
-  const BallInFilm rigid{nearest, -centre[2]};
+  const Vec3 centre(0, 0, kBall - 2);
+  // The film as rigid contact sees it lies where the barrier carries it: mean distance, weighted by force.
+  const Points forces = contact_forces(run);
+  double weight = 0, distance = 0;
+  for (int v = 0; v < run.model.mesh.vertex_count(); ++v) {
+    const double share = forces.col(v).norm();
+    weight += share;
+    distance += share * (x.col(v) - centre).norm();
+  }
+  distance /= weight;
+  EXPECT_GT(distance, 0.99 * kBall);
+  EXPECT_LT(distance, kBall + 0.3);
+  const BallInFilm rigid{distance, -centre[2]};
   const Vec3 force = contact_force(run, run.model.sets.at("ball"));
   EXPECT_NEAR(force[2], rigid.force(), 0.03 * rigid.force());
   EXPECT_LT(std::hypot(force[0], force[1]), 0.01 * force[2]);
@@ -186,26 +198,21 @@ class SmallContactTest : public ContactSceneTest {
   }
 
   static std::string scene(const std::string& boundary,
-                           const std::string& obstacles = R"({"name": "ball", "file": "ball.obj"})",
-                           const std::string& solver = "newton") {
+                           const std::string& obstacles = R"({"name": "ball", "file": "ball.obj"})") {
     return R"({"mesh": {"file": "film.obj"}, "obstacles": [)" + obstacles +
            R"(], "boundary": [{"nodes": "boundary", "fix": true})" + boundary +
            R"(], "terms": [{"type": "cst_stvk", "young": "1 MPa", "thickness": "0.1 mm", "prestress": "0.1 N/mm"},
               {"type": "contact_barrier"}],
-              "solver": {"type": ")" +
-           solver + R"(", "tolerance": 1e-4, "max_iterations": 2000}})";
+              "solver": {"type": "newton", "tolerance": 1e-4, "max_iterations": 2000}})";
   }
 };
 
 TEST_F(SmallContactTest, MotionThroughAHeldRimEndsBeforeItAndSaysSo) {
-  for (const std::string solver : {"newton", "lbfgs"}) {
-    const RunReport run = run_scene(scene(R"(, {"nodes": "ball", "move_to": {"translate": [9, 0, -6]}})",
-                                          R"({"name": "ball", "file": "ball.obj"})", solver));
-    EXPECT_EQ(run.report.result.status, Status::Stalled) << solver << ": " << run.report.result.message;
-    EXPECT_NE(run.report.result.message.find("presses facets against each other"), std::string::npos)
-        << run.report.result.message;
-    EXPECT_EQ(run.report.metrics.intersections, 0) << solver;
-  }
+  const RunReport run = run_scene(scene(R"(, {"nodes": "ball", "move_to": {"translate": [9, 0, -3]}})"));
+  EXPECT_EQ(run.report.result.status, Status::Stalled) << run.report.result.message;
+  EXPECT_NE(run.report.result.message.find("presses facets against each other"), std::string::npos)
+      << run.report.result.message;
+  EXPECT_EQ(run.report.metrics.intersections, 0);
 }
 
 TEST_F(SmallContactTest, RefusesAStartThatIntersectsAnObstacleNamingTheirFacets) {
