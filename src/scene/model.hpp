@@ -43,6 +43,7 @@ struct Model {
   std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
   std::vector<Line> lines;
   std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term
+  double film_tension = 0;                   // largest of the surface_tension terms [N/mm]
   double applied_pressure = 0;               // largest pressure of the load terms [MPa]
   double contact_range = 0;                  // [mm]; 0 without a contact term
   std::unique_ptr<Objective> objective;

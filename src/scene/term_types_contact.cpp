@@ -64,12 +64,14 @@ void refuse_intersections(const std::string& where, const Model& model, const Fa
 }
 
 // What contact has to carry: several times the loads, as folds press harder than these. Where nothing but
-// prescribed motion presses, the membrane's tension at a strain of a tenth, over its size.
+// prescribed motion presses, the tension of the film, of the prestress and of a strain of a tenth, over the
+// size.
 double contact_pressure(const Model& model) {
   if (model.applied_pressure > 0) return kBarrierPressure * model.applied_pressure;
-  double stiffness = 0;
-  for (const MembraneProperties& m : model.membrane) stiffness = std::max(stiffness, m.young * m.thickness);
-  return stiffness > 0 ? 0.1 * stiffness / bounding_box_diagonal(model.mesh.vertices) : kSomePressure;
+  double tension = model.film_tension;
+  for (const MembraneProperties& m : model.membrane)
+    tension = std::max(tension, m.prestress + 0.1 * m.young * m.thickness);
+  return tension > 0 ? tension / bounding_box_diagonal(model.mesh.vertices) : kSomePressure;
 }
 
 TermPointer build_barrier(const TermSpec& spec, BuildContext& context) {

@@ -5,6 +5,8 @@
 #include "energy/kernels/surface_tension.hpp"
 #include "scene/term_types.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 namespace {
 
@@ -134,6 +136,7 @@ TermPointer build_surface_tension(const TermSpec& spec, BuildContext& context) {
   const TriangleMesh& mesh = context.model.mesh;
   const std::vector<int> triangles = region_triangles(spec.parameters, mesh);
   std::vector<SurfaceTension::Rest> rest(triangles.size(), {spec.parameters.number("tension")});
+  context.model.film_tension = std::max(context.model.film_tension, spec.parameters.number("tension"));
   return std::make_unique<ElementTerm<SurfaceTension>>(spec.name, corner_nodes(mesh.triangles, triangles),
                                                        std::move(rest));
 }
