@@ -1,7 +1,7 @@
 #include "mesh/separate.hpp"
 
 #include "mesh/intersections.hpp"
-#include "support/meshes.hpp"
+#include "support/contact_scene.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -10,20 +10,6 @@ namespace coapt {
 namespace {
 
 constexpr double kGap = 0.01;
-
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.vertices.resize(3, a.vertex_count() + b.vertex_count());
-  both.vertices << a.vertices, b.vertices;
-  both.triangles.resize(3, a.triangle_count() + b.triangle_count());
-  both.triangles << a.triangles, b.triangles.array() + a.vertex_count();
-  return both;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  mesh.vertices.colwise() += by;
-  return mesh;
-}
 
 SeparationOptions options_for(const TriangleMesh& mesh) {
   SeparationOptions options;
