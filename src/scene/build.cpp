@@ -29,7 +29,10 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
                        },
                        [&ground](const NodeSelection* selection, const std::string& where) {
                          return multiplicity(selection, ground, where);
-                       }};
+                       },
+                       scene_mesh(ground),
+                       [&ground](const Vector& values) { return at_vertices(values, ground); },
+                       [&ground](const Vector& values) { return on_triangles(values, ground); }};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {

@@ -2,6 +2,7 @@
 
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
+#include "energy/kernels/cable_law.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "mesh/vertex_gaps.hpp"
 
@@ -33,37 +34,31 @@ Eigen::Vector2d principal_values(const Eigen::Matrix2d& m) {
   return {mean + radius, mean - radius};
 }
 
-// A membrane of zero thickness or modulus carries its prestress alone, and is taut.
-void add_stress(const Model& model, int t, Fields& fields) {
-  const MembraneProperties& m = model.membrane[static_cast<size_t>(t)];
-  const Eigen::Vector3i c = model.mesh.triangles.col(t);
-  MembraneRegime& regime = fields.regime[static_cast<size_t>(t)];
-  if (m.young == 0 || m.thickness == 0) {
-    fields.principal_stress.col(t).setConstant(m.thickness > 0 ? m.prestress / m.thickness : 0);
-    regime = m.prestress > 0 ? MembraneRegime::Taut : MembraneRegime::Slack;
-    return;
-  }
-  const Vec3 X0 = model.X.col(c[0]), X1 = model.X.col(c[1]), X2 = model.X.col(c[2]);
-  const CstTensionField::Rest rest = CstTensionField::rest(X0, X1, X2, m.young, m.poisson, m.thickness,
-                                                           m.prestress, m.relaxes ? m.residual : 1);
-  CstVector x;
-  x << fields.x.col(c[0]), fields.x.col(c[1]), fields.x.col(c[2]);
-  fields.principal_stress.col(t) =
-      CstTensionField::principal_stress(rest, x) / (cst_shape(X0, X1, X2).area * m.thickness);
-  regime = CstTensionField::regime(rest, x);
+// Of the last membrane term that covers a triangle; none: no stress.
+void add_stress(const Model& model, Fields& fields) {
+  const auto count = model.mesh.triangle_count();
+  fields.principal_stress = Eigen::Matrix2Xd::Zero(2, count);
+  fields.regime.assign(static_cast<size_t>(count), MembraneRegime::Slack);
+  for (const MembranePatch& patch : model.membrane_patches)
+    for (size_t e = 0; e < patch.triangles.size(); ++e) {
+      const int t = patch.triangles[e];
+      const Eigen::Vector3i c = model.mesh.triangles.col(t);
+      CstVector x;
+      x << fields.x.col(c[0]), fields.x.col(c[1]), fields.x.col(c[2]);
+      const MembraneState state = patch.state(static_cast<int>(e), x);
+      fields.principal_stress.col(t) = state.stress;
+      fields.regime[static_cast<size_t>(t)] = state.regime;
+    }
 }
 
 void add_strain_and_stress(const Model& model, Fields& fields) {
   const Triangles& triangles = model.mesh.triangles;
-  const bool has_membrane = !model.membrane.empty();
   fields.principal_strain.resize(2, triangles.cols());
-  fields.principal_stress.resize(2, has_membrane ? triangles.cols() : 0);
-  fields.regime.resize(has_membrane ? static_cast<size_t>(triangles.cols()) : 0);
   for (int t = 0; t < triangles.cols(); ++t) {
     const Eigen::Vector2d green = principal_values(green_strain(model.X, fields.x, triangles.col(t)));
     fields.principal_strain.col(t) = (1 + 2 * green.array()).max(0).sqrt() - 1;
-    if (has_membrane) add_stress(model, t, fields);
   }
+  if (!model.membrane_patches.empty()) add_stress(model, fields);
 }
 
 template <typename Kernel>
@@ -78,14 +73,19 @@ bool tension_of(const EnergyTerm& term, const Line& line, const Points& x, doubl
   return true;
 }
 
+template <typename... Kernels>
+void first_tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
+  static_cast<void>((tension_of<Kernels>(term, line, x, force) || ...));
+}
+
 void add_line_forces(const Model& model, Fields& fields) {
   fields.line_force = Vector::Zero(static_cast<Eigen::Index>(model.lines.size()));
   for (size_t k = 0; k < model.lines.size(); ++k)
     for (const auto& term : model.objective->terms()) {
       if (term->name() != model.lines[k].term) continue;
       double& force = fields.line_force[static_cast<Eigen::Index>(k)];
-      if (!tension_of<Cable>(*term, model.lines[k], fields.x, force))
-        tension_of<TetherCubic>(*term, model.lines[k], fields.x, force);
+      first_tension_of<Cable, TetherCubic, CableBilinear, CableOgden, CableCrimpedFibre>(
+          *term, model.lines[k], fields.x, force);
     }
 }
 

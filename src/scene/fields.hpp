@@ -2,7 +2,6 @@
 // a reference, force in each line.
 #pragma once
 
-#include "energy/kernels/cst_tension_field.hpp"
 #include "scene/model.hpp"
 
 namespace coapt {
@@ -24,9 +23,8 @@ struct Fields {
   Vector line_force;                   // tension of each line of the model [N]; negative for compression
 };
 
-// Strains are those of the constant-strain triangle from X to x; stresses follow from the model's membrane
-// properties by the law of the membrane term (energy/kernels/cst_stvk.hpp, cst_tension_field.hpp), the
-// prestress included. The regime of a membrane that resists compression is that in which a tension field
+// Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that
+// covers the triangle, the prestress included. The regime of a membrane that resists compression is that in which a tension field
 // would be.
 Fields compute_fields(const Model& model, const Points& x);
 

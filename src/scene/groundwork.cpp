@@ -216,4 +216,34 @@ double multiplicity(const NodeSelection* selection, const Groundwork& ground, co
   return left > 0 ? static_cast<double>(all) / static_cast<double>(left) : 1;
 }
 
+const TriangleMesh& scene_mesh(const Groundwork& ground) {
+  return ground.finest == nullptr ? ground.model.mesh : ground.finest->model.mesh;
+}
+
+Vector at_vertices(const Vector& values, const Groundwork& ground) {
+  if (ground.finest == nullptr) return values;
+  Vector here(ground.model.mesh.vertex_count());
+  for (Eigen::Index v = 0; v < values.size(); ++v)
+    if (const int kept = ground.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = values[v];
+  return here;
+}
+
+Vector on_triangles(const Vector& values, const Groundwork& ground) {
+  if (ground.finest == nullptr) return values;
+  const TriangleMesh& fine = ground.finest->model.mesh;
+  Vector sum = Vector::Zero(fine.vertex_count()), count = sum;
+  for (int t = 0; t < fine.triangle_count(); ++t)
+    for (const int v : fine.triangles.col(t)) {
+      sum[v] += values[t];
+      ++count[v];
+    }
+  const Vector kept = at_vertices(sum.cwiseQuotient(count.cwiseMax(1)), ground);
+  Vector here(ground.model.mesh.triangle_count());
+  for (int t = 0; t < here.size(); ++t) {
+    const Eigen::Vector3i c = ground.model.mesh.triangles.col(t);
+    here[t] = (kept[c[0]] + kept[c[1]] + kept[c[2]]) / 3;
+  }
+  return here;
+}
+
 }  // namespace coapt

@@ -34,4 +34,11 @@ std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork
 // vertices.
 double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where);
 
+// The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here: a coarser
+// mesh keeps the values of its vertices, and its triangles take the mean over their corners of the mean over
+// the triangles that met there.
+const TriangleMesh& scene_mesh(const Groundwork& ground);
+Vector at_vertices(const Vector& values, const Groundwork& ground);
+Vector on_triangles(const Vector& values, const Groundwork& ground);
+
 }  // namespace coapt

@@ -41,6 +41,8 @@ OrderedJson value_schema(const KeySpec& key) {
   switch (key.kind) {
     case KeyKind::Quantity:
       return quantity_schema(key);
+    case KeyKind::Quantities:
+      return {{"type", "array"}, {"items", quantity_schema(key)}, {"minItems", 1}};
     case KeyKind::Integer: {
       OrderedJson schema{{"type", "integer"}};
       add_limits(key, schema);

@@ -1,11 +1,13 @@
 // What build() makes of a scene: nodes, terms and motion, and all that a report needs to know of them.
 #pragma once
 
+#include "energy/kernels/cst.hpp"
 #include "energy/objective.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "mesh/valve.hpp"
 #include "optim/solver.hpp"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,14 +24,18 @@ struct Line {
   int element = 0;         // its element in that term
 };
 
-// Plane-stress membrane properties of one triangle, for strain and stress fields.
+// Plane-stress membrane properties of one triangle; of a nonlinear law those at small strain.
 struct MembraneProperties {
   double young = 0;  // [MPa]
   double poisson = 0;
   double thickness = 0;  // [mm]
   double prestress = 0;  // resultant [N/mm]
-  bool relaxes = false;  // a tension field: wrinkles instead of being compressed
-  double residual = 0;   // then: fraction of the compressive stiffness that is left
+};
+
+// The triangles of one membrane term, and how its stress is read.
+struct MembranePatch {
+  std::vector<int> triangles;  // element e of the term covers triangles[e]
+  std::function<MembraneState(int element, const CstVector& corners)> state;
 };
 
 // Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions), then
@@ -43,6 +49,7 @@ struct Model {
   std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
   std::vector<Line> lines;
   std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term
+  std::vector<MembranePatch> membrane_patches;
   double film_tension = 0;                   // largest of the surface_tension terms [N/mm]
   double applied_pressure = 0;               // largest pressure of the load terms [MPa]
   double contact_range = 0;                  // [mm]; 0 without a contact term

@@ -26,6 +26,9 @@ int Parameters::integer(const std::string& key) const { return static_cast<int>(
 bool Parameters::flag(const std::string& key) const { return get<bool>(key); }
 const std::string& Parameters::text(const std::string& key) const { return get<std::string>(key); }
 const Vec3& Parameters::vector(const std::string& key) const { return get<Vec3>(key); }
+const std::vector<double>& Parameters::numbers(const std::string& key) const {
+  return get<std::vector<double>>(key);
+}
 const std::vector<std::string>& Parameters::texts(const std::string& key) const {
   return get<std::vector<std::string>>(key);
 }

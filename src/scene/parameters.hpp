@@ -39,8 +39,8 @@ struct LineThrough {
 };
 
 class Parameters;
-using ParameterValue = std::variant<double, bool, std::string, Vec3, std::vector<std::string>, NodeSelection,
-                                    std::vector<MoveTarget>, LineThrough,
+using ParameterValue = std::variant<double, bool, std::string, Vec3, std::vector<double>, std::vector<std::string>,
+                                    NodeSelection, std::vector<MoveTarget>, LineThrough,
                                     std::map<std::string, NodeSelection>, std::vector<Parameters>>;
 
 // Reading a key that is absent or of another kind is a defect of the calling code and throws
@@ -60,6 +60,7 @@ class Parameters {
   bool flag(const std::string& key) const;
   const std::string& text(const std::string& key) const;  // texts, choices, paths of files
   const Vec3& vector(const std::string& key) const;
+  const std::vector<double>& numbers(const std::string& key) const;
   const std::vector<std::string>& texts(const std::string& key) const;
   const NodeSelection& nodes(const std::string& key) const;
   const std::vector<MoveTarget>& targets(const std::string& key) const;

@@ -19,6 +19,10 @@ std::string kind_text(const KeySpec& key) {
       return key.dimension == kDimensionless
                  ? "number"
                  : dimension_name(key.dimension) + ", `\"" + dimension_example(key.dimension) + "\"`";
+    case KeyKind::Quantities:
+      return key.dimension == kDimensionless ? "list of numbers"
+                                             : "list, each a " + dimension_name(key.dimension) + ", `\"" +
+                                                   dimension_example(key.dimension) + "\"`";
     case KeyKind::Integer:
       return key.choices.empty() ? "whole number" : "one of " + joined(key.choices);
     case KeyKind::Flag:

@@ -12,6 +12,7 @@ namespace coapt {
 
 enum class KeyKind {
   Quantity,  // text with a unit; a bare number where only a length (mm) or a pure number can be meant
+  Quantities,  // a list of them
   Integer,
   Flag,  // true or false
   Text,

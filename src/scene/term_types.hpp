@@ -35,6 +35,10 @@ struct BuildContext {
   // How many nodes of the scene's own mesh stand in the place of one here, on average: above 1 on a coarser
   // mesh. Of a selection, or of all mesh vertices.
   std::function<double(const NodeSelection*, const std::string& where)> multiplicity;
+  // The scene's own mesh, of which the model's may be a coarser version; and values given on its vertices or
+  // triangles, on those of the model.
+  const TriangleMesh& scene_mesh;
+  std::function<Vector(const Vector&)> at_vertices, on_triangles;
 };
 
 using TermPointer = std::unique_ptr<EnergyTerm>;
@@ -62,8 +66,9 @@ const TermType* find_term_type(const std::string& name);
 
 // The entries by family, each in its own file.
 std::vector<TermType> membrane_term_types();  // cst_stvk, cst_tension_field, surface_tension
+std::vector<TermType> tissue_term_types();    // cst_bilinear ... cst_crimped_fibre
 std::vector<TermType> bending_term_types();   // bending
-std::vector<TermType> line_term_types();      // cable, tether_cubic
+std::vector<TermType> line_term_types();      // cable, cable_bilinear ..., tether_cubic
 std::vector<TermType> load_term_types();      // load_field, load_pressure
 std::vector<TermType> contact_term_types();   // contact_facet
 

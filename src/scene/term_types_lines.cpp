@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
+#include "energy/kernels/cable_law.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/term_types.hpp"
@@ -65,6 +66,11 @@ void note_line(const TermSpec& spec, const RestLine& line, double length, int el
   model.lines.push_back({line.a, line.b, length, spec.name, element});
 }
 
+void warn_of_no_length(const RestLine& line, Model& model) {
+  model.warnings.push_back(line.label +
+                           ": the rest length is zero, so its stiffness would be infinite; it is left out.");
+}
+
 TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
   const bool is_elastic = p.has("young");
@@ -78,9 +84,7 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
       element.length = line.length * p.number("length_scale");
       if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
       if (element.length <= 0) {
-        context.model.warnings.push_back(line.label +
-                                         ": the rest length is zero, so its stiffness would be "
-                                         "infinite; it is left out.");
+        warn_of_no_length(line, context.model);
         continue;
       }
       element.stiffness = p.number("young") * area / element.length;
@@ -92,6 +96,72 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
   }
   if (!defects.empty()) throw InputError(defects);
   return std::make_unique<ElementTerm<Cable>>(spec.name, std::move(nodes), std::move(rest));
+}
+
+// One element of a nonlinear law for each line.
+template <typename Law>
+TermPointer build_cable_law(const TermSpec& spec, BuildContext& context, const Law& law) {
+  const Parameters& p = spec.parameters;
+  std::vector<int> nodes;
+  std::vector<typename CableLaw<Law>::Rest> rest;
+  std::vector<std::string> defects;
+  for (const RestLine& line : rest_lines(p, context)) {
+    const double area = p.number_or("area", line.area), length = line.length * p.number("length_scale");
+    if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
+    if (length <= 0) {
+      warn_of_no_length(line, context.model);
+      continue;
+    }
+    note_line(spec, line, length, static_cast<int>(rest.size()), context.model);
+    nodes.insert(nodes.end(), {line.a, line.b});
+    rest.push_back(CableLaw<Law>::rest(length, area, p.number("smoothing"), law));
+  }
+  if (!defects.empty()) throw InputError(defects);
+  return std::make_unique<ElementTerm<CableLaw<Law>>>(spec.name, std::move(nodes), std::move(rest));
+}
+
+TermPointer build_cable_bilinear(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  const double before = p.number("young_pre");
+  return build_cable_law(
+      spec, context,
+      BilinearLine{before, {p.number("young_post") - before, p.number("transition_strain"), p.number("knee")}});
+}
+
+TermPointer build_cable_ogden(const TermSpec& spec, BuildContext& context) {
+  OgdenLine law;
+  const std::vector<double>&mu = spec.parameters.numbers("mu"), &alpha = spec.parameters.numbers("alpha");
+  std::copy(mu.begin(), mu.end(), law.mu.begin());
+  std::copy(alpha.begin(), alpha.end(), law.alpha.begin());
+  return build_cable_law(spec, context, law);
+}
+
+TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  return build_cable_law(spec, context,
+                         CrimpedLine{CrimpedFibre(p.number("fibre_young"), p.number("crimp_ratio"),
+                                                  p.number("radius_ratio"), p.number("knee"))});
+}
+
+using Defects = std::vector<std::string>;
+
+Defects check_area(const Parameters& p) {
+  if (p.has("edges") && !p.has("area"))
+    return {"area: missing; mesh edges have no cross-section of their own"};
+  return {};
+}
+
+Defects check_ogden(const Parameters& p) {
+  const std::vector<double>&mu = p.numbers("mu"), &alpha = p.numbers("alpha");
+  if (mu.size() != alpha.size() || mu.size() > OgdenLine::kTerms)
+    return {"mu and alpha: have " + std::to_string(mu.size()) + " and " + std::to_string(alpha.size()) +
+            " entries; give as many of each, at most " + std::to_string(OgdenLine::kTerms)};
+  Defects defects;
+  for (size_t k = 0; k < mu.size(); ++k)
+    if (mu[k] * alpha[k] <= 0)
+      defects.push_back("mu[" + std::to_string(k) + "] and alpha[" + std::to_string(k) +
+                        "]: must be of one sign and not zero, or the cable would push");
+  return defects;
 }
 
 TermPointer build_tether(const TermSpec& spec, BuildContext& context) {
@@ -127,6 +197,35 @@ std::vector<KeySpec> line_keys() {
        .doc = "Factor on all rest lengths."}};
 }
 
+KeySpec area_key() {
+  return {.name = "area",
+          .dimension = kArea,
+          .min = 0,
+          .excludes_min = true,
+          .doc = "Cross-section; default: that of each chord of the network."};
+}
+
+KeySpec smoothing_key() {
+  return {.name = "smoothing",
+          .fallback = "0.002",
+          .min = 0,
+          .max = 1,
+          .doc = "Elongation, as a fraction of the rest length, over which the onset of tension is rounded; the "
+                 "sharp kink of 0 costs iterations."};
+}
+
+KeySpec knee_key() {
+  return {.name = "knee",
+          .fallback = "0.005",
+          .min = 0,
+          .max = 0.5,
+          .doc = "Strain on either side of the knee over which the stiffness changes; 0: at once."};
+}
+
+KeySpec positive(const char* name, Dimension dimension, const char* doc) {
+  return {.name = name, .dimension = dimension, .required = true, .min = 0, .excludes_min = true, .doc = doc};
+}
+
 std::vector<KeySpec> with(std::vector<KeySpec> keys, const std::vector<KeySpec>& more) {
   keys.insert(keys.end(), more.begin(), more.end());
   return keys;
@@ -148,26 +247,56 @@ std::vector<TermType> line_term_types() {
                                .min = 0,
                                .excludes_min = true,
                                .doc = "Tension of a constant-force cable."},
-                              {.name = "area",
-                               .dimension = kArea,
-                               .min = 0,
-                               .excludes_min = true,
-                               .doc = "Cross-section; default: that of each chord of the network."},
-                              {.name = "smoothing",
-                               .fallback = "0.002",
-                               .min = 0,
-                               .max = 1,
-                               .doc = "Elongation, as a fraction of the rest length, over which the onset of "
-                                      "tension is rounded; the sharp kink of 0 costs "
-                                      "iterations."}},
+                              area_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
-       .check = [](const Parameters& p) -> std::vector<std::string> {
-         if (p.has("young") && p.has("edges") && !p.has("area"))
-           return {"area: missing; mesh edges have no cross-section of their own"};
-         return {};
-       },
+       .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : Defects{}; },
        .build = build_cable},
+      {.name = "cable_bilinear",
+       .summary = "Cables of two moduli: soft up to a transition strain, stiff beyond it; tension only.",
+       .spec = {.keys = with({positive("young_pre", kPressure, "Young's modulus below the knee."),
+                              positive("young_post", kPressure, "Slope beyond the knee."),
+                              positive("transition_strain", kDimensionless, "Engineering strain of the knee."),
+                              knee_key(), area_key(), smoothing_key()},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}}},
+       .check = check_area,
+       .build = build_cable_bilinear},
+      {.name = "cable_ogden",
+       .summary = "Incompressible Ogden cables, sum of 2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3); tension "
+                  "only.",
+       .spec = {.keys = with({{.name = "mu",
+                               .kind = KeyKind::Quantities,
+                               .dimension = kPressure,
+                               .required = true,
+                               .doc = "Moduli of up to three terms."},
+                              {.name = "alpha",
+                               .kind = KeyKind::Quantities,
+                               .required = true,
+                               .doc = "Their exponents."},
+                              area_key(), smoothing_key()},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}}},
+       .check =
+           [](const Parameters& p) {
+             Defects defects = check_ogden(p);
+             for (const std::string& more : check_area(p)) defects.push_back(more);
+             return defects;
+           },
+       .build = build_cable_ogden},
+      {.name = "cable_crimped_fibre",
+       .summary = "Bundles of crimped collagen fibres (Freed & Doehring 2005); tension only.",
+       .spec = {.keys = with({positive("fibre_young", kPressure, "Modulus of the straight fibres."),
+                              positive("crimp_ratio", kDimensionless,
+                                       "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner "
+                                       "the fibres are straight."),
+                              positive("radius_ratio", kDimensionless,
+                                       "Amplitude over radius of the fibre, R0/r0."),
+                              knee_key(), area_key(), smoothing_key()},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}}},
+       .check = check_area,
+       .build = build_cable_crimped_fibre},
       {.name = "tether_cubic",
        .summary = "Lines that are slack up to their length and then pull with the square of the excess "
                   "(Burlina et al. 2010).",

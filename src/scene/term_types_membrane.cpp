@@ -3,7 +3,7 @@
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
 #include "energy/kernels/surface_tension.hpp"
-#include "scene/term_types.hpp"
+#include "scene/detail/build_membrane.hpp"
 
 #include <algorithm>
 
@@ -11,70 +11,28 @@ namespace coapt {
 namespace {
 
 std::vector<int> corner_nodes(const Triangles& all, const std::vector<int>& triangles) {
-  std::vector<int> nodes;
-  nodes.reserve(3 * triangles.size());
-  for (const int t : triangles)
-    for (int k = 0; k < 3; ++k) nodes.push_back(all(k, t));
-  return nodes;
+  const Triangles covered = all(Eigen::all, triangles);
+  return {covered.data(), covered.data() + covered.size()};
 }
 
-void note_membrane(const TermSpec& spec, const std::vector<int>& triangles,
-                   const MembraneProperties& properties, Model& model) {
-  model.membrane.resize(static_cast<size_t>(model.mesh.triangle_count()));
-  int doubled = 0;
-  for (const int t : triangles) {
-    MembraneProperties& entry = model.membrane[static_cast<size_t>(t)];
-    if (entry.thickness > 0 || entry.prestress > 0) ++doubled;
-    entry = properties;
-  }
-  if (doubled > 0)
-    model.warnings.push_back(spec.parameters.where() + ": " + std::to_string(doubled) +
-                             " triangles belong to another membrane term too; their energies add up and the "
-                             "stress in the results is that of the last.");
-}
-
-// One element of the kernel for each triangle of the region; `rest_of` makes it from the corners at rest.
-template <typename Kernel, typename RestOf>
-TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const MembraneProperties& properties,
-                           const RestOf& rest_of) {
-  const TriangleMesh& mesh = context.model.mesh;
-  const std::vector<int> triangles = region_triangles(spec.parameters, mesh);
-  std::vector<typename Kernel::Rest> rest;
-  rest.reserve(triangles.size());
-  const Points& X = context.model.X;
-  for (const int t : triangles) {
-    const Eigen::Vector3i corner = mesh.triangles.col(t);
-    rest.push_back(rest_of(X.col(corner[0]), X.col(corner[1]), X.col(corner[2])));
-  }
-  note_membrane(spec, triangles, properties, context.model);
-  return std::make_unique<ElementTerm<Kernel>>(spec.name, corner_nodes(mesh.triangles, triangles),
-                                               std::move(rest));
-}
-
-MembraneProperties elastic_properties(const Parameters& p) {
-  MembraneProperties m;
-  m.young = p.number("young");
-  m.poisson = p.number("poisson");
-  m.thickness = p.number_or("thickness", 0);
-  m.prestress = p.number("prestress");
-  return m;
+MembraneProperties elastic_properties(const ElementValues& values, int t) {
+  return {values.number("young", t), values.number("poisson", t), values.number_or("thickness", t, 0),
+          values.number("prestress", t)};
 }
 
 TermPointer build_stvk(const TermSpec& spec, BuildContext& context) {
-  const MembraneProperties m = elastic_properties(spec.parameters);
-  return build_membrane<CstStVK>(spec, context, m, [&](const Vec3& X0, const Vec3& X1, const Vec3& X2) {
-    return CstStVK::rest(X0, X1, X2, m.young, m.poisson, m.thickness, m.prestress);
+  return build_membrane<CstStVK>(spec, context, elastic_properties, [](const MembraneElement& e) {
+    const MembraneProperties& m = e.properties;
+    return CstStVK::rest(e.X0, e.X1, e.X2, m.young, m.poisson, m.thickness, m.prestress);
   });
 }
 
 TermPointer build_tension_field(const TermSpec& spec, BuildContext& context) {
-  MembraneProperties m = elastic_properties(spec.parameters);
-  m.relaxes = true;
-  m.residual = spec.parameters.number("residual_stiffness");
-  return build_membrane<CstTensionField>(
-      spec, context, m, [&](const Vec3& X0, const Vec3& X1, const Vec3& X2) {
-        return CstTensionField::rest(X0, X1, X2, m.young, m.poisson, m.thickness, m.prestress, m.residual);
-      });
+  return build_membrane<CstTensionField>(spec, context, elastic_properties, [](const MembraneElement& e) {
+    const MembraneProperties& m = e.properties;
+    return CstTensionField::rest(e.X0, e.X1, e.X2, m.young, m.poisson, m.thickness, m.prestress,
+                                 e.values.number("residual_stiffness", e.triangle));
+  });
 }
 
 std::vector<std::string> check_stvk(const Parameters& p) {
@@ -118,12 +76,14 @@ std::vector<KeySpec> elastic_keys(bool allows_zero_young) {
            .fallback = "0",
            .min = 0,
            .doc = "Isotropic stress resultant in the reference shape."},
-          region_key()};
+          region_key(),
+          triangle_values_key(),
+          vertex_values_key()};
 }
 
 std::vector<KeySpec> tension_field_keys() {
   std::vector<KeySpec> keys = elastic_keys(false);
-  keys.insert(keys.end() - 1, {.name = "residual_stiffness",
+  keys.insert(keys.end() - 3, {.name = "residual_stiffness",
                                .fallback = "0",
                                .min = 0,
                                .max = 1,

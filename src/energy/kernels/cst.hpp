@@ -22,15 +22,31 @@ struct CstShape {
   double area = 0;          // [length^2]
 };
 
-// Pre: the triangle is not degenerate (the mesh check refuses those).
-inline CstShape cst_shape(const Vec3& X0, const Vec3& X1, const Vec3& X2) {
-  const Vec3 e1 = X1 - X0, e2 = X2 - X0;
-  const Vec3 t1 = e1.normalized();
-  const Vec3 t2 = e1.cross(e2).cross(e1).normalized();
+// The first axis of the rest frame lies along the projection of `axis` onto the triangle's plane.
+// Pre: the triangle is not degenerate (the mesh check refuses those); axis is not normal to it.
+inline CstShape cst_shape(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& axis) {
+  const Vec3 e1 = X1 - X0, e2 = X2 - X0, normal = e1.cross(e2);
+  const Vec3 t2 = normal.cross(axis).normalized();
+  const Vec3 t1 = t2.cross(normal).normalized();
   Eigen::Matrix2d edges;
-  edges << e1.dot(t1), e2.dot(t1), 0, e2.dot(t2);
-  return {edges.inverse(), 0.5 * e1.cross(e2).norm()};
+  edges << e1.dot(t1), e2.dot(t1), e1.dot(t2), e2.dot(t2);
+  return {edges.inverse(), 0.5 * normal.norm()};
 }
+
+// The same with the first axis along the first edge.
+inline CstShape cst_shape(const Vec3& X0, const Vec3& X1, const Vec3& X2) {
+  return cst_shape(X0, X1, X2, X1 - X0);
+}
+
+// How a membrane that does not resist compression carries its load.
+enum class MembraneRegime { Slack = 0, Wrinkled = 1, Taut = 2 };
+
+// Stress of one triangle, for reports.
+struct MembraneState {
+  Eigen::Vector2d stress = Eigen::Vector2d::Zero();  // principal second Piola-Kirchhoff, larger first [MPa]
+  MembraneRegime regime = MembraneRegime::Slack;     // of a law that resists compression: what a tension
+                                                     // field would be
+};
 
 // An orthonormal frame of the rest plane: the shape gradients w (row k: edge vector k+1), the columns of F,
 // and in it stress and tangent.
@@ -68,6 +84,14 @@ inline CstStrain cst_strain(const CstFrame& frame) {
 struct CstPrincipal {
   double major = 0, minor = 0;
   double cosine = 1, sine = 0;  // of the double angle
+
+  // Of the major strain, a unit vector.
+  Eigen::Vector2d direction() const {
+    // Half the angle, from the half that is not small.
+    double c = std::sqrt(0.5 * (1 + std::abs(cosine))), s = 0.5 * sine / c;
+    if (cosine < 0) std::swap(c, s);
+    return {c, s};
+  }
 };
 
 inline CstPrincipal cst_principal(const CstStrain& e) {
@@ -79,9 +103,8 @@ inline CstPrincipal cst_principal(const CstStrain& e) {
 
 // The same triangle in the frame of the principal strains.
 inline CstFrame turned(const CstFrame& frame, const CstPrincipal& p) {
-  // Half the angle, from the half that is not small.
-  double c = std::sqrt(0.5 * (1 + std::abs(p.cosine))), s = 0.5 * p.sine / c;
-  if (p.cosine < 0) std::swap(c, s);
+  const Eigen::Vector2d major = p.direction();
+  const double c = major[0], s = major[1];
   Eigen::Matrix2d w;
   w.col(0) = frame.w.col(0) * c + frame.w.col(1) * s;
   w.col(1) = frame.w.col(1) * c - frame.w.col(0) * s;
@@ -129,6 +152,21 @@ inline void cst_hessian(const CstFrame& frame, const CstStress& s, const CstTang
   cst_hessian(frame.w, k11, k12, k22, H);
 }
 
+// The same with any tangent, rows and columns (E11, E22, 2 E12).
+inline void cst_hessian(const CstFrame& frame, const CstStress& s, const Eigen::Matrix3d& c, CstMatrix& H) {
+  const Vec3 &f1 = frame.f1, &f2 = frame.f2;
+  // dE11 = f1 . df1, dE22 = f2 . df2, 2 dE12 = f2 . df1 + f1 . df2.
+  Eigen::Matrix<double, 3, 3> d1, d2;
+  d1 << f1.transpose(), Vec3::Zero().transpose(), f2.transpose();
+  d2 << Vec3::Zero().transpose(), f2.transpose(), f1.transpose();
+  const Eigen::Matrix3d c1 = c * d1, c2 = c * d2;
+  Eigen::Matrix3d k11 = d1.transpose() * c1, k12 = d1.transpose() * c2, k22 = d2.transpose() * c2;
+  k11.diagonal().array() += s.s11;
+  k22.diagonal().array() += s.s22;
+  k12.diagonal().array() += s.s12;
+  cst_hessian(frame.w, k11, k12, k22, H);
+}
+
 // The nearest positive semidefinite matrix [[a, b], [b, c]].
 struct Symmetric2 {
   double a = 0, b = 0, c = 0;
@@ -147,11 +185,12 @@ inline Symmetric2 clamped(const Symmetric2& m) {
 // zero. In that frame F = (s1 u1, s2 u2), s1 >= s2, and the eigenspaces are known: the stretches of u1 and
 // u2 (a 2x2 block), the symmetric and skew exchange of u1 and u2, and the tilts of f1 and f2 out of the
 // plane, whose eigenvalues are the stresses. Adapted to 3x2 from Smith et al. 2019 (analytic eigensystems
-// for isotropic distortion energies). Pre: s.s12 = 0, and `shear` = (S1 - S2) / (2 (E1 - E2)) >= 0.
+// for isotropic distortion energies). Pre: s.s12 = 0, and `shear` = (S1 - S2) / (2 (E1 - E2)).
 inline void cst_hessian_projected(const CstFrame& frame, const CstStress& s, const CstTangent& c,
                                   CstMatrix& H) {
-  // With tension both ways nothing is negative.
-  if (s.s11 >= 0 && s.s22 >= 0) return cst_hessian(frame, s, c, H);
+  // With tension both ways and a tangent that is positive nothing is negative.
+  if (s.s11 >= 0 && s.s22 >= 0 && c.c11 >= 0 && c.c11 * c.c22 >= c.c12 * c.c12 && c.shear >= 0)
+    return cst_hessian(frame, s, c, H);
   const double s1 = frame.f1.norm(), s2 = frame.f2.norm();
   const Vec3 u1 = s1 > 0 ? Vec3(frame.f1 / s1) : Vec3(Vec3::UnitX());
   Vec3 u2 = frame.f2 - u1.dot(frame.f2) * u1;

@@ -23,6 +23,7 @@ struct CstStVK {
     double lambda = 0;      // A h lambda [force x length]
     double mu = 0;          // A h mu [force x length]
     double prestress = 0;   // A s [force x length]
+    double volume = 0;      // A h [length^3]; 0 for a membrane of prestress alone, whose stress is not defined
   };
 
   // young, prestress resultant and thickness as above; poisson in (-1, 0.5]. X: corner positions at rest.
@@ -31,7 +32,22 @@ struct CstStVK {
                    double thickness, double prestress = 0) {
     const CstShape shape = cst_shape(X0, X1, X2);
     return {shape.inverse, shape.area * thickness * young * poisson / (1 - poisson * poisson),
-            shape.area * thickness * young / (2 * (1 + poisson)), shape.area * prestress};
+            shape.area * thickness * young / (2 * (1 + poisson)), shape.area * prestress,
+            shape.area * thickness};
+  }
+
+  // The regime is that in which a tension field of the same law would be.
+  static MembraneState state(const Rest& rest, const CstVector& x) {
+    const CstStrain e = cst_strain(cst_frame(rest.shape, x));
+    const CstStress s = stress(rest, e);
+    const CstPrincipal p = cst_principal({s.s11, s.s22, s.s12}), strain = cst_principal(e);
+    const double volume = rest.volume, shifted = 2 * (rest.lambda + rest.mu);
+    const double shift = shifted > 0 ? rest.prestress / shifted : 0;
+    const MembraneRegime regime = p.minor >= -1e-14 * shifted ? MembraneRegime::Taut
+                                  : strain.major + shift > 0  ? MembraneRegime::Wrinkled
+                                                              : MembraneRegime::Slack;
+    if (volume == 0) return {Eigen::Vector2d::Zero(), regime};
+    return {{p.major / volume, p.minor / volume}, regime};
   }
 
   static double energy(const Rest& rest, const CstStrain& e) {

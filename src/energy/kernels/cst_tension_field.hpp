@@ -16,8 +16,6 @@
 
 namespace coapt {
 
-enum class MembraneRegime { Slack = 0, Wrinkled = 1, Taut = 2 };
-
 struct CstTensionField {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "cst_tension_field";
@@ -43,11 +41,11 @@ struct CstTensionField {
     return regime(rest, cst_principal(cst_strain(cst_frame(rest.stvk.shape, x))));
   }
 
-  // Principal stress (times rest area and thickness), major direction first [force x length].
-  static Eigen::Vector2d principal_stress(const Rest& rest, const CstVector& x) {
+  static MembraneState state(const Rest& rest, const CstVector& x) {
     const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.stvk.shape, x)));
-    const CstStress s = blend(rest, p, regime(rest, p)).stress;
-    return {s.s11, s.s22};
+    const MembraneRegime now = regime(rest, p);
+    const CstStress s = blend(rest, p, now).stress;
+    return {{s.s11 / rest.stvk.volume, s.s22 / rest.stvk.volume}, now};
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {

@@ -66,6 +66,19 @@ std::optional<double> read_quantity(const Item& item) {
   }
 }
 
+std::optional<std::vector<double>> read_quantities(const Item& item) {
+  if (!item.json.is_array() || item.json.empty()) {
+    item.refuse_type("a list");
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  for (size_t k = 0; k < item.json.size(); ++k)
+    if (const auto value =
+            read_quantity({item.json[k], item.key, item.where + "[" + std::to_string(k) + "]", item.reading}))
+      values.push_back(*value);
+  return values.size() == item.json.size() ? std::optional(values) : std::nullopt;
+}
+
 std::optional<double> read_integer(const Item& item) {
   if (!item.json.is_number_integer()) {
     item.refuse_type("a whole number");
@@ -187,6 +200,8 @@ void read_value(const Item& item, Parameters& values) {
   switch (item.key.kind) {
     case KeyKind::Quantity:
       return keep(read_quantity(item));
+    case KeyKind::Quantities:
+      return keep(read_quantities(item));
     case KeyKind::Integer:
       return keep(read_integer(item));
     case KeyKind::Flag:

@@ -1,0 +1,204 @@
+// Membrane on a constant-strain triangle of any law with a fibre direction (energy/laws/fibrous.hpp), in plane
+// stress.
+//   W = V w(C),   V = A h volume at rest [length^3], C right Cauchy-Green tensor, first axis along the fibre
+// Relaxed to a tension field it wrinkles instead of being compressed, which costs nothing:
+//   W = V min w(C + P) over all P >= 0 (what wrinkles hide)
+//   taut      no compression in any direction: P = 0
+//   wrinkled  P = a a^T with stress(C + a a^T) a = 0, found by Newton in the two entries of a: tension along
+//             one direction, which is that of least strain only where the law is isotropic
+//   slack     both principal stretches are at most 1: C + P = I, no stress
+// By the envelope theorem the stress is that of C + P; the tangent is condensed by the same two unknowns, so
+// both derivatives are exact. The relaxed W is continuously differentiable and its Hessian jumps at the
+// borders. Sources: Pipkin 1986, Steigmann 1990; Epstein 1999 (anisotropic membranes). Never throws; infinite
+// where an exponential overflows.
+#pragma once
+
+#include "energy/kernels/cst.hpp"
+#include "energy/laws/fibrous.hpp"
+#include "energy/term.hpp"
+
+namespace coapt {
+
+template <typename Law>
+struct FibrousName;
+template <>
+struct FibrousName<OrthotropicLaw> {
+  static constexpr std::string_view kType = "cst_orthotropic";
+};
+template <>
+struct FibrousName<MayNewmanYinLaw> {
+  static constexpr std::string_view kType = "cst_may_newman_yin";
+};
+template <>
+struct FibrousName<CrimpedFibreLaw> {
+  static constexpr std::string_view kType = "cst_crimped_fibre";
+};
+
+// Stress and tangent with the negative parts set to zero: a positive semidefinite d2W/dF2.
+void make_positive(PlaneEnergy& w);
+
+// The least eigenvalue of [[a, b], [b, c]] and its direction.
+struct LeastDirection {
+  double value = 0;
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
+};
+LeastDirection least_direction(double a, double c, double b);
+
+template <typename Law>
+struct CstFibrous {
+  static constexpr int kNodes = 3;
+  static constexpr std::string_view kType = FibrousName<Law>::kType;
+  static constexpr TermRole kRole = TermRole::Internal;
+
+  struct Rest {
+    Eigen::Matrix2d shape;  // D_X^-1, first axis along the fibre [1/length]
+    double volume = 0;      // V
+    bool relaxes = true;    // a tension field
+    Law law;
+  };
+
+  // fibre: its projection onto the triangle's plane is the first axis. Pre: the rest triangle is not degenerate, thickness > 0.
+  static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& fibre, const Law& law,
+                   double thickness, bool relaxes = true) {
+    const CstShape shape = cst_shape(X0, X1, X2, fibre);
+    return {shape.inverse, shape.area * thickness, relaxes, law};
+  }
+
+  // The same element with its knees rounded over at least this strain.
+  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.fibre_knee; } {
+    rest.law.fibre_knee.window = std::max(rest.law.fibre_knee.window, share);
+    rest.law.cross_knee.window = std::max(rest.law.cross_knee.window, share);
+    return rest;
+  }
+
+  static MembraneState state(const Rest& rest, const CstVector& x) {
+    const Response at = respond(rest, cst_strain(cst_frame(rest.shape, x)));
+    const CstPrincipal p = cst_principal({at.w.stress[0], at.w.stress[1], at.w.stress[2]});
+    return {{p.major, p.minor}, at.regime};
+  }
+
+  static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    return evaluate(rest, x, g, H, false);
+  }
+
+  // With the negative eigenvalues of stress and tangent set to zero: positive semidefinite, though not the
+  // nearest such matrix.
+  static double evaluate_projected(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    return evaluate(rest, x, g, H, true);
+  }
+
+ private:
+  static constexpr double kRoundOff = 1e-14;  // of the stiffness: stress below it counts as none
+
+  struct Response {
+    PlaneEnergy w;
+    MembraneRegime regime = MembraneRegime::Slack;
+  };
+
+  // C, in the axes of the fibre.
+  struct Metric {
+    double c11, c22, c12;
+    Metric widened(const Eigen::Vector2d& a) const {
+      return {c11 + a[0] * a[0], c22 + a[1] * a[1], c12 + a[0] * a[1]};
+    }
+  };
+
+  static PlaneEnergy at(const Law& law, const Metric& c) { return law.evaluate(c.c11, c.c22, c.c12); }
+
+  static Response respond(const Rest& rest, const CstStrain& e) {
+    const Metric c{1 + 2 * e.e11, 1 + 2 * e.e22, 2 * e.e12};
+    const double widest = 1 + 2 * cst_principal(e).major;
+    if (rest.relaxes && widest < 1 - kRoundOff) return {};
+    // A facet all but collapsed is compressed; its stress would only overflow.
+    constexpr double kCollapsed = 1e-6;
+    if (c.c11 * c.c22 - c.c12 * c.c12 > kCollapsed || !rest.relaxes) {
+      const PlaneEnergy w = at(rest.law, c);
+      const LeastDirection least = least_direction(w.stress[0], w.stress[1], w.stress[2]);
+      const bool is_taut = least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
+      if (is_taut || !rest.relaxes)
+        return {w, is_taut      ? MembraneRegime::Taut
+                   : widest > 1 ? MembraneRegime::Wrinkled
+                                : MembraneRegime::Slack};
+    }
+    return widest > 1 ? wrinkled(rest.law, c) : Response{};
+  }
+
+  // Of C + a a^T: dE = (a da^T + da a^T)/2, as rows (E11, E22, 2 E12).
+  static Eigen::Matrix<double, 3, 2> widening(const Eigen::Vector2d& a) {
+    Eigen::Matrix<double, 3, 2> m;
+    m << a[0], 0, 0, a[1], a[1], a[0];
+    return m;
+  }
+
+  static Eigen::Vector2d traction(const PlaneEnergy& w, const Eigen::Vector2d& a) {
+    return {w.stress[0] * a[0] + w.stress[2] * a[1], w.stress[2] * a[0] + w.stress[1] * a[1]};
+  }
+
+  // Second derivative of w(C + a a^T) by a.
+  static Eigen::Matrix2d stiffness(const PlaneEnergy& w, const Eigen::Matrix<double, 3, 2>& m) {
+    Eigen::Matrix2d k = m.transpose() * w.tangent * m;
+    k(0, 0) += w.stress[0];
+    k(1, 1) += w.stress[1];
+    k(0, 1) += w.stress[2];
+    k(1, 0) += w.stress[2];
+    return k;
+  }
+
+  // Pre: one principal stretch of C exceeds 1, and C is compressed in some direction.
+  static Response wrinkled(const Law& law, const Metric& c) {
+    // The first guess widens the narrow direction to what a strip of constant volume would have.
+    const LeastDirection narrow = least_direction(c.c11, c.c22, c.c12);
+    const double wide = c.c11 + c.c22 - narrow.value;
+    const double missing = std::max(1 / std::sqrt(wide) - narrow.value, 1e-3 * (1 - narrow.value));
+    Eigen::Vector2d a = std::sqrt(std::max(missing, 1e-16)) * narrow.direction;
+    PlaneEnergy w = at(law, c.widened(a));
+    constexpr int kMost = 60;
+    for (int k = 0; k < kMost; ++k) {
+      const Eigen::Vector2d g = traction(w, a);
+      Eigen::Matrix2d h = stiffness(w, widening(a));
+      // Made positive where it is not, so that the step descends.
+      const LeastDirection least = least_direction(h(0, 0), h(1, 1), h(0, 1));
+      const double greatest = h.trace() - least.value;
+      if (least.value <= 1e-12 * greatest) h.diagonal().array() += 1e-6 * greatest - least.value;
+      const Eigen::Vector2d step = -h.inverse() * g;
+      if (!(step.norm() > 1e-15 * a.norm())) break;
+      double length = 1;
+      PlaneEnergy next = at(law, c.widened(a + step));
+      // Within round-off of the energy the stress decides.
+      const auto is_worse = [&](const PlaneEnergy& trial, const Eigen::Vector2d& there) {
+        return !(trial.energy < w.energy) && !(traction(trial, there).norm() < g.norm());
+      };
+      while (is_worse(next, a + length * step) && length > 1e-6) {
+        length *= 0.5;
+        next = at(law, c.widened(a + length * step));
+      }
+      if (is_worse(next, a + length * step)) break;
+      a += length * step;
+      w = next;
+    }
+    // Condensed: the wrinkles follow the strain.
+    const Eigen::Matrix<double, 3, 2> m = w.tangent * widening(a);
+    const Eigen::Matrix2d h = stiffness(w, widening(a));
+    if (h.determinant() > 0) w.tangent -= m * h.inverse() * m.transpose();
+    return {w, MembraneRegime::Wrinkled};
+  }
+
+  static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H, bool projects) {
+    const CstFrame frame = cst_frame(rest.shape, x);
+    Response at = respond(rest, cst_strain(frame));
+    PlaneEnergy& w = at.w;
+    const double V = rest.volume, energy = V * w.energy;
+    if (g == nullptr) return energy;
+    cst_gradient(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, *g);
+    if (H == nullptr) return energy;
+    if (projects) make_positive(w);
+    cst_hessian(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, Eigen::Matrix3d(V * w.tangent), *H);
+    return energy;
+  }
+};
+
+using CstOrthotropic = CstFibrous<OrthotropicLaw>;
+using CstMayNewmanYin = CstFibrous<MayNewmanYinLaw>;
+using CstCrimpedFibre = CstFibrous<CrimpedFibreLaw>;
+
+}  // namespace coapt

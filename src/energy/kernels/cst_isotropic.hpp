@@ -1,0 +1,165 @@
+// Membrane on a constant-strain triangle of any isotropic law (energy/laws/isotropic.hpp), in plane stress.
+//   W = V w(l1, l2),   V = A h volume at rest [length^3], l1 >= l2 the principal stretches
+// Relaxed to a tension field it wrinkles instead of being compressed, which costs nothing:
+//   taut      dw/dl2 >= 0                 W = V w(l1, l2)
+//   wrinkled  l1 > 1, dw/dl2 < 0          W = V w(l1, l), l the width at which dw/dl2 (l1, l) = 0
+//   slack     l1 <= 1                     W = 0
+// The relaxed W is continuously differentiable, its second derivatives are exact in each regime and jump at
+// the borders; the stress is never compressive. Sources: Pipkin 1986 (relaxed energies of membranes),
+// Steigmann 1990. Never throws; infinite where an exponential overflows.
+#pragma once
+
+#include "energy/kernels/cst.hpp"
+#include "energy/laws/isotropic.hpp"
+#include "energy/term.hpp"
+
+namespace coapt {
+
+template <typename Law>
+struct IsotropicName;
+template <>
+struct IsotropicName<BilinearLaw> {
+  static constexpr std::string_view kType = "cst_bilinear";
+};
+template <>
+struct IsotropicName<NeoHookeanLaw> {
+  static constexpr std::string_view kType = "cst_neo_hookean";
+};
+template <>
+struct IsotropicName<ExponentialLaw> {
+  static constexpr std::string_view kType = "cst_exponential";
+};
+
+template <typename Law>
+struct CstIsotropic {
+  static constexpr int kNodes = 3;
+  static constexpr std::string_view kType = IsotropicName<Law>::kType;
+  static constexpr TermRole kRole = TermRole::Internal;
+
+  struct Rest {
+    Eigen::Matrix2d shape;  // D_X^-1 [1/length]
+    double volume = 0;      // V
+    bool relaxes = true;    // a tension field
+    Law law;
+  };
+
+  // Pre: the rest triangle is not degenerate (the mesh check refuses those), thickness > 0.
+  static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Law& law, double thickness,
+                   bool relaxes = true) {
+    const CstShape shape = cst_shape(X0, X1, X2);
+    return {shape.inverse, shape.area * thickness, relaxes, law};
+  }
+
+  static MembraneState state(const Rest& rest, const CstVector& x) {
+    const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.shape, x)));
+    const Principal at = respond(rest, p);
+    return {{at.stress.s11, at.stress.s22}, at.regime};
+  }
+
+  static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    return evaluate(rest, x, g, H, false);
+  }
+
+  // With the negative eigenvalues of d2W/dF2 set to zero.
+  static double evaluate_projected(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
+    return evaluate(rest, x, g, H, true);
+  }
+
+  // The same element with its knee rounded over at least this strain.
+  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.knee; } {
+    rest.law.knee.window = std::max(rest.law.knee.window, share);
+    return rest;
+  }
+
+ private:
+  // Stress across the width below this share of the stiffness is round-off; a membrane at rest so counts as
+  // taut, and has its stiffness.
+  static constexpr double kRoundOff = 1e-14;
+  static constexpr double kThinnest = 1e-9;  // stretch below which a collapsed direction is kept finite
+
+  // The law in the frame of the principal strains, per volume.
+  struct Principal {
+    double energy = 0;
+    CstStress stress;
+    CstTangent tangent;
+    MembraneRegime regime = MembraneRegime::Slack;
+  };
+
+  static double stretch(double strain) { return std::sqrt(std::max(0.0, 1 + 2 * strain)); }
+
+  static Principal full(const StretchEnergy& w, double l1, double l2, MembraneRegime regime) {
+    const double s1 = w.w1 / l1, s2 = w.w2 / l2;
+    const double c11 = (w.w11 - s1) / (l1 * l1), c22 = (w.w22 - s2) / (l2 * l2), c12 = w.w12 / (l1 * l2);
+    // Equal stretches leave 0/0; their mean tangent is the limit, with an error of second order.
+    constexpr double kEqual = 1e-5;
+    const double shear =
+        l1 - l2 > kEqual * l1 ? (s1 - s2) / (l1 * l1 - l2 * l2) : 0.25 * (c11 + c22 - 2 * c12);
+    return {w.energy, {s1, s2, 0}, {c11, c22, c12, shear}, regime};
+  }
+
+  // The width at which a strip stretched by l1 > 1 is free, by Newton.
+  static double free_width(const Law& law, double l1) {
+    double l2 = std::max(law.free_width(l1), kThinnest);
+    constexpr int kMost = 50;
+    for (int k = 0; k < kMost; ++k) {
+      const StretchEnergy w = law.evaluate(l1, l2);
+      const double next = l2 - w.w2 / w.w22;
+      // Not beyond the rest width, nor to less than half: dw/dl2 is positive at 1 and convex below.
+      const double kept = std::clamp(next, 0.5 * l2, 1.0);
+      const bool is_there = std::abs(kept - l2) <= 1e-15 * l2;
+      l2 = kept;
+      if (is_there) break;
+    }
+    return l2;
+  }
+
+  static Principal respond(const Rest& rest, const CstPrincipal& p) {
+    const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
+    const bool may_be_taut = !rest.relaxes || l1 > 1 - kRoundOff;
+    if (may_be_taut) {
+      const StretchEnergy w = rest.law.evaluate(l1, l2);
+      const bool is_taut = w.w2 >= -kRoundOff * w.w22;
+      if (is_taut || !rest.relaxes)
+        return full(w, l1, l2,
+                    is_taut  ? MembraneRegime::Taut
+                    : l1 > 1 ? MembraneRegime::Wrinkled
+                             : MembraneRegime::Slack);
+    }
+    if (l1 <= 1) return {};
+    const double l = free_width(rest.law, l1);
+    const StretchEnergy w = rest.law.evaluate(l1, l);
+    Principal wrinkled{w.energy, {w.w1 / l1, 0, 0}, {}, MembraneRegime::Wrinkled};
+    const double along = w.w11 - w.w12 * w.w12 / w.w22;
+    wrinkled.tangent.c11 = (along - wrinkled.stress.s11) / (l1 * l1);
+    // Turning the major direction; l1 > 1 > l2.
+    wrinkled.tangent.shear = wrinkled.stress.s11 / (l1 * l1 - l2 * l2);
+    return wrinkled;
+  }
+
+  static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H, bool projects) {
+    const CstFrame frame = cst_frame(rest.shape, x);
+    const CstPrincipal p = cst_principal(cst_strain(frame));
+    Principal at = respond(rest, p);
+    const double V = rest.volume;
+    if (g == nullptr) return V * at.energy;
+    // S = mean I + half (n n^T - t t^T), with n the major direction and t across it.
+    const double mean = 0.5 * V * (at.stress.s11 + at.stress.s22),
+                 half = 0.5 * V * (at.stress.s11 - at.stress.s22);
+    cst_gradient(frame, {mean + half * p.cosine, mean - half * p.cosine, half * p.sine}, *g);
+    if (H == nullptr) return V * at.energy;
+    const CstStress stress{V * at.stress.s11, V * at.stress.s22, 0};
+    const CstTangent tangent{V * at.tangent.c11, V * at.tangent.c22, V * at.tangent.c12,
+                             V * at.tangent.shear};
+    if (projects)
+      cst_hessian_projected(turned(frame, p), stress, tangent, *H);
+    else
+      cst_hessian(turned(frame, p), stress, tangent, *H);
+    return V * at.energy;
+  }
+};
+
+using CstBilinear = CstIsotropic<BilinearLaw>;
+using CstNeoHookean = CstIsotropic<NeoHookeanLaw>;
+using CstExponential = CstIsotropic<ExponentialLaw>;
+
+}  // namespace coapt

@@ -1,0 +1,142 @@
+// Membrane laws with a fibre direction, in plane stress, as functions of the right Cauchy-Green tensor C in
+// axes of which the first lies along the fibre. Energies are per volume at rest [stress]; each is least, and
+// free of stress, at C = I alone. A law gives
+//   evaluate(c11, c22, c12)   energy, second Piola-Kirchhoff stress and tangent (E11, E22, 2 E12)
+//   initial_young(), initial_poisson()   of the isotropic membrane that comes nearest at small strain
+#pragma once
+
+#include "energy/laws/crimped_fibre.hpp"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace coapt {
+
+// Energy and its derivatives by the Green strains (E11, E22, 2 E12).
+struct PlaneEnergy {
+  double energy = 0;
+  Eigen::Vector3d stress = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d tangent = Eigen::Matrix3d::Zero();
+};
+
+// A function of C and its derivatives by (E11, E22, 2 E12).
+struct PlaneInvariant {
+  double value = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+};
+
+// I1 = tr C + 1/det C of an incompressible membrane.
+inline PlaneInvariant first_invariant(double c11, double c22, double c12) {
+  const double thin = 1 / (c11 * c22 - c12 * c12);
+  const Eigen::Vector3d slope(2 * c22, 2 * c11, -2 * c12);  // of det C
+  PlaneInvariant i{c11 + c22 + thin, Eigen::Vector3d(2, 2, 0) - thin * thin * slope,
+                   2 * thin * thin * thin * slope * slope.transpose()};
+  i.second(0, 1) -= 4 * thin * thin;
+  i.second(1, 0) -= 4 * thin * thin;
+  i.second(2, 2) += 2 * thin * thin;
+  return i;
+}
+
+// f(i): adds its energy and derivatives.
+inline void add_composed(const CurveValue& f, const PlaneInvariant& i, PlaneEnergy& sum) {
+  sum.energy += f.energy;
+  sum.stress += f.stress * i.first;
+  sum.tangent += f.stiffness * i.first * i.first.transpose() + f.stress * i.second;
+}
+
+// sqrt(k11 C11 + k22 C22): the stretch along the fibre (1, 0), across it (0, 1), or the root mean square of
+// fibres spread about it.
+inline PlaneInvariant stretch_of(double k11, double k22, double c11, double c22) {
+  const double l = std::sqrt(k11 * c11 + k22 * c22);
+  const Eigen::Vector3d slope(k11 / l, k22 / l, 0);
+  return {l, slope, -slope * slope.transpose() / l};
+}
+
+// A bilinear curve along the fibre and one across it, with strains e = stretch - 1 in those directions:
+//   W = (E_f e_f^2 + E_c e_c^2 + 2 nu sqrt(E_f E_c) e_f e_c) / (2 (1 - nu^2)) + phi_f(e_f) + phi_c(e_c)
+//       + G/2 C12^2
+// E_f, E_c the moduli before the knees; uniaxial tension along either direction follows its curve exactly up
+// to the other's knee. Source: Hammer et al. 2011 (the two curves, there of springs); coupling and shear are
+// our own.
+struct OrthotropicLaw {
+  double fibre_young = 0, cross_young = 0;  // E_f, E_c [stress]
+  BilinearKnee fibre_knee, cross_knee;
+  double poisson = 0;        // nu
+  double shear_modulus = 0;  // G [stress]
+
+  PlaneEnergy evaluate(double c11, double c22, double c12) const {
+    const PlaneInvariant f = stretch_of(1, 0, c11, c22), c = stretch_of(0, 1, c11, c22);
+    const double ef = f.value - 1, ec = c.value - 1, share = 1 / (1 - poisson * poisson);
+    const double k = poisson * share * std::sqrt(fibre_young * cross_young);
+    PlaneEnergy sum;
+    const auto add = [&](double young, const BilinearKnee& knee, double own, double other,
+                         const PlaneInvariant& stretch) {
+      const CurveValue past = knee.at(own);
+      // Half of the coupled energy each.
+      add_composed({0.5 * share * young * own * own + 0.5 * k * own * other + past.energy,
+                    share * young * own + k * other + past.stress, share * young + past.stiffness},
+                   stretch, sum);
+    };
+    add(fibre_young, fibre_knee, ef, ec, f);
+    add(cross_young, cross_knee, ec, ef, c);
+    const Eigen::Matrix3d mixed = k * f.first * c.first.transpose();
+    sum.tangent += mixed + mixed.transpose();
+    sum.energy += 0.5 * shear_modulus * c12 * c12;
+    sum.stress[2] += shear_modulus * c12;
+    sum.tangent(2, 2) += shear_modulus;
+    return sum;
+  }
+  double initial_young() const { return std::sqrt(fibre_young * cross_young); }
+  double initial_poisson() const { return poisson; }
+};
+
+// W = c0 (exp(Q) - 1),  Q = c1 (I1 - 3)^2 + c2 (l_f - 1)^4,  incompressible; l_f stretch along the fibre.
+// Without stiffness at rest. Source: May-Newman & Yin 1998.
+struct MayNewmanYinLaw {
+  double c0 = 0;  // [stress]
+  double c1 = 0, c2 = 0;
+
+  PlaneEnergy evaluate(double c11, double c22, double c12) const {
+    const PlaneInvariant i = first_invariant(c11, c22, c12), l = stretch_of(1, 0, c11, c22);
+    const double j = i.value - 3, e = l.value - 1;
+    PlaneEnergy q;
+    add_composed({c1 * j * j, 2 * c1 * j, 2 * c1}, i, q);
+    add_composed({c2 * e * e * e * e, 4 * c2 * e * e * e, 12 * c2 * e * e}, l, q);
+    const double grown = c0 * std::exp(q.energy);
+    return {c0 * std::expm1(q.energy), grown * q.stress,
+            grown * (q.tangent + q.stress * q.stress.transpose())};
+  }
+  // There is none at rest: the secant of a strip pulled along the fibre by a tenth.
+  double initial_young() const {
+    const double l = 1.1, e = l - 1, j = l * l + 2 / l - 3;
+    const double q = c1 * j * j + c2 * e * e * e * e;
+    return c0 * std::exp(q) * (2 * c1 * j * 2 * (l - 1 / (l * l)) + 4 * c2 * e * e * e) / e;
+  }
+  double initial_poisson() const { return 0.5; }
+};
+
+// Crimped fibres in an incompressible neo-Hookean matrix:
+//   W = mu/2 (I1 - 3) + w(l_f),   l_f^2 = K : C,   K = (1 + exp(-2 s^2))/2 along, (1 - exp(-2 s^2))/2 across
+// w of the crimped fibre (energy/laws/crimped_fibre.hpp); s the splay, the standard deviation of the fibres'
+// angles in the plane [rad]. Sources: Freed, Einstein & Vesely 2005 (splay), Toma et al. 2016.
+struct CrimpedFibreLaw {
+  double shear_modulus = 0;  // mu [stress]
+  CrimpedFibre fibre;
+  double splay = 0;
+
+  PlaneEnergy evaluate(double c11, double c22, double c12) const {
+    const double spread = std::exp(-2 * splay * splay);
+    const PlaneInvariant i = first_invariant(c11, c22, c12),
+                         l = stretch_of(0.5 * (1 + spread), 0.5 * (1 - spread), c11, c22);
+    PlaneEnergy sum;
+    add_composed({0.5 * shear_modulus * (i.value - 3), 0.5 * shear_modulus, 0}, i, sum);
+    add_composed(fibre.at(l.value - 1), l, sum);
+    return sum;
+  }
+  double initial_young() const { return 3 * shear_modulus; }
+  double initial_poisson() const { return 0.5; }
+};
+
+}  // namespace coapt

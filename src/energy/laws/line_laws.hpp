@@ -1,0 +1,67 @@
+// Nonlinear laws of a line in uniaxial tension: energy per volume at rest, nominal stress (force per area at
+// rest) and its slope, as functions of the elongation e = l - 1 >= 0, where the stress vanishes at e = 0.
+#pragma once
+
+#include "energy/laws/crimped_fibre.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace coapt {
+
+// Stress E_pre e up to the knee, slope E_post beyond. Source: Hammer et al. 2008.
+struct BilinearLine {
+  double young = 0;   // E_pre [stress]
+  BilinearKnee knee;  // modulus E_post - E_pre
+
+  CurveValue at(double e) const {
+    const CurveValue past = knee.at(e);
+    return {0.5 * young * e * e + past.energy, young * e + past.stress, young + past.stiffness};
+  }
+};
+
+// Incompressible Ogden law of up to three terms in uniaxial tension:
+//   W = sum 2 mu_i/alpha_i^2 (l^alpha_i + 2 l^(-alpha_i/2) - 3)
+// mu_i [stress]; the initial shear modulus is their sum. Source: Ogden 1972, in the form of finite-element
+// codes. alpha_i != 0 where mu_i != 0.
+struct OgdenLine {
+  static constexpr int kTerms = 3;
+  std::array<double, kTerms> mu{}, alpha{};
+
+  CurveValue at(double e) const {
+    const double ln = std::log1p(e), l = 1 + e;
+    CurveValue sum;
+    for (int k = 0; k < kTerms; ++k) {
+      if (mu[k] == 0) continue;
+      const double a = alpha[k] * ln, grown = std::expm1(a), shrunk = std::expm1(-0.5 * a);
+      const double factor = 2 * mu[k] / alpha[k];
+      sum.energy += factor / alpha[k] * sum_of_powers(a, grown, shrunk);
+      sum.stress += factor * (grown - shrunk) / l;
+      sum.stiffness += factor *
+                       ((alpha[k] - 1) * (1 + grown) + (0.5 * alpha[k] + 1) * (1 + shrunk)) / (l * l);
+    }
+    return sum;
+  }
+
+ private:
+  // exp(a) + 2 exp(-a/2) - 3, whose first terms cancel where a is small.
+  static double sum_of_powers(double a, double grown, double shrunk) {
+    constexpr double kSmall = 0.05;
+    if (std::abs(a) > kSmall) return grown + 2 * shrunk;
+    double term = 1, half = 2, sum = 0;
+    for (int k = 1; k <= 10; ++k) {
+      term *= a / k;
+      half *= -0.5;
+      if (k > 1) sum += term * (1 + half);
+    }
+    return sum;
+  }
+};
+
+// A bundle of crimped fibres.
+struct CrimpedLine {
+  CrimpedFibre fibre;
+  CurveValue at(double e) const { return fibre.at(e); }
+};
+
+}  // namespace coapt
