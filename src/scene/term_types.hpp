@@ -35,6 +35,10 @@ struct BuildContext {
   // How many nodes of the scene's own mesh stand in the place of one here, on average: above 1 on a coarser
   // mesh. Of a selection, or of all mesh vertices.
   std::function<double(const NodeSelection*, const std::string& where)> multiplicity;
+  // Unit fibre direction of each mesh triangle, in its plane, 3 x triangle_count; the sign means nothing.
+  // Found on the first call (then also in Model::fibres); a term that never asks costs nothing. Throws
+  // InputError.
+  std::function<const Points&()> fibres;
 };
 
 using TermPointer = std::unique_ptr<EnergyTerm>;
