@@ -1,6 +1,7 @@
 #include "scene/build.hpp"
 
 #include "core/error.hpp"
+#include "scene/fibres.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/supports.hpp"
 #include "scene/term_types.hpp"
@@ -23,7 +24,9 @@ Model begun(const Groundwork& ground) {
 
 std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground, Model& model,
                                      std::vector<std::string>& defects) {
-  BuildContext context{model, ground.prescribed.fixed, ground.networks,
+  BuildContext context{model,
+                       ground.prescribed.fixed,
+                       ground.networks,
                        [&ground](const NodeSelection& selection, const std::string& where) {
                          return selected_nodes(selection, ground, where);
                        },
@@ -32,7 +35,11 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
                        },
                        scene_mesh(ground),
                        [&ground](const Vector& values) { return at_vertices(values, ground); },
-                       [&ground](const Vector& values) { return on_triangles(values, ground); }};
+                       [&ground](const Vector& values) { return on_triangles(values, ground); },
+                       [&]() -> const Points& {
+                         find_fibres(scene, ground, model);
+                         return model.fibres;
+                       }};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
@@ -44,6 +51,11 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
         defects.insert(defects.end(), error.defects().begin(), error.defects().end());
       }
     }
+  try {
+    if (scene.fibres) context.fibres();
+  } catch (const InputError& error) {
+    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+  }
   return terms;
 }
 

@@ -1,10 +1,13 @@
 // Nodes, sets and supports of a scene, before it has terms. Private to this room.
 #pragma once
 
+#include "mesh/fibre_field.hpp"
 #include "scene/prescribed_motion.hpp"
 #include "scene/term_types.hpp"
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,9 @@ struct Groundwork {
   // of each node there (-1: it is gone).
   const Groundwork* finest = nullptr;
   std::vector<int> number = {};
+
+  // The fibres of the scene's own mesh once they were asked for, for the coarser meshes too.
+  std::shared_ptr<std::optional<FibreField>> fibres = std::make_shared<std::optional<FibreField>>();
 };
 
 // Reads the scene's files, checks the mesh and numbers the nodes. Throws InputError with all defects of

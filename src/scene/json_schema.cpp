@@ -79,6 +79,11 @@ OrderedJson value_schema(const KeySpec& key) {
                        {{"type", "array"}, {"items", point}, {"minItems", 2}, {"maxItems", 2}}};
       return line;
     }
+    case KeyKind::Direction: {
+      OrderedJson direction;
+      direction["anyOf"] = {{{"enum", {"along", "across"}}}, vector_schema({{"type", "number"}})};
+      return direction;
+    }
     case KeyKind::Object:
       return object_schema(key.object);
     case KeyKind::Objects:

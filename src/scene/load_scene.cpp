@@ -69,6 +69,27 @@ std::vector<BoundaryEntry> boundary_from(const Parameters& scene, double mesh_sc
   return entries;
 }
 
+std::optional<SceneFibres> fibres_from(const Parameters& scene, Reading& reading) {
+  if (!scene.has("fibres")) return std::nullopt;
+  const Parameters& values = scene.object("fibres");
+  SceneFibres fibres;
+  fibres.where = values.where();
+  if (values.has("defaults")) fibres.defaults = values.text("defaults");
+  fibres.joins_regions = values.has("join_regions") && values.flag("join_regions");
+  if (values.has("file")) fibres.file = values.text("file");
+  if (values.has("directions"))
+    for (const Parameters& entry : values.objects("directions"))
+      if (entry.has("nodes") && entry.has("direction"))
+        fibres.entries.push_back({entry.where(), entry.nodes("nodes"), entry.direction("direction")});
+  if (fibres.file && values.has("directions"))
+    reading.defects.push_back(fibres.where +
+                              ": has `file` and `directions`; a file gives every triangle its "
+                              "direction, keep one of them");
+  if (!scene.has("mesh"))
+    reading.defects.push_back(fibres.where + ": the scene has no mesh that fibres could lie in");
+  return fibres;
+}
+
 // Names default to the type; where several terms share it they are numbered from the second on.
 std::vector<TermSpec> terms_from(const Parameters& scene, Reading& reading) {
   std::vector<TermSpec> terms;
@@ -143,6 +164,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   scene.boundary = boundary_from(values, mesh_scale, reading);
   if (values.has("motion") && values.object("motion").has("steps"))
     scene.motion_steps = values.object("motion").integer("steps");
+  scene.fibres = fibres_from(values, reading);
   scene.terms = terms_from(values, reading);
   if (values.has("reference")) {
     const Parameters& reference = values.object("reference");

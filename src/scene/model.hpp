@@ -48,6 +48,9 @@ struct Model {
   Triangles obstacles = Triangles(3, 0);         // facets of all obstacles, by node number
   std::map<std::string, std::vector<int>> sets;  // named nodes, ordered where the source orders them
   std::vector<Line> lines;
+  Points fibres = Points(3, 0);  // unit fibre direction of each triangle, in its plane; the sign means
+                                 // nothing; no columns where nothing asks for fibres
+  Vector fibre_anisotropy;       // per triangle, see mesh/fibre_field.hpp; empty like fibres
   std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term
   std::vector<MembranePatch> membrane_patches;
   double film_tension = 0;                   // largest of the surface_tension terms [N/mm]

@@ -37,6 +37,9 @@ const std::vector<MoveTarget>& Parameters::targets(const std::string& key) const
   return get<std::vector<MoveTarget>>(key);
 }
 const LineThrough& Parameters::line(const std::string& key) const { return get<LineThrough>(key); }
+const SurfaceDirection& Parameters::direction(const std::string& key) const {
+  return get<SurfaceDirection>(key);
+}
 const std::map<std::string, NodeSelection>& Parameters::selections(const std::string& key) const {
   return get<std::map<std::string, NodeSelection>>(key);
 }

@@ -38,9 +38,16 @@ struct LineThrough {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // [mm]
 };
 
+// A direction in the surface: along or across a line of nodes, or a vector at each of them.
+struct SurfaceDirection {
+  enum class Kind { Along, Across, InSpace };
+  Kind kind = Kind::Along;
+  Vec3 vector = Vec3::Zero();  // of any length above zero
+};
+
 class Parameters;
 using ParameterValue = std::variant<double, bool, std::string, Vec3, std::vector<double>, std::vector<std::string>,
-                                    NodeSelection, std::vector<MoveTarget>, LineThrough,
+                                    NodeSelection, std::vector<MoveTarget>, LineThrough, SurfaceDirection,
                                     std::map<std::string, NodeSelection>, std::vector<Parameters>>;
 
 // Reading a key that is absent or of another kind is a defect of the calling code and throws
@@ -65,6 +72,7 @@ class Parameters {
   const NodeSelection& nodes(const std::string& key) const;
   const std::vector<MoveTarget>& targets(const std::string& key) const;
   const LineThrough& line(const std::string& key) const;
+  const SurfaceDirection& direction(const std::string& key) const;
   const std::map<std::string, NodeSelection>& selections(const std::string& key) const;
   const Parameters& object(const std::string& key) const;
   const std::vector<Parameters>& objects(const std::string& key) const;

@@ -48,6 +48,8 @@ std::string kind_text(const KeySpec& key) {
       return "file, name, `{\"translate\": [x, y, z]}`, or a list";
     case KeyKind::Line:
       return "[nodes](#nodes) or two points";
+    case KeyKind::Direction:
+      return "`\"along\"`, `\"across\"` or `[x, y, z]`";
     case KeyKind::Object:
       return "object";
     case KeyKind::Objects:

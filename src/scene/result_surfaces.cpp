@@ -1,5 +1,7 @@
 #include "scene/result_surfaces.hpp"
 
+#include "mesh/fibre_field.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,6 +96,11 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
     surface.triangle_arrays.push_back({"regime", regime, true});
     surface.triangle_arrays.push_back({"principal_stress_1_mpa", fields.principal_stress.row(0), false});
     surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
+  }
+  if (model.fibres.cols() > 0) {
+    surface.triangle_arrays.push_back(
+        {"fibre", carried(model.fibres, model.mesh.triangles, model.X, fields.x), false});
+    surface.triangle_arrays.push_back({"fibre_anisotropy", model.fibre_anisotropy.transpose(), false});
   }
   if (!model.mesh.regions.empty()) {
     Eigen::MatrixXd region(1, model.mesh.triangle_count());

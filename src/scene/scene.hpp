@@ -36,6 +36,20 @@ struct SceneObstacle {
   double scale = 1;  // mm per unit of the file
 };
 
+// Fibre directions in the membrane.
+struct FibreEntry {
+  std::string where;  // for messages
+  NodeSelection nodes;
+  SurfaceDirection direction;
+};
+struct SceneFibres {
+  std::string where;                          // for messages
+  std::string defaults = "auto";              // auto, valve, boundary, none
+  std::vector<FibreEntry> entries;            // later ones win, all over the defaults
+  std::optional<std::filesystem::path> file;  // one direction per triangle, instead of the others
+  bool joins_regions = false;
+};
+
 struct TermSpec {
   std::string type, name;  // the name is unique within the scene
   Parameters parameters;
@@ -64,6 +78,7 @@ struct Scene {
   std::vector<SceneObstacle> obstacles;
   std::vector<BoundaryEntry> boundary;
   int motion_steps = 0;  // 0 = no prescribed node moves by more than one mean edge length in a step
+  std::optional<SceneFibres> fibres;
   std::vector<TermSpec> terms;
   SolverSpec solver;
   std::optional<std::filesystem::path> closed_surface;  // reference

@@ -69,6 +69,52 @@ KeySpec boundary_key() {
           "(\"papillary\") are prescribed unless an entry says otherwise."};
 }
 
+KeySpec fibres_key() {
+  return {
+      .name = "fibres",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys =
+               {{.name = "defaults",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"auto\"",
+                 .choices = {"auto", "valve", "boundary", "none"},
+                 .doc =
+                     "What is known without being told. valve: along the annulus (the set \"annulus\"), "
+                     "across "
+                     "it at the trigones (the set \"trigones\", else \"commissures\", else where regions "
+                     "meet), "
+                     "along free edges, and as the chords pull where they end inside the leaflets; boundary: "
+                     "along every boundary; auto: valve where there is an annulus, else boundary."},
+                {.name = "directions",
+                 .kind = KeyKind::Objects,
+                 .object =
+                     {.keys = {{.name = "nodes",
+                                .kind = KeyKind::Nodes,
+                                .required = true,
+                                .doc = "Mesh vertices at which the direction is known."},
+                               {.name = "direction",
+                                .kind = KeyKind::Direction,
+                                .required = true,
+                                .doc = "Along or across the mesh edges that join these nodes (boundary edges "
+                                       "where there are any), or a vector, whose part in the surface "
+                                       "counts."}}},
+                 .doc = "Directions that are known; they win over the defaults, and later ones over earlier "
+                        "ones."},
+                {.name = "file",
+                 .kind = KeyKind::File,
+                 .doc = "CSV with one direction x, y, z for each triangle, instead of a computed field."},
+                {.name = "join_regions",
+                 .kind = KeyKind::Flag,
+                 .fallback = "false",
+                 .doc = "Whether directions pass from one region of the mesh to the next; otherwise each (a "
+                        "leaflet) "
+                        "has a field of its own."}}},
+      .doc =
+          "Fibre directions, found from known ones by Laplace's equation (Toma et al. 2016) and written to "
+          "`closed.vtp`. Terms that need fibres find them by these rules whether or not the key is there."};
+}
+
 KeySpec solver_key() {
   return {.name = "solver",
           .kind = KeyKind::Object,
@@ -201,6 +247,7 @@ const ObjectSpec& scene_spec() {
                               "Equal steps of the prescribed motion; default: one for each station of the "
                               "longest path. Free nodes are carried along, whatever the length of a step."}}},
            .doc = "How the prescribed nodes travel."},
+          fibres_key(),
           {.name = "terms",
            .kind = KeyKind::Terms,
            .required = true,

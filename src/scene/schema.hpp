@@ -16,18 +16,19 @@ enum class KeyKind {
   Integer,
   Flag,  // true or false
   Text,
-  Texts,     // one text or a list of them
-  Choice,    // one of `choices`
-  File,      // path of an existing file, relative to the scene's folder
-  Triple,    // three quantities
-  Axes,      // true, false, or a list of "x", "y", "z"
-  Nodes,     // node selection
-  NodeSets,  // object: name -> node selection
-  Targets,   // one target of a motion or a list of them
-  Line,      // two nodes or two points
-  Object,    // `keys`
-  Objects,   // list of objects with `keys`
-  Terms      // list of objects, each with the keys of its type
+  Texts,      // one text or a list of them
+  Choice,     // one of `choices`
+  File,       // path of an existing file, relative to the scene's folder
+  Triple,     // three quantities
+  Axes,       // true, false, or a list of "x", "y", "z"
+  Nodes,      // node selection
+  NodeSets,   // object: name -> node selection
+  Targets,    // one target of a motion or a list of them
+  Line,       // two nodes or two points
+  Direction,  // "along", "across" or a vector
+  Object,     // `keys`
+  Objects,    // list of objects with `keys`
+  Terms       // list of objects, each with the keys of its type
 };
 
 struct KeySpec;

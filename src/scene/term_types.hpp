@@ -39,6 +39,10 @@ struct BuildContext {
   // triangles, on those of the model.
   const TriangleMesh& scene_mesh;
   std::function<Vector(const Vector&)> at_vertices, on_triangles;
+  // Unit fibre direction of each mesh triangle, in its plane, 3 x triangle_count; the sign means nothing.
+  // Found on the first call (then also in Model::fibres); a term that never asks costs nothing. Throws
+  // InputError.
+  std::function<const Points&()> fibres;
 };
 
 using TermPointer = std::unique_ptr<EnergyTerm>;

@@ -31,5 +31,6 @@ std::optional<NodeSelection> read_nodes(const Item& item);
 std::optional<std::map<std::string, NodeSelection>> read_node_sets(const Item& item);
 std::optional<std::vector<MoveTarget>> read_targets(const Item& item);
 std::optional<LineThrough> read_line(const Item& item);
+std::optional<SurfaceDirection> read_direction(const Item& item);
 
 }  // namespace coapt

@@ -227,6 +227,8 @@ void read_value(const Item& item, Parameters& values) {
       return keep(read_targets(item));
     case KeyKind::Line:
       return keep(read_line(item));
+    case KeyKind::Direction:
+      return keep(read_direction(item));
     case KeyKind::Object:
       return values.set(item.key.name, std::vector<Parameters>{read_object(item.json, item.key.object,
                                                                            item.where, item.reading)});

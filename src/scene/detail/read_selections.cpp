@@ -1,4 +1,4 @@
-// Node selections, axes, targets of motions and lines.
+// Node selections, axes, targets of motions, lines and directions.
 #include "scene/detail/read_item.hpp"
 
 namespace coapt {
@@ -144,6 +144,22 @@ std::optional<LineThrough> read_line(const Item& item) {
   line.a = *a;
   line.b = *b;
   return line;
+}
+
+std::optional<SurfaceDirection> read_direction(const Item& item) {
+  if (item.json == "along") return SurfaceDirection{SurfaceDirection::Kind::Along, Vec3::Zero()};
+  if (item.json == "across") return SurfaceDirection{SurfaceDirection::Kind::Across, Vec3::Zero()};
+  if (!item.json.is_array()) {
+    item.refuse_type("\"along\", \"across\" or a vector [x, y, z]");
+    return std::nullopt;
+  }
+  const std::optional<Vec3> vector = read_vector(item);
+  if (!vector) return std::nullopt;
+  if (vector->isZero(0)) {
+    item.refuse("the vector is zero");
+    return std::nullopt;
+  }
+  return SurfaceDirection{SurfaceDirection::Kind::InSpace, *vector};
 }
 
 }  // namespace coapt
