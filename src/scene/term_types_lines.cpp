@@ -260,7 +260,13 @@ std::vector<TermType> line_term_types() {
                               knee_key(), area_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
-       .check = check_area,
+       .check =
+           [](const Parameters& p) {
+             Defects defects = check_area(p);
+             if (p.number("knee") > p.number("transition_strain"))
+               defects.push_back("knee: is greater than transition_strain; it must not reach the rest state");
+             return defects;
+           },
        .build = build_cable_bilinear},
       {.name = "cable_ogden",
        .summary = "Incompressible Ogden cables, sum of 2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3); tension "

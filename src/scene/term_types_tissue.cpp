@@ -135,6 +135,15 @@ KeySpec bulk_key() {
   return optional_modulus("bulk", "Bulk modulus: adds bulk/2 (J - 1)^2; without it the tissue is incompressible.");
 }
 
+// A window that reaches down to the strain at rest would leave the membrane stressed there.
+std::vector<std::string> check_window(const Parameters& p, std::initializer_list<const char*> knees) {
+  std::vector<std::string> defects;
+  for (const char* knee : knees)
+    if (p.number("smoothing") > p.number(knee))
+      defects.push_back(std::string("smoothing: is greater than ") + knee + "; it must not reach the rest state");
+  return defects;
+}
+
 std::vector<TermType> isotropic_types() {
   return {
       {.name = "cst_bilinear",
@@ -146,7 +155,7 @@ std::vector<TermType> isotropic_types() {
                                      positive("transition_strain", kDimensionless,
                                               "Engineering strain of the knee.", "0.25"),
                                      poisson_key(), smoothing_key(kKneeWindow)})},
-       .check = {},
+       .check = [](const Parameters& p) { return check_window(p, {"transition_strain"}); },
        .build = isotropic<&bilinear_law>},
       {.name = "cst_neo_hookean",
        .summary = "Rubber-like membrane: mu/2 (I1 - 3).",
@@ -183,7 +192,7 @@ std::vector<TermType> fibrous_types() {
                                       "Shear modulus; default: sqrt(E_f E_c)/(2 (1 + nu)) of the moduli below "
                                       "the knees."),
                      smoothing_key(kKneeWindow)})},
-       .check = {},
+       .check = [](const Parameters& p) { return check_window(p, {"fibre_transition", "cross_transition"}); },
        .build = fibrous<&orthotropic_law>},
       {.name = "cst_may_newman_yin",
        .summary = "Mitral tissue: c0 (exp(c1 (I1 - 3)^2 + c2 (l_f - 1)^4) - 1), incompressible (May-Newman & "

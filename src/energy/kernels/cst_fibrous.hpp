@@ -66,8 +66,8 @@ struct CstFibrous {
 
   // The same element with its knees rounded over at least this strain.
   static Rest rounded(Rest rest, double share) requires requires(Law law) { law.fibre_knee; } {
-    rest.law.fibre_knee.window = std::max(rest.law.fibre_knee.window, share);
-    rest.law.cross_knee.window = std::max(rest.law.cross_knee.window, share);
+    rest.law.fibre_knee = rest.law.fibre_knee.rounded(share);
+    rest.law.cross_knee = rest.law.cross_knee.rounded(share);
     return rest;
   }
 
@@ -114,7 +114,9 @@ struct CstFibrous {
     if (c.c11 * c.c22 - c.c12 * c.c12 > kCollapsed || !rest.relaxes) {
       const PlaneEnergy w = at(rest.law, c);
       const LeastDirection least = least_direction(w.stress[0], w.stress[1], w.stress[2]);
-      const bool is_taut = least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
+      // Infinite where an exponential overflows: compressed beyond measure.
+      const bool is_taut = std::isfinite(least.value) &&
+                           least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
       if (is_taut || !rest.relaxes)
         return {w, is_taut      ? MembraneRegime::Taut
                    : widest > 1 ? MembraneRegime::Wrinkled

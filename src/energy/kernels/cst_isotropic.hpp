@@ -67,13 +67,13 @@ struct CstIsotropic {
 
   // The same element with its knee rounded over at least this strain.
   static Rest rounded(Rest rest, double share) requires requires(Law law) { law.knee; } {
-    rest.law.knee.window = std::max(rest.law.knee.window, share);
+    rest.law.knee = rest.law.knee.rounded(share);
     return rest;
   }
 
  private:
-  // Stress across the width below this share of the stiffness is round-off; a membrane at rest so counts as
-  // taut, and has its stiffness.
+  // Stretches that are too small by so little are so by round-off: a membrane at rest counts as taut, and has
+  // its stiffness.
   static constexpr double kRoundOff = 1e-14;
   static constexpr double kThinnest = 1e-9;  // stretch below which a collapsed direction is kept finite
 
@@ -115,18 +115,17 @@ struct CstIsotropic {
 
   static Principal respond(const Rest& rest, const CstPrincipal& p) {
     const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
-    const bool may_be_taut = !rest.relaxes || l1 > 1 - kRoundOff;
-    if (may_be_taut) {
-      const StretchEnergy w = rest.law.evaluate(l1, l2);
-      const bool is_taut = w.w2 >= -kRoundOff * w.w22;
-      if (is_taut || !rest.relaxes)
-        return full(w, l1, l2,
-                    is_taut  ? MembraneRegime::Taut
-                    : l1 > 1 ? MembraneRegime::Wrinkled
-                             : MembraneRegime::Slack);
-    }
+    if (rest.relaxes && l1 < 1 - kRoundOff) return {};
+    const StretchEnergy trial = rest.law.evaluate(l1, l2);
+    if (!rest.relaxes)
+      return full(trial, l1, l2,
+                  trial.w2 >= 0 ? MembraneRegime::Taut
+                  : l1 > 1      ? MembraneRegime::Wrinkled
+                                : MembraneRegime::Slack);
+    if (trial.w2 >= 0) return full(trial, l1, l2, MembraneRegime::Taut);
+    const double l = free_width(rest.law, std::max(l1, 1.0));
+    if (l2 >= l * (1 - kRoundOff)) return full(trial, l1, l2, MembraneRegime::Taut);
     if (l1 <= 1) return {};
-    const double l = free_width(rest.law, l1);
     const StretchEnergy w = rest.law.evaluate(l1, l);
     Principal wrinkled{w.energy, {w.w1 / l1, 0, 0}, {}, MembraneRegime::Wrinkled};
     const double along = w.w11 - w.w12 * w.w12 / w.w22;

@@ -4,6 +4,8 @@
 // differentiable for w > 0; beyond the window phi' is that of the sharp knee, D (e - e*). Never throws.
 #pragma once
 
+#include <algorithm>
+
 namespace coapt {
 
 struct CurveValue {
@@ -12,10 +14,16 @@ struct CurveValue {
   double stiffness = 0;  // its second derivative
 };
 
+// Pre: w <= e*, so that the curve is free of stress at rest.
 struct BilinearKnee {
   double modulus = 0;     // D
   double transition = 0;  // e*
   double window = 0;      // w
+
+  // The same knee over at least this window, as far as the strain at rest allows.
+  BilinearKnee rounded(double least) const {
+    return {modulus, transition, std::max(window, std::min(least, transition))};
+  }
 
   CurveValue at(double strain) const {
     const double past = strain - transition;

@@ -1,5 +1,6 @@
 #include "energy/laws/crimped_fibre.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -22,7 +23,7 @@ CrimpedFibre::CrimpedFibre(double young, double crimp, double slenderness, doubl
   secant_ = young * H0 * H0 / (L0 * (H0 + excess * (L0 - H0)));
   at_limit_ = crimped(limit_ - 1);
   at_limit_.energy = crimped_energy(limit_ - 1);
-  knee_ = {young / limit_ - at_limit_.stiffness, limit_ - 1, window};
+  knee_ = {young / limit_ - at_limit_.stiffness, limit_ - 1, std::min(window, limit_ - 1)};
 }
 
 // Stress and slope; the energy is left out. With y = H^2 and q = R^2 = (L0^2 - y)/(2 pi)^2:

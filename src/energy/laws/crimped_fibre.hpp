@@ -18,8 +18,8 @@ namespace coapt {
 class CrimpedFibre {
  public:
   CrimpedFibre() = default;
-  // young: E_f [stress]; crimp: H0/R0; slenderness: R0/r0; window: half of the rounding, in stretch.
-  // Pre: all positive.
+  // young: E_f [stress]; crimp: H0/R0; slenderness: R0/r0; window: half of the rounding, in stretch,
+  // at most limit - 1. Pre: all but window positive.
   CrimpedFibre(double young, double crimp, double slenderness, double window);
 
   // Energy per volume, nominal stress and its slope at elongation e = l - 1; zero for e <= 0.
