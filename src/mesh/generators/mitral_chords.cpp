@@ -1,5 +1,7 @@
 #include "mesh/generators/mitral_chords.hpp"
 
+#include "mesh/generators/chord_junctions.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -9,10 +11,9 @@
 namespace coapt {
 namespace {
 
-constexpr int kTips = 4;                 // per muscle
-constexpr int kMuscles = 2;              // anterolateral, posteromedial
-constexpr double kJunctionPlace = 0.55;  // of the way from the tip to the middle of the insertions, closed
-constexpr double kSystolicMotion = 1;    // of the tips towards the mid-anterior annulus [mm]
+constexpr int kTips = 4;               // per muscle
+constexpr int kMuscles = 2;            // anterolateral, posteromedial
+constexpr double kSystolicMotion = 1;  // of the tips towards the mid-anterior annulus [mm]
 
 struct Insertion {
   double u, t;
@@ -79,13 +80,6 @@ Points papillary_tips(const MitralDimensions& d) {
   return tips;
 }
 
-int nearest_tip(const Points& tips, int muscle, const Vec3& point) {
-  int best = muscle * kTips;
-  for (int i = best; i < (muscle + 1) * kTips; ++i)
-    if ((tips.col(i) - point).squaredNorm() < (tips.col(best) - point).squaredNorm()) best = i;
-  return best;
-}
-
 // Vertices at which primary chords (the free edge) and the others (the inside) may end.
 struct Sites {
   std::vector<int> free_edge, inside;
@@ -108,38 +102,6 @@ int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::
   });
 }
 
-struct Plane {
-  Vec3 point, normal;
-};
-
-// The limits on the start position of a junction: no chord that ends there longer than its rest length, and
-// the junction at least a clearance on the ventricular side of some planes.
-struct JunctionLimits {
-  Points ends = Points(3, 0);
-  std::vector<double> rest_lengths;
-  std::vector<Plane> planes;
-};
-
-// `start`, projected onto one limit after the other; the balls come last, so that chords stay slack when
-// the limits exclude each other. All limits are convex: the sweeps converge to a common point if there is
-// one.
-Vec3 settle_junction(Vec3 junction, const JunctionLimits& limits) {
-  constexpr int kSweeps = 200;
-  constexpr double kClearance = 0.8;  // [mm]
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const Plane& plane : limits.planes) {
-      const double distance = (junction - plane.point).dot(plane.normal);
-      if (distance < kClearance) junction += (kClearance - distance) * plane.normal;
-    }
-    for (int i = 0; i < limits.ends.cols(); ++i) {
-      const Vec3 end = limits.ends.col(i), from_end = junction - end;
-      if (from_end.norm() > limits.rest_lengths[i])
-        junction = end + limits.rest_lengths[i] * from_end.normalized();
-    }
-  }
-  return junction;
-}
-
 // Builds the network chord by chord.
 struct Builder {
   const MitralShape& shape;
@@ -157,7 +119,7 @@ struct Builder {
 
   void add(const Fan& fan, int muscle) {
     const Vec3 closed_middle = middle(fan, true), open_middle = middle(fan, false);
-    const int tip = nearest_tip(network.papillary, muscle, open_middle);
+    const int tip = nearest_tip(network.papillary, muscle * kTips, (muscle + 1) * kTips, open_middle);
     const Vec3 closed_tip = network.papillary_closed.col(tip), open_tip = network.papillary.col(tip);
     const Vec3 closed_junction = closed_tip + kJunctionPlace * (closed_middle - closed_tip);
 
