@@ -29,6 +29,7 @@ int run_command(int argc, char** argv) {
   add_check_command(app, exit_code);
   add_generate_command(app, exit_code);
   add_import_command(app, exit_code);
+  add_chords_command(app, exit_code);
   add_schema_command(app, exit_code);
   app.footer("Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error.");
   try {

@@ -1,6 +1,7 @@
 #include "scene/groundwork.hpp"
 
 #include "core/error.hpp"
+#include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/node_selection.hpp"
 #include "scene/supports.hpp"
@@ -65,6 +66,51 @@ std::vector<std::string> network_paths(const Scene& scene) {
   return paths;
 }
 
+// The chords of the scene's key `chords`, on the mesh as it was read.
+ChordNetwork generated_chords(const Scene& scene, const Valve& sets_file, Assembly& assembly) {
+  const SceneChords& chords = *scene.chords;
+  Model mesh_alone;
+  mesh_alone.mesh = assembly.model.mesh;
+  mesh_alone.X = mesh_alone.mesh.vertices;
+  mesh_alone.sets = assembly.model.sets;
+  const auto set = [&](const char* name) {
+    const auto own = scene.sets.find(name);
+    if (own != scene.sets.end())
+      return selected_nodes(own->second, mesh_alone, scene.file.string() + ": sets." + name);
+    const auto found = mesh_alone.sets.find(name);
+    return found == mesh_alone.sets.end() ? std::vector<int>() : found->second;
+  };
+  Valve valve;
+  valve.leaflets = mesh_alone.mesh;
+  valve.annulus = set("annulus");
+  valve.free_edge = set("free_edge");
+  if (valve.annulus == sets_file.annulus) valve.annulus_closed = sets_file.annulus_closed;
+  valve.chords.papillary = chords.tips.cols() > 0 ? chords.tips : sets_file.chords.papillary;
+  valve.chords.papillary_closed =
+      chords.tips.cols() > 0 ? chords.tips_closed : sets_file.chords.papillary_closed;
+  if (valve.chords.papillary.cols() == 0)
+    throw InputError(chords.where + ".tips: missing, and the file of `mesh.sets` names no papillary points");
+  find_rims(valve);
+  ChordNetwork network = leaflet_chords(valve, chords.options);
+  if (network.papillary_closed.cols() > 0)
+    assembly.points.insert_or_assign("papillary_closed", network.papillary_closed);
+  return network;
+}
+
+// Gives the points of a network their numbers, behind those of `blocks`.
+void place_network(const std::string& path, ChordNetwork network, std::vector<Points>& blocks, int& next,
+                   Assembly& assembly) {
+  const auto papillary = static_cast<int>(network.papillary.cols()),
+             junctions = static_cast<int>(network.junctions.cols());
+  std::map<std::string, std::vector<int>>& sets = assembly.model.sets;
+  for (int node = 0; node < papillary; ++node) sets["papillary"].push_back(next + node);
+  for (int node = 0; node < junctions; ++node) sets["junctions"].push_back(next + papillary + node);
+  blocks.push_back(network.papillary);
+  blocks.push_back(network.junctions);
+  assembly.networks[path] = {std::move(network), next, next + papillary};
+  next += papillary + junctions;
+}
+
 // Reads the file of sets and the networks; the nodes of the networks follow those of the mesh.
 void read_valves(const Scene& scene, Assembly& assembly) {
   std::vector<std::string> paths = network_paths(scene);
@@ -75,8 +121,9 @@ void read_valves(const Scene& scene, Assembly& assembly) {
   int next = model.mesh.vertex_count();
   std::vector<Points> blocks{model.mesh.vertices};
   std::set<std::string> done;
+  Valve sets_file;
   for (size_t k = 0; k < paths.size(); ++k) {
-    if (!done.insert(paths[k]).second) continue;
+    if (paths[k] == kGeneratedNetwork || !done.insert(paths[k]).second) continue;
     try {
       ValveFile file = read_valve(paths[k], ValveMeshes::Skip);
       if (scene.mesh && assembly.defects.empty())
@@ -87,20 +134,20 @@ void read_valves(const Scene& scene, Assembly& assembly) {
           if (nodes.empty() || *std::max_element(nodes.begin(), nodes.end()) < model.mesh.vertex_count())
             sets[name] = nodes;
       for (auto& [name, positions] : file.points) assembly.points.try_emplace(name, std::move(positions));
-      if (k >= network_count) continue;
-      ChordNetwork& network = file.valve.chords;
-      const int papillary = static_cast<int>(network.papillary.cols());
-      for (int node = 0; node < papillary; ++node) sets["papillary"].push_back(next + node);
-      for (int node = 0; node < network.junctions.cols(); ++node)
-        sets["junctions"].push_back(next + papillary + node);
-      blocks.push_back(network.papillary);
-      blocks.push_back(network.junctions);
-      assembly.networks[paths[k]] = {std::move(network), next, next + papillary};
-      next += papillary + static_cast<int>(blocks.back().cols());
+      if (scene.mesh && scene.mesh->sets && paths[k] == scene.mesh->sets->string()) sets_file = file.valve;
+      if (k < network_count) place_network(paths[k], std::move(file.valve.chords), blocks, next, assembly);
     } catch (const InputError& error) {
       assembly.keep(error);
     }
   }
+  // A mesh with errors is refused later on, with all of them named.
+  if (scene.chords && assembly.defects.empty() &&
+      !has_error(check_mesh(model.mesh, {.orientation_matters = false})))
+    try {
+      place_network(kGeneratedNetwork, generated_chords(scene, sets_file, assembly), blocks, next, assembly);
+    } catch (const InputError& error) {
+      assembly.keep(error);
+    }
   model.X.resize(3, next);
   int column = 0;
   for (const Points& block : blocks) {

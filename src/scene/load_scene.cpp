@@ -90,6 +90,78 @@ std::optional<SceneFibres> fibres_from(const Parameters& scene, Reading& reading
   return fibres;
 }
 
+Points points_of(const std::vector<Vec3>& list) {
+  Points points(3, static_cast<Eigen::Index>(list.size()));
+  for (size_t k = 0; k < list.size(); ++k) points.col(static_cast<Eigen::Index>(k)) = list[k];
+  return points;
+}
+
+void read_tips(const Parameters& values, SceneChords& chords, Reading& reading) {
+  std::vector<Vec3> open, closed;
+  for (const Parameters& tip : values.objects("tips")) {
+    if (tip.has("at")) open.push_back(tip.vector("at"));
+    if (tip.has("closed_at")) closed.push_back(tip.vector("closed_at"));
+  }
+  if (!closed.empty() && closed.size() != open.size())
+    reading.defects.push_back(values.where("tips") + ": closed_at: give it for all tips or for none");
+  chords.tips = points_of(open);
+  chords.tips_closed = points_of(closed);
+}
+
+// What the key `chords` says, with what is wrong in it.
+std::optional<SceneChords> chords_from(const Parameters& scene, Reading& reading) {
+  if (!scene.has("chords")) return std::nullopt;
+  const Parameters& values = scene.object("chords");
+  const size_t before = reading.defects.size();
+  SceneChords chords;
+  chords.where = values.where();
+  if (values.has("tips")) read_tips(values, chords, reading);
+  const auto keep = [&](const std::string& key, const auto& read_one) {
+    if (!values.has(key)) return;
+    for (const std::string& text : values.texts(key)) try {
+        read_one(text);
+      } catch (const InputError& error) {
+        reading.defects.push_back(values.where(key) + ": " + error.what());
+      }
+  };
+  LeafletChordOptions& options = chords.options;
+  options.zones.clear();
+  keep("zones", [&](const std::string& text) { options.zones.push_back(chord_zone(text)); });
+  keep("level_areas",
+       [&](const std::string& text) { options.level_areas.push_back(quantity_value(text, kArea)); });
+  const auto integer = [&](const char* key, auto& value) {
+    if (values.has(key)) value = static_cast<std::decay_t<decltype(value)>>(values.integer(key));
+  };
+  integer("count", options.count);
+  integer("levels", options.levels);
+  integer("branches", options.branches);
+  integer("seed", options.seed);
+  options.scale = values.number_or("scale", 1);
+  options.depth = values.number_or("depth", 0);
+  if (reading.defects.size() == before && !options.level_areas.empty() &&
+      static_cast<int>(options.level_areas.size()) != options.levels)
+    reading.defects.push_back(values.where("level_areas") + ": holds " +
+                              std::to_string(options.level_areas.size()) + " areas for " +
+                              std::to_string(options.levels) + " levels");
+  if (!scene.has("mesh"))
+    reading.defects.push_back(chords.where + ": the scene has no mesh that chords could hold");
+  return chords;
+}
+
+// The key `chords` and a term that names its network go together.
+void check_generated(const Scene& scene, const std::string& file, Reading& reading) {
+  bool is_named = false;
+  for (const TermSpec& term : scene.terms) {
+    if (!term.parameters.has("network") || term.parameters.text("network") != kGeneratedNetwork) continue;
+    is_named = true;
+    if (!scene.chords)
+      reading.defects.push_back(term.parameters.where("network") +
+                                ": \"generated\" needs the scene's key `chords`");
+  }
+  if (scene.chords && !is_named && reading.defects.empty())
+    reading.defects.push_back(file + ": chords: no term takes them; give one \"network\": \"generated\"");
+}
+
 // Names default to the type; where several terms share it they are numbered from the second on.
 std::vector<TermSpec> terms_from(const Parameters& scene, Reading& reading) {
   std::vector<TermSpec> terms;
@@ -165,6 +237,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   if (values.has("motion") && values.object("motion").has("steps"))
     scene.motion_steps = values.object("motion").integer("steps");
   scene.fibres = fibres_from(values, reading);
+  scene.chords = chords_from(values, reading);
   scene.terms = terms_from(values, reading);
   if (values.has("reference")) {
     const Parameters& reference = values.object("reference");
@@ -173,6 +246,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   }
   if (values.has("output") && values.object("output").has("folder"))
     scene.output_folder = (path.parent_path() / values.object("output").text("folder")).lexically_normal();
+  check_generated(scene, file, reading);
   check_substance(scene, json, file, reading);
   if (!reading.defects.empty()) throw InputError(reading.defects);
   scene.solver = solver_from(values.object("solver"));

@@ -34,7 +34,7 @@ std::string kind_text(const KeySpec& key) {
     case KeyKind::Choice:
       return "one of " + joined(key.choices);
     case KeyKind::File:
-      return "file";
+      return key.choices.empty() ? "file" : "file, or " + joined(key.choices);
     case KeyKind::Triple:
       return key.dimension == kDimensionless ? "`[x, y, z]`"
                                              : "`[x, y, z]`, each a " + dimension_name(key.dimension);

@@ -1,6 +1,7 @@
 // A scene as plain data: names, and numbers in internal units (mm, N, MPa).
 #pragma once
 
+#include "mesh/generators/leaflet_chords.hpp"
 #include "optim/solver.hpp"
 #include "scene/parameters.hpp"
 
@@ -50,6 +51,15 @@ struct SceneFibres {
   bool joins_regions = false;
 };
 
+// Chords that are made when the scene is built, for terms whose `network` is kGeneratedNetwork.
+struct SceneChords {
+  std::string where;                  // for messages
+  Points tips = Points(3, 0);         // none: the papillary points of the file of sets [mm]
+  Points tips_closed = Points(3, 0);  // none: the tips stay, or as above [mm]
+  LeafletChordOptions options;
+};
+inline constexpr const char* kGeneratedNetwork = "generated";
+
 struct TermSpec {
   std::string type, name;  // the name is unique within the scene
   Parameters parameters;
@@ -79,6 +89,7 @@ struct Scene {
   std::vector<BoundaryEntry> boundary;
   int motion_steps = 0;  // 0 = no prescribed node moves by more than one mean edge length in a step
   std::optional<SceneFibres> fibres;
+  std::optional<SceneChords> chords;
   std::vector<TermSpec> terms;
   SolverSpec solver;
   std::optional<std::filesystem::path> closed_surface;  // reference

@@ -11,7 +11,7 @@
 namespace coapt {
 
 enum class KeyKind {
-  Quantity,  // text with a unit; a bare number where only a length (mm) or a pure number can be meant
+  Quantity,    // text with a unit; a bare number where only a length (mm) or a pure number can be meant
   Quantities,  // a list of them
   Integer,
   Flag,  // true or false
@@ -53,7 +53,7 @@ struct KeySpec {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool excludes_min = false;
-  std::vector<std::string> choices = {};
+  std::vector<std::string> choices = {};  // of a File: words that stand for something else than a path
   ObjectSpec object = {};
   std::string doc = "";  // one sentence
 };

@@ -182,7 +182,10 @@ std::vector<KeySpec> line_keys() {
   return {
       {.name = "network",
        .kind = KeyKind::File,
-       .doc = "Valve JSON whose chords are the lines; terms that name the same file share its nodes."},
+       .choices = {kGeneratedNetwork},
+       .doc = "Valve JSON whose chords are the lines, or the chords of the scene's key `chords`; terms that "
+              "name "
+              "the same network share its nodes."},
       {.name = "edges",
        .kind = KeyKind::Nodes,
        .doc = "Every mesh edge with both nodes in this selection is a line; \"boundary\" takes the boundary "

@@ -153,6 +153,35 @@ class CommandTest(unittest.TestCase):
             mesh.write("f 1 2 99999\n")
         self.assert_bad_input(coapt("check", scene), "yuong", "mesh.obj", "99999")
 
+    def test_makes_chords_where_there_are_none(self):
+        self.generate("mitral", "--triangles", 625)
+        network = self.folder / "made" / "valve.json"
+        run = coapt("chords", self.folder / "valve.json", "-o", network, "--count", 8, "--levels", 2,
+                    "--zones", "free_edge", "rough", "--depth", 8)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("64 chords, 16 branch points", run.stdout)
+        chords = json.loads(network.read_text())["chords"]
+        self.assertEqual(sorted({c["material"] for c in chords}), ["primary", "secondary"])
+        self.assertEqual([len([c for c in chords if c["level"] == level]) for level in (1, 2)], [16, 48])
+        self.assertEqual(coapt("import", network, "-o", self.folder / "scene").returncode, 0)
+        run = coapt("solve", self.folder / "scene" / "scene.json")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+    def test_makes_chords_on_a_mesh_alone(self):
+        self.generate("mitral", "--triangles", 625)
+        mesh, network = self.folder / "leaflets.obj", self.folder / "made" / "valve.json"
+        tips = ["--tip", 16, 0, -24, "--tip", -16, 0, -24]
+        run = coapt("chords", mesh, "-o", network, "--scale", 0.8, *tips)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        valve, known = json.loads(network.read_text()), json.loads((self.folder / "valve.json").read_text())
+        self.assertEqual(sorted(valve["annulus"]), sorted(known["annulus"]))
+        self.assertEqual(sorted(valve["free_edge"]), sorted(known["free_edge"]))
+        self.assertEqual((len(valve["chords"]), valve["papillary"]), (24, [[16, 0, -24], [-16, 0, -24]]))
+        self.assert_bad_input(coapt("chords", mesh, "-o", network), "leaflets.obj", "papillary", "--tip")
+        self.assert_bad_input(coapt("chords", mesh, "-o", self.folder / "x.json", *tips), "another folder")
+        self.assert_bad_input(coapt("chords", mesh, "-o", network, "--count", 999, *tips), "free vertices")
+        self.assert_bad_input(coapt("chords", mesh, "-o", network, "--tip", 1, 2, 90, "--scale", -1), "scale")
+
     def test_check_prints_the_derivatives_of_every_term(self):
         run = coapt("check", self.generate("mitral", "--triangles", 300))
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
