@@ -39,11 +39,17 @@ class FibresTest : public testing::Test {
  protected:
   FibresTest() { write_mesh(folder_.path() / "sheet.obj", square(10, 200, CellPattern::Cross)); }
 
-  Scene scene(const std::string& more) {
+  static constexpr const char* kIsotropic =
+      R"({"type": "cst_stvk", "young": "1 MPa", "thickness": "0.1 mm"})";
+  static constexpr const char* kFibrous =
+      R"({"type": "cst_orthotropic", "fibre_young_pre": "1 MPa", "fibre_young_post": "2 MPa",
+          "fibre_transition": 0.2, "cross_young_pre": "0.3 MPa", "cross_young_post": "0.5 MPa",
+          "cross_transition": 0.3, "thickness": "0.1 mm"})";
+
+  Scene scene(const std::string& more, const std::string& membrane = kIsotropic) {
     return load_scene(folder_.write("scene.json", R"({"mesh": {"file": "sheet.obj"},
       "boundary": [{"nodes": "boundary", "fix": true}],
-      "terms": [{"type": "cst_stvk", "young": "1 MPa", "thickness": "0.1 mm"},
-                {"type": "load_pressure", "value": "1 kPa"}])" +
+      "terms": [)" + membrane + R"(, {"type": "load_pressure", "value": "1 kPa"}])" +
                                                       more + "}"));
   }
 
@@ -60,7 +66,15 @@ TEST_F(FibresTest, CostNothingWhereNothingAsks) {
     EXPECT_NE(array.name, "fibre");
 }
 
-// A term asks through BuildContext::fibres; the field is that of the scene's key, found once.
+// Terms ask for fibres themselves: the key changes them, but need not be there.
+TEST_F(FibresTest, AreFoundForTermsThatNeedThem) {
+  const Model asked = build(scene("", kFibrous)), named = build(scene(R"(, "fibres": {})"));
+  ASSERT_EQ(asked.fibres.cols(), asked.mesh.triangle_count());
+  EXPECT_EQ(asked.fibres, named.fibres);
+  EXPECT_TRUE(mentions(defects_of([&] { build(scene(R"(, "fibres": {"defaults": "none"})", kFibrous)); }),
+                       "no fibre direction is known"));
+}
+
 TEST_F(FibresTest, AreOneDirectionByAUsersVector) {
   const Model model = build(scene(R"(, "fibres": {"defaults": "none",
       "directions": [{"nodes": [0], "direction": [3, 4, 10]}]})"));
