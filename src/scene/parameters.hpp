@@ -46,9 +46,10 @@ struct SurfaceDirection {
 };
 
 class Parameters;
-using ParameterValue = std::variant<double, bool, std::string, Vec3, std::vector<double>, std::vector<std::string>,
-                                    NodeSelection, std::vector<MoveTarget>, LineThrough, SurfaceDirection,
-                                    std::map<std::string, NodeSelection>, std::vector<Parameters>>;
+using ParameterValue =
+    std::variant<double, bool, std::string, Vec3, std::vector<double>, std::vector<std::string>,
+                 NodeSelection, std::vector<MoveTarget>, LineThrough, SurfaceDirection,
+                 std::map<std::string, NodeSelection>, std::vector<Parameters>>;
 
 // Reading a key that is absent or of another kind is a defect of the calling code and throws
 // std::logic_error.

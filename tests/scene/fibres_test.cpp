@@ -1,5 +1,7 @@
 // The scene's keys `fibres` and `chords`, from the file to the result.
 #include "core/error.hpp"
+#include "mesh/fibre_guides.hpp"
+#include "mesh/generators/leaflet_chords.hpp"
 #include "mesh/generators/mitral.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
@@ -11,11 +13,13 @@
 #include "scene/run.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/thinning.hpp"
+#include "scene/valve_json.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace coapt {
@@ -270,6 +274,40 @@ TEST_F(MitralFibresTest, NamesDefectsOfGeneratedChords) {
         "for all tips or for none");
   wrong(R"("chords": {"tips": [{"at": [0, 0, 40]}, {"at": [0, 0, -40]}]}, )", "chords: tip ");
   wrong(R"("chords": {"count": 5000}, )", "free vertices");
+}
+
+// Leaflets that nobody here made: a human tricuspid valve, and a bioprosthesis of three separate leaflets
+// without chords, which gets tips far on the side of its free edges.
+TEST(RealLeaflets, GetFibresAndChords) {
+  for (const char* name : {"trivalve11-healthy/valve_coarse.json", "bhv-trileaflet/valve_coarse.json"}) {
+    const std::filesystem::path path = std::filesystem::path(COAPT_SHARED_DIR) / "data" / name;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    Valve valve = read_valve(path).valve;
+    const Points& X = valve.leaflets.vertices;
+    find_rims(valve);
+    if (valve.chords.papillary.cols() == 0) {
+      const Vec3 rim = X(Eigen::all, valve.annulus).rowwise().mean();
+      const Vec3 down = (X(Eigen::all, valve.free_edge).rowwise().mean() - rim).normalized();
+      valve.chords.papillary = rim + 40 * down;
+    }
+    const ChordNetwork network = leaflet_chords(
+        valve,
+        {.zones = {chord_zone("free_edge"), chord_zone("rough")}, .count = 10, .levels = 2, .branches = 2});
+    EXPECT_EQ(network.chords.size(), 2 * 10 * 3u) << name;
+    std::set<int> ends;
+    for (const Chord& chord : network.chords) {
+      EXPECT_GT(chord.rest_length, 0);
+      if (chord.to.kind == ChordEnd::Kind::Leaflet) ends.insert(chord.to.index);
+    }
+    EXPECT_EQ(ends.size(), 40u) << name;
+    for (const int v : valve.annulus) EXPECT_FALSE(ends.contains(v)) << name;
+
+    const FibreField field = fibre_field(
+        valve.leaflets,
+        valve_guides(valve.leaflets, valve.annulus, region_meetings(valve.leaflets, valve.annulus), {}));
+    EXPECT_TRUE(field.directions.allFinite()) << name;
+    EXPECT_GT(field.anisotropy.mean(), 0.5) << name;
+  }
 }
 
 }  // namespace
