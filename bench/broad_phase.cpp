@@ -8,6 +8,7 @@
 #include "energy/contact/box_hierarchy.hpp"
 #include "mesh/generators/mitral.hpp"
 #include "mesh/triangle_mesh.hpp"
+#include "support/meshes.hpp"
 
 #include <benchmark/benchmark.h>
 #include <nanoflann.hpp>
@@ -24,29 +25,9 @@ constexpr double kReachPerEdge = 0.45;  // gap and skin of a contact_barrier
 
 enum class Scene { Valve, Sheets, Floor };
 
+// A unit square; height and shift along both sides in cells.
 TriangleMesh sheet(int cells, double height, double shift) {
-  TriangleMesh mesh;
-  mesh.vertices.resize(3, (cells + 1) * (cells + 1));
-  mesh.triangles.resize(3, 2 * cells * cells);
-  for (int j = 0; j <= cells; ++j)
-    for (int i = 0; i <= cells; ++i)
-      mesh.vertices.col(i + (cells + 1) * j) = Vec3(i + shift, j + shift, height) / cells;
-  for (int j = 0, t = 0; j < cells; ++j)
-    for (int i = 0; i < cells; ++i) {
-      const int a = i + (cells + 1) * j, b = a + 1, c = a + cells + 1, d = c + 1;
-      mesh.triangles.col(t++) << a, b, d;
-      mesh.triangles.col(t++) << a, d, c;
-    }
-  return mesh;
-}
-
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.vertices.resize(3, a.vertex_count() + b.vertex_count());
-  both.vertices << a.vertices, b.vertices;
-  both.triangles.resize(3, a.triangle_count() + b.triangle_count());
-  both.triangles << a.triangles, b.triangles.array() + a.vertex_count();
-  return both;
+  return moved(grid_mesh(cells, cells, 1, 1, Diagonal::Same), Vec3(shift, shift, height) / cells);
 }
 
 TriangleMesh mesh_of(Scene scene, int triangles) {

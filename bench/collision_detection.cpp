@@ -14,7 +14,7 @@ namespace {
 using namespace coapt;
 
 struct Pair {
-  Corners4 x, d;
+  PairCorners x, d;
 };
 
 // Sides of unit size, `apart` from each other along z or some other direction, displacements of size `move`.

@@ -5,7 +5,10 @@
 
 namespace coapt::cli {
 
-// From now on SIGINT and SIGTERM ask the run to stop; a second one ends the process at once.
+// From now on SIGINT and SIGTERM ask the run to stop; a second one ends the process at once. One that whoever
+// started the process had it ignore stays ignored: a shell without job control starts `coapt ... &` that way
+// with SIGINT. Such a signal is otherwise lost or heeded depending on whether it comes before or after this
+// call.
 void listen_for_interrupts();
 
 // Writes a progress line to the standard error stream when that is a terminal, and cancels the run after

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 
 namespace coapt {
 namespace {
@@ -110,6 +111,8 @@ class Cascade {
     outcome.result = std::move(result);
   }
 
+  void warn(std::string_view sentence) { outcome.warnings.emplace_back(sentence); }
+
   CascadeOutcome outcome;
 
  private:
@@ -140,8 +143,7 @@ struct Start {
 std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, Cascade& cascade) {
   const std::vector<Step> steps = coarser_meshes(scene, ground);
   if (steps.empty()) {
-    cascade.outcome.warnings.push_back(
-        "The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
+    cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
     return std::nullopt;
   }
   Start start;
@@ -170,8 +172,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
       return start;
     }
     if (!failure.empty()) {
-      cascade.outcome.warnings.push_back(name + "was not solved (" + failure +
-                                         "); the scene's own was solved from its own start.");
+      cascade.warn(name + "was not solved (" + failure + "); the scene's own was solved from its own start.");
       return std::nullopt;
     }
     start.x = finer(steps[k], start.x);
@@ -188,7 +189,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
   const int triangles = model.mesh.triangle_count();
   std::optional<Start> start = coarse_start(scene, ground, cascade);
   if (start && !can_start_at(start->x, model)) {
-    cascade.outcome.warnings.push_back(
+    cascade.warn(
         "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
     start.reset();
   }
@@ -205,8 +206,8 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
       cascade.finish(std::move(result));
       return std::move(cascade.outcome);
     }
-    cascade.outcome.warnings.push_back("The start that the cascade gave led nowhere (" + result.message +
-                                       "): the mesh was solved from its own start.");
+    cascade.warn("The start that the cascade gave led nowhere (" + result.message +
+                 "): the mesh was solved from its own start.");
     model.objective->prescribe(model.X);
   }
   cascade.finish(

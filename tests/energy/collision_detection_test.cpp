@@ -37,7 +37,7 @@ void judge(const Query& query, double step, Count& count) {
   count.missed += step >= query.collides_at && step > 0;
   if (step > 0) {
     const Answer answer = pair.stays_apart(step, promised);
-    const MovingPair moved(query.x + step * query.d, Corners4::Zero(), query.first);
+    const MovingPair moved(query.x + step * query.d, PairCorners::Zero(), query.first);
     count.too_near += answer == Answer::Near || moved.distance() < promised;
     count.undecided += answer == Answer::Undecided;
   }
@@ -92,12 +92,12 @@ TEST(CollisionDetection, HasAJudgeThatSeesEveryCollision) {
 }
 
 // A point above the inside of the triangle, and an edge across another one, at distance 1 along z.
-const Corners4 kPoint = (Corners4() << 0.2, 0, 1, 0, 0.2, 0, 0, 1, 1, 0, 0, 0).finished();
-const Corners4 kEdges = (Corners4() << -1, 1, 0, 0, 0, 0, -1, 1, 1, 1, 0, 0).finished();
+const PairCorners kPoint = (PairCorners() << 0.2, 0, 1, 0, 0.2, 0, 0, 1, 1, 0, 0, 0).finished();
+const PairCorners kEdges = (PairCorners() << -1, 1, 0, 0, 0, 0, -1, 1, 1, 1, 0, 0).finished();
 const Vec3 kUp(0, 0, 1);
 
-Corners4 moving(int first, const Vec3& one_side, const Vec3& other_side = Vec3::Zero()) {
-  Corners4 d;
+PairCorners moving(int first, const Vec3& one_side, const Vec3& other_side = Vec3::Zero()) {
+  PairCorners d;
   for (int k = 0; k < 4; ++k) d.col(k) = k < first ? one_side : other_side;
   return d;
 }
@@ -118,14 +118,14 @@ TEST(CollisionDetection, LetsPassWhatDoesNotCollide) {
   const Vec3 together(1e4, -3e4, 1e5);
   EXPECT_EQ(point_triangle_step(kPoint, moving(1, together, together), 1, 0.1), 1);
   EXPECT_EQ(edge_edge_step(kEdges, moving(2, together, together), 1, 0.1), 1);
-  EXPECT_EQ(point_triangle_step(kPoint, Corners4::Zero(), 1, 0.1), 1);
+  EXPECT_EQ(point_triangle_step(kPoint, PairCorners::Zero(), 1, 0.1), 1);
 }
 
 TEST(CollisionDetection, RefusesToMoveWhatTouchesOrIsNotFinite) {
-  Corners4 touching = kPoint, broken = kPoint;
+  PairCorners touching = kPoint, broken = kPoint;
   touching(2, 0) = 0;
   EXPECT_EQ(point_triangle_step(touching, moving(1, kUp), 1, 0.1), 0);
-  EXPECT_EQ(edge_edge_step(Corners4::Zero(), moving(2, kUp), 1, 0.1), 0);
+  EXPECT_EQ(edge_edge_step(PairCorners::Zero(), moving(2, kUp), 1, 0.1), 0);
   for (const double bad : {kNaN, kInfinity, 1e300}) {
     broken(1, 2) = bad;
     EXPECT_EQ(point_triangle_step(broken, moving(1, kUp), 1, 0.1), 0);

@@ -13,7 +13,7 @@
 namespace coapt {
 
 struct Query {
-  Corners4 x = Corners4::Zero(), d = Corners4::Zero();
+  PairCorners x = PairCorners::Zero(), d = PairCorners::Zero();
   int first = 1;                   // corners of the first side: 1 point-triangle, 2 edge-edge
   double collides_at = kInfinity;  // step in [0, 1] at which they touch for certain
 };
@@ -28,8 +28,10 @@ class Draw {
   double power(double base, int low, int high) { return std::pow(base, integer(low, high)); }
   Vec3 vector() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
   Vec3 on_grid() { return Vec3(integer(-1024, 1024), integer(-1024, 1024), integer(-1024, 1024)) / 1024; }
-  Corners4 corners() { return (Corners4() << vector(), vector(), vector(), vector()).finished(); }
-  Corners4 corners_on_grid() { return (Corners4() << on_grid(), on_grid(), on_grid(), on_grid()).finished(); }
+  PairCorners corners() { return (PairCorners() << vector(), vector(), vector(), vector()).finished(); }
+  PairCorners corners_on_grid() {
+    return (PairCorners() << on_grid(), on_grid(), on_grid(), on_grid()).finished();
+  }
 
  private:
   std::mt19937 random_;
@@ -38,8 +40,8 @@ class Draw {
 enum class Where { Inside, Edge, Corner };
 
 // Four points of which the sides touch, without rounding: all lie on a grid.
-inline Corners4 touching(Draw& draw, int first, Where where) {
-  Corners4 y = draw.corners_on_grid();
+inline PairCorners touching(Draw& draw, int first, Where where) {
+  PairCorners y = draw.corners_on_grid();
   const int k = where == Where::Corner ? 0 : draw.integer(1, 63);
   if (first == 1) {
     const int l = where == Where::Inside ? draw.integer(0, 64 - k) : 0;
@@ -52,7 +54,7 @@ inline Corners4 touching(Draw& draw, int first, Where where) {
 }
 
 // Moves so that it comes to positions y, where it touches, at a step that the grid holds.
-inline Query arriving(Draw& draw, int first, const Corners4& y) {
+inline Query arriving(Draw& draw, int first, const PairCorners& y) {
   Query query;
   query.first = first;
   query.collides_at = draw.integer(1, 64) / 64.0;
@@ -112,7 +114,7 @@ inline Query parallel(Draw& draw, int first) {
 
 // Slivers, triangles and edges of no extent; half of them on their way to a collision.
 inline Query degenerate(Draw& draw, int first) {
-  Corners4 y = touching(draw, first, Where::Edge);
+  PairCorners y = touching(draw, first, Where::Edge);
   const bool collides = draw.integer(0, 1) == 0;
   if (first == 1) {
     y.col(3) = draw.integer(0, 1) == 0 ? y.col(2) : Vec3((y.col(1) + y.col(2)) / 2);  // needle or flat

@@ -3,8 +3,10 @@
     real_valve.py COAPT SHARED_DATA_FOLDER frozen|field|follower barrier|facet
 
 Exit code 77, "skipped", where the data is not there. The leaflets are a tension field with one linear modulus,
-0.05 MPa, and bending. The bounds on the mean distance are the measured ones (1.35, 1.12 and 0.68 mm) with some room;
-newton and lbfgs end in the same shape. The real material is nonlinear, so the distance measures the law.
+0.05 MPa, and bending. The bounds on the mean distance are the measured ones (1.35, 1.12 and 0.68 mm) with some room, and
+so are those on the coaptation area: it depends on the load far more than on the contact, and the facet law, whose
+range is longer, counts more of it than the barrier. newton and lbfgs end in the same shape. The real material is
+nonlinear, so the distance measures the law.
 """
 import json
 import math
@@ -16,12 +18,15 @@ import tempfile
 SKIPPED = 77
 TOLERANCE = 1e-8
 GREATEST_MEAN_DISTANCE = {"frozen": 1.5, "field": 1.3, "follower": 1.0}  # [mm]
+COAPTATION = {  # measured [mm2]; a tenth less is still accepted
+    ("frozen", "facet"): 41.7, ("frozen", "barrier"): 32.9, ("field", "facet"): 27.8, ("field", "barrier"): 19.9,
+    ("follower", "facet"): 71.1, ("follower", "barrier"): 56.5}
 REQUIRED = ["orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
             "leaflet_area_open_mm2", "leaflet_area_closed_mm2", "max_principal_strain", "max_chord_force_n",
             "force_balance", "moment_balance", "intersections"]
 
 
-def defects(result: dict, model: str) -> list[str]:
+def defects(result: dict, model: str, contact: str) -> list[str]:
     metrics, distance, mesh = result["metrics"], result["distance_to_reference"], result["mesh"]
     broken = [f"{name}: {metrics.get(name)}" for name in REQUIRED
               if metrics.get(name) is None or not math.isfinite(metrics[name])]
@@ -35,7 +40,8 @@ def defects(result: dict, model: str) -> list[str]:
         # 709.9 mm2 measured on the coarse annulus.
         "annulus of 700 to 720 mm2": 700 <= metrics["annulus_area_mm2"] <= 720,
         "the orifice is a small part of the annulus": 0 <= metrics["orifice_area_mm2"] <= 100,
-        "leaflets coapt": metrics["coaptation_area_mm2"] > 20 and metrics["coaptation_height_mm"] > 2,
+        "leaflets coapt": metrics["coaptation_height_mm"] > 2,
+        "coaptation area as measured": metrics["coaptation_area_mm2"] > 0.9 * COAPTATION[model, contact],
         "the open leaflets keep their area": abs(metrics["leaflet_area_open_mm2"] - 1317.63) < 0.1,
         "the leaflets stretch": metrics["max_principal_strain"] > 0.1,
         "some of them is taut, some wrinkled": metrics["taut_area_mm2"] > 100 and metrics["wrinkled_area_mm2"] > 100,
@@ -69,7 +75,7 @@ def main() -> int:
         print(run.stdout + run.stderr)
         if run.returncode != 0:
             return 1
-        found = defects(json.loads((pathlib.Path(scratch) / "result" / "result.json").read_text()), model)
+        found = defects(json.loads((pathlib.Path(scratch) / "result" / "result.json").read_text()), model, contact)
     print("\n".join(["FAILED", *found]) if found else "passed")
     return 1 if found else 0
 

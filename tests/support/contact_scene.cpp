@@ -15,25 +15,13 @@ long judged_intersections(const Points& x, const Triangles& facets, Eigen::Index
 }
 
 Judged solve_judged(const Points& start, const FixedMask& fixed, Terms terms, const Triangles& facets,
-                    Eigen::Index membrane_count, const Method& method) {
-  Objective objective(start, fixed, std::move(terms));
-  StopRule stop;
-  stop.tolerance = method.tolerance;
-  stop.max_iterations = method.max_iterations;
-  stop.max_seconds = method.max_seconds;
-  SolverOptions options;
-  options.factorisation = best_factorisation();
+                    Eigen::Index membrane_count, Method method) {
   Judged judged;
-  const auto judge = [&](const Iteration&, const Vector& q) {
+  method.watch = [&](const Points& x) {
     ++judged.iterates;
-    judged.intersections =
-        std::max(judged.intersections, judged_intersections(objective.positions(q), facets, membrane_count));
-    return true;
+    judged.intersections = std::max(judged.intersections, judged_intersections(x, facets, membrane_count));
   };
-  judged.found.result =
-      solve(*built_in_solvers().at(method.solver)(options),
-            {objective, objective.unknowns(start), method.motion, method.continuation}, stop, judge);
-  judged.found.x = objective.positions(judged.found.result.q);
+  judged.found = find_equilibrium(start, fixed, std::move(terms), method);
   return judged;
 }
 
@@ -68,20 +56,6 @@ Judged ContactScene::solve(const std::string& solver, double tolerance) const {
     method.motion.positions = [this, X](double t) { return motion(t, X); };
   }
   return solve_judged(X, fixed, std::move(terms), facets(), sheet.triangle_count(), method);
-}
-
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
-  TriangleMesh both;
-  both.vertices.resize(3, a.vertex_count() + b.vertex_count());
-  both.vertices << a.vertices, b.vertices;
-  both.triangles.resize(3, a.triangle_count() + b.triangle_count());
-  both.triangles << a.triangles, b.triangles.array() + a.vertex_count();
-  return both;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  mesh.vertices.colwise() += by;
-  return mesh;
 }
 
 TriangleMesh spike(const Vec3& apex, double height, double half_width) {

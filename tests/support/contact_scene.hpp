@@ -16,7 +16,7 @@ struct Judged {
 // facets: those of the membrane, then, from membrane_count on, those of obstacles, which are not judged among
 // themselves.
 Judged solve_judged(const Points& start, const FixedMask& fixed, Terms terms, const Triangles& facets,
-                    Eigen::Index membrane_count, const Method& method);
+                    Eigen::Index membrane_count, Method method);
 
 // Pairs of facets that pass through each other, those of obstacles among themselves left out.
 long judged_intersections(const Points& x, const Triangles& facets, Eigen::Index membrane_count);
@@ -36,10 +36,6 @@ struct ContactScene {
   Points start() const;
   Judged solve(const std::string& solver = "newton", double tolerance = 1e-8) const;
 };
-
-// Two meshes side by side in one.
-TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by);
 
 // A pyramid without a bottom: its apex, and a square of the given half width around the foot.
 TriangleMesh spike(const Vec3& apex, double height, double half_width);

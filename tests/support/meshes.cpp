@@ -1,10 +1,8 @@
 #include "support/meshes.hpp"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <random>
-#include <utility>
 
 namespace coapt {
 
@@ -114,22 +112,6 @@ TriangleMesh icosahedron() {
 
 }  // namespace
 
-Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle) {
-  std::map<std::pair<int, int>, int> middle;
-  const auto middle_of = [&](int a, int b) {
-    const auto [where, is_new] = middle.try_emplace(std::minmax(a, b));
-    if (is_new) where->second = add_middle(a, b);
-    return where->second;
-  };
-  Triangles fine(3, 4 * triangles.cols());
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3i c = triangles.col(t);
-    const int ab = middle_of(c[0], c[1]), bc = middle_of(c[1], c[2]), ca = middle_of(c[2], c[0]);
-    fine.middleCols<4>(4 * t) << c[0], c[1], c[2], ab, ab, bc, ca, bc, ca, ab, bc, ca;
-  }
-  return fine;
-}
-
 TriangleMesh sphere_mesh(int subdivisions) {
   TriangleMesh mesh = icosahedron();
   std::vector<Vec3> points(mesh.vertices.colwise().begin(), mesh.vertices.colwise().end());
@@ -156,6 +138,20 @@ Points shaken(const Points& x, double amount, unsigned seed) {
   for (Eigen::Index k = 0; k < moved.size(); ++k)  // engine() alone is the same on every platform
     moved.data()[k] += amount * (2.0 * engine() / static_cast<double>(std::mt19937::max()) - 1);
   return moved;
+}
+
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
+  TriangleMesh both;
+  both.vertices.resize(3, a.vertex_count() + b.vertex_count());
+  both.vertices << a.vertices, b.vertices;
+  both.triangles.resize(3, a.triangle_count() + b.triangle_count());
+  both.triangles << a.triangles, b.triangles.array() + a.vertex_count();
+  return both;
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
+  mesh.vertices.colwise() += by;
+  return mesh;
 }
 
 std::vector<int> triangle_nodes(const Triangles& triangles) {

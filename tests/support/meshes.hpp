@@ -1,7 +1,7 @@
 // Simple meshes that tests build themselves, so that no test depends on the code of another room.
 #pragma once
 
-#include "mesh/triangle_mesh.hpp"
+#include "mesh/cut_in_four.hpp"
 
 #include <functional>
 #include <vector>
@@ -38,10 +38,6 @@ TriangleMesh quarter_disc_mesh(int n);
 // (u sqrt(1 - v^2/2), v sqrt(1 - u^2/2)): the square onto the disc.
 Vec3 disc_point(double u, double v);
 
-// Cuts each triangle into four. add_middle: makes the vertex between two others and returns its number;
-// called once for each edge.
-Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle);
-
 // Unit sphere: an icosahedron, each triangle cut into four `subdivisions` times (20 * 4^n triangles),
 // nodes on the sphere. Normals point outwards.
 TriangleMesh sphere_mesh(int subdivisions);
@@ -52,6 +48,10 @@ void perturb_in_plane(TriangleMesh& mesh, double amount, unsigned seed,
 
 // Adds to each coordinate a random number in [-amount, amount], from a fixed seed.
 Points shaken(const Points& x, double amount, unsigned seed);
+
+// Two meshes side by side in one, without regions.
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by);
 
 // The nodes of all triangles, corner after corner: the stencils of a triangle term.
 std::vector<int> triangle_nodes(const Triangles& triangles);

@@ -69,9 +69,14 @@ Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms 
   stop.max_seconds = method.max_seconds;
   SolverOptions options;
   options.factorisation = best_factorisation();
+  const auto watch = [&](const Iteration&, const Vector& q) {
+    if (method.watch) method.watch(objective.positions(q));
+    return true;
+  };
   Equilibrium found;
-  found.result = solve(*built_in_solvers().at(method.solver)(options),
-                       {objective, objective.unknowns(start), method.motion, method.continuation}, stop);
+  found.result =
+      solve(*built_in_solvers().at(method.solver)(options),
+            {objective, objective.unknowns(start), method.motion, method.continuation}, stop, watch);
   found.x = objective.positions(found.result.q);
   return found;
 }

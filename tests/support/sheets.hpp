@@ -34,6 +34,7 @@ struct Method {
   double max_seconds = 120;
   MotionPath motion = {};
   Continuation continuation = {};
+  std::function<void(const Points& x)> watch = {};  // sees all nodes at every accepted iterate
 };
 
 Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms terms, const Method& method);

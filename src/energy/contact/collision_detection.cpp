@@ -23,19 +23,23 @@ constexpr double kSmallest = 1e-140, kLargest = 1e140;
 // Corners [0, kFirst) against the others.
 struct PointTriangle {
   static constexpr int kFirst = 1;
-  static Vec3 nearest(const Corners4& x) {  // from the second side to the first
+  static Vec3 nearest(const PairCorners& x) {  // from the second side to the first
     return x.col(0) - closest_on_triangle(x.col(0), x.col(1), x.col(2), x.col(3)).point;
   }
-  static Vec3 normal(const Corners4& x) { return Vec3(x.col(2) - x.col(1)).cross(Vec3(x.col(3) - x.col(1))); }
+  static Vec3 normal(const PairCorners& x) {
+    return Vec3(x.col(2) - x.col(1)).cross(Vec3(x.col(3) - x.col(1)));
+  }
 };
 
 struct EdgeEdge {
   static constexpr int kFirst = 2;
-  static Vec3 nearest(const Corners4& x) {
+  static Vec3 nearest(const PairCorners& x) {
     const ClosestOnSegments closest = closest_on_segments(x.col(0), x.col(1), x.col(2), x.col(3));
     return closest.first - closest.second;
   }
-  static Vec3 normal(const Corners4& x) { return Vec3(x.col(1) - x.col(0)).cross(Vec3(x.col(3) - x.col(2))); }
+  static Vec3 normal(const PairCorners& x) {
+    return Vec3(x.col(1) - x.col(0)).cross(Vec3(x.col(3) - x.col(2)));
+  }
 };
 
 // The least distance of a corner of the first side from one of the second, by their heights in some
@@ -49,7 +53,7 @@ double gap(const Eigen::RowVector4d& heights) {
 // Whether the plane across the line between the closest points does for the whole step. Most pairs need no
 // more than this, so it takes one root and no division.
 template <class Pair>
-bool is_free(const Corners4& x, const Corners4& d, double most, double kept) {
+bool is_free(const PairCorners& x, const PairCorners& d, double most, double kept) {
   const Vec3 between = Pair::nearest(x);
   const double distance_squared = between.squaredNorm();
   if (!(distance_squared > kSmallest)) return false;  // products of squares below would vanish
@@ -67,7 +71,7 @@ struct Advance {
 // How long all corners of the first side stay further than `distance + step * rate` from those of the second,
 // along the unit vector n.
 template <class Pair>
-Advance advance(const Corners4& x, const Corners4& d, const Vec3& n, double distance, double rate,
+Advance advance(const PairCorners& x, const PairCorners& d, const Vec3& n, double distance, double rate,
                 double most) {
   const Eigen::RowVector4d height = n.transpose() * x, speed = n.transpose() * d;
   Advance found{kInfinity, most};
@@ -82,15 +86,15 @@ Advance advance(const Corners4& x, const Corners4& d, const Vec3& n, double dist
 }
 
 template <class Pair>
-double safe_step(const Corners4& x, const Corners4& d, double most, double kept) {
+double safe_step(const PairCorners& x, const PairCorners& d, double most, double kept) {
   if (is_free<Pair>(x, d, most, kept)) return most;
   // Bounds of the coordinates; not finite where one of them is not.
   const double size = x.norm(), size_rate = d.norm();
   if (!(size + most * size_rate < kLargest)) return 0;
   // Seen from one of the corners, so that what is computed loses no digits far from the origin.
-  const Corners4 start = x.colwise() - x.col(3), move = d.colwise() - d.col(3);
+  const PairCorners start = x.colwise() - x.col(3), move = d.colwise() - d.col(3);
 
-  Corners4 now = start;
+  PairCorners now = start;
   Vec3 between = Pair::nearest(now);
   double distance = between.norm(), step = 0;
   if (!(distance > kSmallest)) return 0;
@@ -117,11 +121,11 @@ double safe_step(const Corners4& x, const Corners4& d, double most, double kept)
 
 }  // namespace
 
-double point_triangle_step(const Corners4& x, const Corners4& d, double most, double kept) {
+double point_triangle_step(const PairCorners& x, const PairCorners& d, double most, double kept) {
   return safe_step<PointTriangle>(x, d, most, kept);
 }
 
-double edge_edge_step(const Corners4& x, const Corners4& d, double most, double kept) {
+double edge_edge_step(const PairCorners& x, const PairCorners& d, double most, double kept) {
   return safe_step<EdgeEdge>(x, d, most, kept);
 }
 

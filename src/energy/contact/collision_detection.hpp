@@ -15,19 +15,16 @@
 // pair's extent.
 #pragma once
 
-#include "core/types.hpp"
+#include "energy/contact/pair_corners.hpp"
 
 namespace coapt {
-
-// Four points [length]: a point and a triangle (p | a, b, c) or two edges (a, b | c, d).
-using Corners4 = Eigen::Matrix<double, 3, 4>;
 
 // A step s in [0, most] such that the pair moving from x to x + s d keeps at least the share `kept` of its
 // present distance all along; near the greatest such step. 0 where the pair touches already, or is closer
 // than rounding can tell, and for positions or displacements that are not finite. The least step of many
 // pairs comes soonest when each is asked with `most` = the least so far. Pre: 0 <= most < infinity, 0 <= kept
 // < 1.
-double point_triangle_step(const Corners4& x, const Corners4& d, double most, double kept);
-double edge_edge_step(const Corners4& x, const Corners4& d, double most, double kept);
+double point_triangle_step(const PairCorners& x, const PairCorners& d, double most, double kept);
+double edge_edge_step(const PairCorners& x, const PairCorners& d, double most, double kept);
 
 }  // namespace coapt

@@ -17,7 +17,7 @@
 // which lives in the plane of two orthogonal vectors, the positive eigenvalue.
 #pragma once
 
-#include "core/types.hpp"
+#include "energy/contact/pair_corners.hpp"
 #include "energy/sink.hpp"
 
 #include <Eigen/Dense>
@@ -26,7 +26,6 @@
 
 namespace coapt {
 
-using PairCorners = Eigen::Matrix<double, 3, 4>;  // point-triangle (p | a, b, c), edge-edge (a, b | c, d)
 using PairVector = Eigen::Vector<double, 12>;
 using PairMatrix = Eigen::Matrix<double, 12, 12>;
 
