@@ -29,11 +29,9 @@ void print_value(const char* label, const std::optional<double>& value, const ch
   std::printf("%s%s\n", unit[0] == 0 ? "" : " ", unit);
 }
 
-void print_reference(const ReferenceDistance& distance) {
-  std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "distance to reference",
-              (distance.to_reference.mean + distance.from_reference.mean) / 2,
-              std::max(distance.to_reference.p95, distance.from_reference.p95),
-              std::max(distance.to_reference.max, distance.from_reference.max));
+void print_reference(const DistanceFigures& distance) {
+  std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "distance to reference", distance.mean,
+              distance.p95, distance.max);
 }
 
 void print_certificate(const Certificate& certificate) {
@@ -71,7 +69,7 @@ void print_summary(const RunReport& run) {
   print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
   print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
-  if (report.reference) print_reference(*report.reference);
+  if (report.reference) print_reference(both_directions(*report.reference));
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::string files;
   for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;

@@ -14,5 +14,8 @@ void add_generate_command(CLI::App& app, int& exit_code);
 void add_import_command(CLI::App& app, int& exit_code);
 void add_chords_command(CLI::App& app, int& exit_code);
 void add_schema_command(CLI::App& app, int& exit_code);
+void add_sensitivity_command(CLI::App& app, int& exit_code);
+void add_mesh_study_command(CLI::App& app, int& exit_code);
+void add_tune_regions_command(CLI::App& app, int& exit_code);
 
 }  // namespace coapt::cli

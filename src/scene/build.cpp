@@ -78,4 +78,9 @@ Model build(const Scene& scene, const Groundwork& ground) {
   return model;
 }
 
+Problem problem_at(const Points& x, Model& model) {
+  if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
+  return {*model.objective, model.objective->unknowns(x)};
+}
+
 }  // namespace coapt

@@ -17,4 +17,8 @@ Model build(const Scene& scene);
 // The same on nodes, sets and supports that are known already, those of a coarser mesh for instance.
 Model build(const Scene& scene, const Groundwork& ground);
 
+// The problem that starts at x (3 x node_count, relative to the model's origin), with the supports where
+// their motion ends.
+Problem problem_at(const Points& x, Model& model);
+
 }  // namespace coapt

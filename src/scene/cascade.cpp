@@ -68,12 +68,6 @@ Points finer(const Step& step, const Points& x) {
   return result;
 }
 
-// The problem that starts at x, with the supports where their motion ends.
-Problem started_at(const Points& x, Model& model) {
-  if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
-  return {*model.objective, model.objective->unknowns(x)};
-}
-
 // Whether a barrier can start from x: no facets pass through each other.
 bool can_start_at(const Points& x, const Model& model) {
   if (model.objective->step_limiting_term() == nullptr) return true;
@@ -159,7 +153,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
         throw InputError("the shape found on a coarser one passes through itself there");
       const Problem problem =
           is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
-                      : started_at(start.x, model);
+                      : problem_at(start.x, model);
       const Result result = cascade.level(problem, mesh.triangle_count(), kCoarseTolerance);
       start = {model.objective->positions(result.q), result.status};
       if (result.status != Status::Converged) failure = result.message;
@@ -194,7 +188,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
     start.reset();
   }
   if (start) {
-    Problem problem = started_at(start->x, model);
+    Problem problem = problem_at(start->x, model);
     problem.stability = stability;
     if (was_interrupted(start->status)) {
       cascade.finish(judged(problem, start->status, *make_solver()));

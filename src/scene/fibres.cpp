@@ -118,12 +118,13 @@ void find_fibres(const Scene& scene, const Groundwork& ground, Model& model) {
   if (model.fibres.cols() > 0) return;
   SceneFibres fibres = scene.fibres.value_or(SceneFibres());
   if (!scene.fibres) fibres.where = scene.file.string() + ": fibres";
-  const Groundwork& finest = ground.finest != nullptr ? *ground.finest : ground;
+  const bool is_coarser = ground.finest != nullptr && !ground.is_refined;
+  const Groundwork& finest = is_coarser ? *ground.finest : ground;
   std::optional<FibreField>& found = *finest.fibres;
   if (!found) found = field_of_scene(fibres, finest);
   const FibreField* field = &*found;
   FibreField coarse;
-  if (ground.finest != nullptr) {
+  if (is_coarser) {
     std::vector<int> kept(static_cast<size_t>(model.mesh.vertex_count()));
     for (int v = 0; v < finest.model.mesh.vertex_count(); ++v)
       if (const int here = ground.number[static_cast<size_t>(v)]; here >= 0)

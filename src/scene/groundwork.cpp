@@ -247,7 +247,9 @@ Groundwork lay_groundwork(const Scene& scene) {
 
 std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
                                 const std::string& where) {
-  if (ground.finest == nullptr) return selected_nodes(selection, ground.model, where);
+  const bool is_listed = selection.kind == NodeSelection::Kind::Indices;
+  if (ground.finest == nullptr || (ground.is_refined && !is_listed))
+    return selected_nodes(selection, ground.model, where);
   std::vector<int> nodes;
   for (const int node : selected_nodes(selection, ground.finest->model, where))
     if (const int here = ground.number[static_cast<size_t>(node)]; here >= 0) nodes.push_back(here);
@@ -270,6 +272,14 @@ const TriangleMesh& scene_mesh(const Groundwork& ground) {
 Vector at_vertices(const Vector& values, const Groundwork& ground) {
   if (ground.finest == nullptr) return values;
   Vector here(ground.model.mesh.vertex_count());
+  if (ground.is_refined) {
+    const Vector coarse = at_vertices(values, *ground.coarser);
+    here.head(coarse.size()) = coarse;
+    for (size_t k = 0; k < ground.parents.size(); ++k)
+      here[coarse.size() + static_cast<Eigen::Index>(k)] =
+          0.5 * (coarse[ground.parents[k][0]] + coarse[ground.parents[k][1]]);
+    return here;
+  }
   for (Eigen::Index v = 0; v < values.size(); ++v)
     if (const int kept = ground.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = values[v];
   return here;
@@ -277,6 +287,7 @@ Vector at_vertices(const Vector& values, const Groundwork& ground) {
 
 Vector on_triangles(const Vector& values, const Groundwork& ground) {
   if (ground.finest == nullptr) return values;
+  if (ground.is_refined) return on_triangles(values, *ground.coarser).transpose().replicate(4, 1).reshaped();
   const TriangleMesh& fine = ground.finest->model.mesh;
   Vector sum = Vector::Zero(fine.vertex_count()), count = sum;
   for (int t = 0; t < fine.triangle_count(); ++t)

@@ -5,6 +5,7 @@
 #include "scene/prescribed_motion.hpp"
 #include "scene/term_types.hpp"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,13 +27,20 @@ struct Groundwork {
 
   // The fibres of the scene's own mesh once they were asked for, for the coarser meshes too.
   std::shared_ptr<std::optional<FibreField>> fibres = std::make_shared<std::optional<FibreField>>();
+
+  // On a mesh that is finer than the scene's own, on which nodes are selected anew: the next coarser one, whose
+  // triangles were cut into four, and the ends of the edges that the vertices added here halve.
+  bool is_refined = false;
+  const Groundwork* coarser = nullptr;
+  std::vector<std::array<int, 2>> parents = {};
 };
 
 // Reads the scene's files, checks the mesh and numbers the nodes. Throws InputError with all defects of
 // these.
 Groundwork lay_groundwork(const Scene& scene);
 
-// The nodes that a selection means on the scene's own mesh, those that are gone left out.
+// The nodes that a selection means on the scene's own mesh, those that are gone left out; on a refined mesh
+// those that it means there, listed nodes excepted.
 std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
                                 const std::string& where);
 

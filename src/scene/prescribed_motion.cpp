@@ -87,6 +87,14 @@ Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vect
   return prescribed;
 }
 
+Vec3 place_on_path(const Vec3& start, const std::vector<Vec3>& path, double t) {
+  const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(path.size());
+  const size_t section = std::min(static_cast<size_t>(place), path.size() - 1);
+  const Vec3 from = section == 0 ? start : path[section - 1];
+  const double part = place - static_cast<double>(section);
+  return part == 1 ? path[section] : Vec3(from + part * (path[section] - from));
+}
+
 MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps) {
   MotionPath motion;
   const size_t stations = station_count(prescribed, X);
@@ -94,13 +102,7 @@ MotionPath motion_path(const Prescribed& prescribed, const Points& X, int steps)
   motion.steps = steps > 0 ? steps : static_cast<int>(stations);
   motion.positions = [paths = prescribed.paths, X](double t) {
     Points x = X;
-    for (const auto& [node, path] : paths) {
-      const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(path.size());
-      const size_t section = std::min(static_cast<size_t>(place), path.size() - 1);
-      const Vec3 from = section == 0 ? Vec3(X.col(node)) : path[section - 1];
-      const double part = place - static_cast<double>(section);
-      x.col(node) = part == 1 ? path[section] : Vec3(from + part * (path[section] - from));
-    }
+    for (const auto& [node, path] : paths) x.col(node) = place_on_path(X.col(node), path, t);
     return x;
   };
   return motion;

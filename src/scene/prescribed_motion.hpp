@@ -22,6 +22,10 @@ Prescribed prescribe(const std::vector<BoundaryEntry>& boundary, const std::vect
                      const Model& model, const std::map<std::string, Points>& points,
                      std::vector<std::string>& defects);
 
+// Where a node that starts at `start` is on its path at 0 <= t <= 1: on straight lines from station to
+// station, with as much of t for each. Pre: the path has a station.
+Vec3 place_on_path(const Vec3& start, const std::vector<Vec3>& path, double t);
+
 // The motion along straight lines from station to station, each path at constant t per section.
 // steps: as given, or where 0 one for each station: the free nodes are carried along, so that a long step
 // tears nothing.

@@ -2,6 +2,8 @@
 
 #include "mesh/surface_distance.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 namespace {
 
@@ -11,12 +13,25 @@ DistanceFigures figures(const SurfaceDistance& distance) {
 
 }  // namespace
 
+DistanceFigures both_directions(const ReferenceDistance& distance) {
+  const DistanceFigures &to = distance.to_reference, &from = distance.from_reference;
+  return {(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)};
+}
+
+DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b) {
+  return both_directions({figures(surface_distance(a, b)), figures(surface_distance(b, a)), std::nullopt});
+}
+
+TriangleMesh surface_at(const Model& model, const Points& x) {
+  TriangleMesh surface = model.mesh;
+  surface.vertices = x.leftCols(model.mesh.vertex_count());
+  return surface;
+}
+
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
   if (!model.closed_reference) return std::nullopt;
   const TriangleMesh& reference = *model.closed_reference;
-  TriangleMesh closed;
-  closed.vertices = fields.x.leftCols(model.mesh.vertex_count());
-  closed.triangles = model.mesh.triangles;
+  const TriangleMesh closed = surface_at(model, fields.x);
   const SurfaceDistance there = surface_distance(closed, reference);
   fields.reference_distance = there.vertex_distances;
   ReferenceDistance distance{figures(there), figures(surface_distance(reference, closed)), std::nullopt};

@@ -21,6 +21,15 @@ struct ReferenceDistance {
   std::optional<VertexDistance> same_vertex;  // when both have the same triangles
 };
 
+// Both directions together: the mean of the means, the greater percentile and maximum.
+DistanceFigures both_directions(const ReferenceDistance& distance);
+
+// The same between any two surfaces. Throws InputError when one of them has no area.
+DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b);
+
+// The model's surface with its nodes at x (3 x node_count, relative to the origin).
+TriangleMesh surface_at(const Model& model, const Points& x);
+
 // Nothing for a model without a closed reference. Also fills fields.reference_distance.
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields);
 

@@ -70,11 +70,9 @@ Json figures_json(const DistanceFigures& figures) {
 }
 
 Json reference_json(const ReferenceDistance& distance) {
-  const DistanceFigures &to = distance.to_reference, &from = distance.from_reference;
-  Json json =
-      figures_json({(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)});
-  json["to_reference"] = figures_json(to);
-  json["from_reference"] = figures_json(from);
+  Json json = figures_json(both_directions(distance));
+  json["to_reference"] = figures_json(distance.to_reference);
+  json["from_reference"] = figures_json(distance.from_reference);
   if (distance.same_vertex)
     json["same_vertex"] = {{"mean_mm", number(distance.same_vertex->mean)},
                            {"max_mm", number(distance.same_vertex->max)}};

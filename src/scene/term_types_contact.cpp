@@ -80,9 +80,9 @@ TermPointer build_barrier(const TermSpec& spec, BuildContext& context) {
   const TriangleMesh& mesh = model.mesh;
   if (mesh.triangle_count() == 0) throw InputError(p.where() + ": contact needs a mesh");
   ContactBarrierOptions options;
-  if (p.has("exclude") && context.multiplicity(nullptr, p.where()) > 1)
+  if (p.has("exclude") && context.multiplicity(nullptr, p.where()) != 1)
     throw InputError(p.where("exclude") +
-                     ": names facets of the scene's own mesh, which a coarser one has not");
+                     ": names facets of the scene's own mesh, which another one has not");
   if (p.has("exclude"))
     options.excluded =
         read_facet_pairs(p.text("exclude"), mesh.triangle_count() + static_cast<int>(model.obstacles.cols()));

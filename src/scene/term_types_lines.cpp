@@ -80,7 +80,7 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
   for (const RestLine& line : rest_lines(p, context)) {
     Cable::Rest element{0, 0, 0, p.number_or("tension", 0)};
     if (is_elastic) {
-      const double area = p.number_or("area", line.area);
+      const double area = p.number_or("area", line.area) * p.number("area_scale");
       element.length = line.length * p.number("length_scale");
       if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
       if (element.length <= 0) {
@@ -106,7 +106,7 @@ TermPointer build_cable_law(const TermSpec& spec, BuildContext& context, const L
   std::vector<typename CableLaw<Law>::Rest> rest;
   std::vector<std::string> defects;
   for (const RestLine& line : rest_lines(p, context)) {
-    const double area = p.number_or("area", line.area), length = line.length * p.number("length_scale");
+    const double area = p.number_or("area", line.area) * p.number("area_scale"), length = line.length * p.number("length_scale");
     if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
     if (length <= 0) {
       warn_of_no_length(line, context.model);
@@ -208,6 +208,14 @@ KeySpec area_key() {
           .doc = "Cross-section; default: that of each chord of the network."};
 }
 
+KeySpec area_scale_key() {
+  return {.name = "area_scale",
+          .fallback = "1",
+          .min = 0,
+          .excludes_min = true,
+          .doc = "Factor on all cross-sections."};
+}
+
 KeySpec smoothing_key() {
   return {.name = "smoothing",
           .fallback = "0.002",
@@ -250,7 +258,7 @@ std::vector<TermType> line_term_types() {
                                .min = 0,
                                .excludes_min = true,
                                .doc = "Tension of a constant-force cable."},
-                              area_key(), smoothing_key()},
+                              area_key(), area_scale_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
        .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : Defects{}; },
@@ -260,7 +268,7 @@ std::vector<TermType> line_term_types() {
        .spec = {.keys = with({positive("young_pre", kPressure, "Young's modulus below the knee."),
                               positive("young_post", kPressure, "Slope beyond the knee."),
                               positive("transition_strain", kDimensionless, "Engineering strain of the knee."),
-                              knee_key(), area_key(), smoothing_key()},
+                              knee_key(), area_key(), area_scale_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check =
@@ -283,7 +291,7 @@ std::vector<TermType> line_term_types() {
                                .kind = KeyKind::Quantities,
                                .required = true,
                                .doc = "Their exponents."},
-                              area_key(), smoothing_key()},
+                              area_key(), area_scale_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check =
@@ -301,7 +309,7 @@ std::vector<TermType> line_term_types() {
                                        "the fibres are straight."),
                               positive("radius_ratio", kDimensionless,
                                        "Amplitude over radius of the fibre, R0/r0."),
-                              knee_key(), area_key(), smoothing_key()},
+                              knee_key(), area_key(), area_scale_key(), smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check = check_area,

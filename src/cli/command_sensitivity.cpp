@@ -1,0 +1,108 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "core/error.hpp"
+#include "scene/sensitivity.hpp"
+#include "scene/units.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : StudyArguments {
+  std::vector<std::string> parameters;
+  std::string perturbation = "5%";
+  bool starts_anew = false;
+};
+
+// "5%" or "0.05".
+double share(const std::string& text) {
+  const bool is_percent = !text.empty() && text.back() == '%';
+  const std::string number = is_percent ? text.substr(0, text.size() - 1) : text;
+  try {
+    return quantity_value(number, kDimensionless) * (is_percent ? 0.01 : 1);
+  } catch (const InputError&) {
+    throw InputError("--perturb: \"" + text + "\" is no share; write 5% or 0.05");
+  }
+}
+
+void print_cell(const std::optional<double>& value) {
+  if (value)
+    std::printf(" %10.3f", *value);
+  else
+    std::printf(" %10s", "-");
+}
+
+void print_header(bool starts_anew) {
+  std::printf("mean distances in mm, per 100 %% of each parameter; solves start from %s\n",
+              starts_anew ? "the scene's own shape" : "the first solution");
+  std::printf("  %-32s %12s %-7s %10s %10s %11s %8s\n", "parameter", "value", "", "movement", "error",
+              "iterations", "s");
+}
+
+void print_row(const ParameterSensitivity& p) {
+  std::printf("  %-32s %12.6g %-7s", p.name.c_str(), p.value, p.unit.c_str());
+  print_cell(p.movement);
+  print_cell(p.error_change);
+  std::printf("   %4d %4d %8.2f", p.smaller.iterations, p.larger.iterations,
+              p.smaller.wall_s + p.larger.wall_s);
+  for (const SensitivityRun* run : {&p.smaller, &p.larger})
+    if (run->status != Status::Converged)
+      std::printf("  times %g: %s, residual %.1e", run->factor, std::string(status_name(run->status)).c_str(),
+                  run->residual);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void study(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  const Scene scene = load_scene(arguments.scene);
+  SensitivityOptions options;
+  options.parameters = arguments.parameters;
+  options.perturbation = share(arguments.perturbation);
+  options.starts_anew = arguments.starts_anew;
+  bool has_header = false;
+  options.report = [&](const ParameterSensitivity& found) {
+    end_progress();
+    if (!has_header) print_header(arguments.starts_anew);
+    has_header = true;
+    print_row(found);
+  };
+  const std::filesystem::path folder = arguments.prepared_folder(scene);
+  const SensitivityStudy found = study_sensitivity(scene, all_solvers(), options, arguments.options());
+  end_progress();
+  const SensitivityRun& base = found.base;
+  std::printf("first solve: %s, residual %.1e, %d iterations, %.2f s",
+              std::string(status_name(base.status)).c_str(), base.residual, base.iterations, base.wall_s);
+  if (base.to_reference) std::printf(", mean distance to the reference %.3f mm", base.to_reference->mean);
+  std::printf("\n");
+  if (base.status != Status::Converged) std::printf("without it there is nothing to compare with\n");
+  write_sensitivity(folder, found);
+  std::printf("written to %s (sensitivity.json, sensitivity.csv)\n", folder.string().c_str());
+  exit_code = found.has_converged() ? kConverged : kNotConverged;
+}
+
+}  // namespace
+
+void add_sensitivity_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "sensitivity", "How far the solution moves with each parameter: every one made smaller and larger");
+  add_study_arguments(*command, *arguments);
+  command->add_option(
+      "--parameters", arguments->parameters,
+      "TERM.KEY ..., such as chords.length_scale or chords.diameter (default: all numbers of all "
+      "elastic terms)");
+  command->add_option("--perturb", arguments->perturbation, "Share by which each is changed (default: 5%)");
+  command->add_flag("--from-start", arguments->starts_anew,
+                    "Solve each from the scene's own start instead of the first solution");
+  command->callback([arguments, &exit_code] { study(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,96 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "scene/region_tuning.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : StudyArguments {
+  std::string regions = "14";
+  RegionTuningOptions tuning;
+  double orifice = 0;
+};
+
+void print_state(const char* label, const TuningState& state) {
+  std::printf("  %-22s greatest chord strain %.4f, %d chords beyond yield", label, state.max_chord_strain,
+              state.strained_chords);
+  if (state.orifice_area_mm2) std::printf(", orifice %.2f mm2", *state.orifice_area_mm2);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void tune(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  const Scene scene = load_scene(arguments.scene);
+  RegionTuningOptions options = arguments.tuning;
+  options.regions = arguments.regions == "mesh" ? 0 : std::stoi(arguments.regions);
+  if (arguments.orifice > 0) options.orifice_limit_mm2 = arguments.orifice;
+  options.report = [](int round, const TuningState& state) {
+    end_progress();
+    print_state(("round " + std::to_string(round)).c_str(), state);
+  };
+  const std::filesystem::path folder = arguments.prepared_folder(scene);
+  const RegionTuning found = tune_regions(scene, all_solvers(), options, arguments.options());
+  end_progress();
+  std::printf("%s\n", found.message.c_str());
+  print_state("before", found.before);
+  print_state("after", found.after);
+  if (found.orifice_limit_mm2) std::printf("  %-22s %.2f mm2\n", "orifice at most", *found.orifice_limit_mm2);
+  std::printf("  %-22s %d (%d not converged) in %d rounds, %.2f s\n", "solves", found.solves,
+              found.failed_solves, found.rounds, found.wall_s);
+  for (const TunedFactor& region : found.regions)
+    std::printf("  %-32s %5d triangles, stiffness times %.4f\n", region.name.c_str(), region.triangles,
+                region.factor);
+  for (const TunedFactor& chord : found.chords)
+    std::printf("  %-32s cross-sections times %.4f\n", chord.name.c_str(), chord.factor);
+  write_region_tuning(folder, found);
+  std::printf("written to %s (region_tuning.json, region_tuning.csv, triangle_factors.csv)\n",
+              folder.string().c_str());
+  exit_code = found.is_reached ? kConverged : kNotConverged;
+}
+
+std::string regions_defect(const std::string& text) {
+  const bool is_number =
+      !text.empty() && text.size() < 5 && text.find_first_not_of("0123456789") == std::string::npos;
+  if (text == "mesh" || (is_number && std::stoi(text) > 0)) return "";
+  return "expected a number above 0, or \"mesh\" for the regions of the mesh";
+}
+
+}  // namespace
+
+void add_tune_regions_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "tune-regions", "Stiffness of each leaflet region with which no chord exceeds its yield strain");
+  add_study_arguments(*command, *arguments);
+  RegionTuningOptions& tuning = arguments->tuning;
+  command->add_option("--yield-strain", tuning.yield_strain, "That no chord may exceed")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--regions", arguments->regions,
+                   "How many to split the leaflets into, or \"mesh\" for those of the mesh (default: 14)")
+      ->check(regions_defect);
+  command->add_option("--zones", tuning.zones, "From annulus to free edge (default: 2)")
+      ->check(CLI::Range(1, 10));
+  command
+      ->add_option("--orifice", arguments->orifice,
+                   "Greatest orifice [mm2] (default: 2 % of the annulus area)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--chord-sections", tuning.tunes_chords, "Tune the cross-sections of the chords too");
+  command
+      ->add_option("--greatest-factor", tuning.greatest_factor,
+                   "On a stiffness; its inverse is the least (default: 10)")
+      ->check(CLI::Range(1.001, 1e6));
+  command->callback([arguments, &exit_code] { tune(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

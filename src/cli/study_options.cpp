@@ -1,0 +1,38 @@
+#include "cli/study_options.hpp"
+
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace coapt::cli {
+
+RunOptions StudyArguments::options() const {
+  RunOptions options;
+  options.solver = solver;
+  if (tolerance > 0) options.tolerance = tolerance;
+  if (max_seconds > 0) options.max_seconds = max_seconds;
+  options.factorisations = all_factorisations();
+  options.judge = intersection_judge();
+  options.observer = make_observer();
+  return options;
+}
+
+std::filesystem::path StudyArguments::prepared_folder(const Scene& read) const {
+  const std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
+  prepare_result_folder(path);
+  return path;
+}
+
+void add_study_arguments(CLI::App& command, StudyArguments& arguments) {
+  command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
+  command.add_option("-o,--output", arguments.folder,
+                     "Folder of the files (default: the scene's result folder)");
+  command.add_option("--solver", arguments.solver, "Solver (default: the scene's)");
+  command.add_option("--tolerance", arguments.tolerance, "On the residual (default: the scene's)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--max-seconds", arguments.max_seconds, "Of each solve (default: the scene's)")
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,26 @@
+// Options that every command with many solves has.
+#pragma once
+
+#include "scene/run.hpp"
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace coapt::cli {
+
+struct StudyArguments {
+  std::string scene, folder, solver;
+  double tolerance = 0, max_seconds = 0;  // 0: not given
+
+  RunOptions options() const;
+  // Where the files go: `-o`, or the scene's result folder. Made if it is missing. Throws InputError.
+  std::filesystem::path prepared_folder(const Scene& read) const;
+};
+
+// SCENE, -o, --solver, --tolerance, --max-seconds.
+void add_study_arguments(CLI::App& command, StudyArguments& arguments);
+
+}  // namespace coapt::cli

@@ -1,0 +1,22 @@
+// What the files of the studies share. Private to this room.
+#pragma once
+
+#include "scene/region_tuning.hpp"
+#include "scene/sensitivity.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace coapt {
+
+using Json = nlohmann::ordered_json;
+
+// NAME.json and NAME.csv in the folder, each whole or not there.
+void write_study(const std::filesystem::path& folder, const std::string& name, const Json& json,
+                 const std::string& csv);
+
+// A table with its first line, of 12 digits.
+std::ostringstream csv_begun(const std::string& header);
+
+}  // namespace coapt

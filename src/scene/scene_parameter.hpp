@@ -1,0 +1,34 @@
+// Numbers of a scene's terms by name, `TERM.KEY`: what a study of parameters varies.
+#pragma once
+
+#include "energy/objective.hpp"
+#include "scene/scene.hpp"
+#include "scene/units.hpp"
+
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// A number of a term. `TERM.diameter`, of a cable, stands for its cross-sections, which go with the square.
+struct SceneParameter {
+  std::string name;  // TERM.KEY
+  size_t term = 0;   // index among the scene's terms
+  std::string key;   // that is scaled
+  double power = 1;  // of the factor, by which the key is scaled
+  double value = 0;  // before any change, in internal units; 1 for a diameter, whose value differs by chord
+  Dimension dimension = kDimensionless;
+};
+
+// Throws InputError for a name that is not TERM.KEY, an unknown term or key (listing those there are), a key
+// that is no number, and a number that is not given, or zero: a relative change means nothing there.
+SceneParameter find_parameter(const Scene& scene, const std::string& name);
+
+// Every number that is not zero of every term that is an internal energy (no load, no contact), and the
+// diameters of elastic cables. objective: built from the scene.
+std::vector<SceneParameter> elastic_parameters(const Scene& scene, const Objective& objective);
+
+// The scene with the parameter times `factor`. Throws InputError where that is beyond the limits of the key.
+Scene scaled(Scene scene, const SceneParameter& parameter, double factor);
+
+}  // namespace coapt

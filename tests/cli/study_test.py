@@ -1,0 +1,191 @@
+"""Drives the studies of the command as a user does: sensitivity, mesh-study, tune-regions.
+
+Usage: study_test.py COAPT_BINARY [unittest arguments]
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+COAPT = os.path.abspath(sys.argv[1])
+
+
+def coapt(*arguments):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=200)
+
+
+class StudyTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.out = self.folder / "result"
+
+    def generate(self, shape, *options):
+        run = coapt("generate", shape, "-o", self.folder, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.folder / "scene.json"
+
+    def valve(self, triangles=300):
+        return self.generate("mitral", "--triangles", triangles, "--contact", "none")
+
+    def study(self, name, *arguments, code=0):
+        run = coapt(name, *arguments, "-o", self.out)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        self.assertEqual(run.stderr, "")
+        file = {"sensitivity": "sensitivity", "mesh-study": "mesh_study", "tune-regions": "region_tuning"}[name]
+        rows = list(csv.DictReader((self.out / f"{file}.csv").read_text().splitlines()))
+        return run.stdout, json.loads((self.out / f"{file}.json").read_text()), rows
+
+    def assert_bad_input(self, run, *pieces):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for piece in pieces:
+            self.assertIn(piece, run.stderr)
+
+    # --- sensitivity
+
+    def movements(self, *arguments):
+        text, found, rows = self.study("sensitivity", *arguments)
+        self.assertTrue(found["converged"], text)
+        self.assertEqual(len(rows), 1 + 2 * len(found["parameters"]))
+        self.assertTrue(all(row["status"] == "converged" for row in rows))
+        return {p["name"]: p["movement_mm_per_100_percent"] for p in found["parameters"]}
+
+    def test_chord_length_matters_most_to_a_valve(self):
+        moved = self.movements(self.valve(625))
+        self.assertEqual(set(moved), {"leaflets.young", "leaflets.poisson", "leaflets.thickness", "bending.scale",
+                                      "chords.young", "chords.length_scale", "chords.diameter", "chords.smoothing"})
+        # Hammer et al. 2011 found some 8 mm for the length of the chords, far less for their section.
+        self.assertGreater(moved["chords.length_scale"], 5)
+        self.assertLess(moved["chords.length_scale"], 12)
+        for name in set(moved) - {"chords.length_scale"}:
+            self.assertLess(moved[name], moved["chords.length_scale"] / 4, name)
+        # Cross-sections go with the square of the diameter, and with the modulus they are one number.
+        self.assertAlmostEqual(moved["chords.diameter"] / moved["chords.young"], 2, delta=0.1)
+
+    def test_solves_from_the_first_solution_and_from_the_start_agree(self):
+        scene, wanted = self.valve(), ["--parameters", "leaflets.young", "chords.length_scale", "--perturb", "0.1"]
+        warm, cold = self.movements(scene, *wanted), self.movements(scene, *wanted, "--from-start")
+        for name in warm:
+            self.assertAlmostEqual(warm[name], cold[name], delta=1e-3 * warm[name])
+
+    def test_deflection_of_a_disc_goes_with_the_cube_root_of_its_stiffness(self):
+        # Hencky: the deflection of a membrane without prestress is proportional to (E h)^(-1/3).
+        scene = self.generate("disc", "--triangles", 400)
+        moved = self.movements(scene, "--parameters", "cst_stvk.young", "cst_stvk.thickness", "--perturb", "2%")
+        self.assertAlmostEqual(moved["cst_stvk.young"], moved["cst_stvk.thickness"], delta=1e-3)
+        coapt("solve", scene, "-o", self.out)
+        deflection = json.loads((self.out / "result.json").read_text())["metrics"]["max_displacement_mm"]
+        # Its mean over the disc lies between that of a cone (1/3) and that of a cylinder (1).
+        self.assertGreater(moved["cst_stvk.young"], deflection / 3 / 3)
+        self.assertLess(moved["cst_stvk.young"], deflection / 3)
+
+    def test_a_reference_surface_gives_a_change_of_error(self):
+        scene = self.valve()
+        coapt("solve", scene, "-o", self.out)
+        (self.out / "closed.obj").rename(self.folder / "closed.obj")
+        text = scene.read_text()
+        scene.write_text(text.replace('"mesh":', '"reference": {"closed_surface": "closed.obj"}, "mesh":', 1))
+        text, found, _ = self.study("sensitivity", scene, "--parameters", "chords.length_scale")
+        self.assertLess(found["first"]["distance_to_reference"]["mean_mm"], 1e-6)
+        parameter = found["parameters"][0]
+        for run in parameter["runs"]:  # the reference is the first solution
+            self.assertAlmostEqual(run["distance_to_reference"]["mean_mm"], run["distance_to_base"]["mean_mm"], places=6)
+        self.assertLess(abs(parameter["error_change_mm_per_100_percent"]), parameter["movement_mm_per_100_percent"])
+
+    def test_says_which_solves_did_not_converge(self):
+        scene = self.valve()
+        scene.write_text(scene.read_text().replace('"solver": {', '"solver": {"max_iterations": 17, '))
+        text, found, rows = self.study("sensitivity", scene, "--from-start", "--parameters", "chords.length_scale",
+                                       "--perturb", "60%", code=1)
+        self.assertIn("iteration_limit", text)
+        self.assertIn("iteration_limit", {row["status"] for row in rows})
+        self.assertFalse(found["converged"])
+
+    def test_names_every_bad_parameter(self):
+        run = coapt("sensitivity", self.valve(), "--parameters", "young", "leaflet.young", "leaflets.yuong",
+                    "leaflets.prestress", "--perturb", "5")
+        self.assert_bad_input(run, '"young"', "TERM.KEY", '"leaflets"?', '"young"?', "is zero", "--perturb")
+        self.assertFalse((self.out / "sensitivity.json").exists())
+        run = coapt("sensitivity", self.folder / "scene.json", "--parameters", "leaflets.poisson", "--perturb", "20%")
+        self.assert_bad_input(run, "leaflets.poisson", "0.4999")
+        self.assert_bad_input(coapt("sensitivity", self.folder / "scene.json", "--perturb", "much"), "--perturb", "much")
+
+    # --- mesh-study
+
+    def test_refined_disc_converges_with_second_order(self):
+        _, found, rows = self.study("mesh-study", self.generate("square", "--triangles", 128), "--levels", 3)
+        levels = found["levels"]
+        self.assertEqual([level["triangles"] for level in levels], [levels[0]["triangles"] * 4**k for k in range(4)])
+        self.assertTrue(all(level["status"] == "converged" for level in levels))
+        self.assertGreater(levels[3]["order"], 1.5)
+        self.assertLess(levels[3]["order"], 2.5)
+        self.assertEqual(len(rows), 4)
+        for level in levels:
+            self.assertTrue((self.out / level["file"]).exists())
+
+    def test_refined_valve_keeps_its_supports_and_chords(self):
+        text, found, _ = self.study("mesh-study", self.valve(), "--levels", 1)
+        coarse, fine = found["levels"]
+        self.assertLess(fine["distance_to_previous"]["mean_mm"], 0.5)
+        self.assertAlmostEqual(fine["max_chord_force_n"] / coarse["max_chord_force_n"], 1, delta=0.2)
+        self.assertAlmostEqual(fine["orifice_area_mm2"], coarse["orifice_area_mm2"], delta=5)
+        self.assertIn("triangles", text)
+
+    def test_refuses_levels_and_scenes_without_a_mesh(self):
+        self.assertEqual(coapt("mesh-study", self.valve(), "--levels", 0).returncode, 2)
+        self.assert_bad_input(coapt("mesh-study", self.generate("catenary")), "mesh")
+
+    # --- tune-regions
+
+    def test_tunes_an_overstrained_valve(self):
+        text, found, rows = self.study("tune-regions", self.valve(625), "--yield-strain", 0.12)
+        self.assertTrue(found["reached"], text)
+        self.assertGreater(found["before"]["max_chord_strain"], 0.15)
+        self.assertGreater(found["before"]["strained_chords"], 0)
+        self.assertLessEqual(found["after"]["max_chord_strain"], 0.12)
+        self.assertEqual(found["after"]["strained_chords"], 0)
+        self.assertLessEqual(found["after"]["orifice_area_mm2"], found["orifice_limit_mm2"])
+        self.assertEqual(len(rows), 14)
+        self.assertEqual(sum(int(row["triangles"]) for row in rows), 630)
+        self.assertGreater(max(abs(math.log(float(row["factor"]))) for row in rows), 0.1)
+        per_triangle = list(csv.DictReader((self.out / "triangle_factors.csv").read_text().splitlines()))
+        factors = {row["name"]: row["factor"] for row in rows}
+        self.assertEqual(len(per_triangle), 630)
+        self.assertTrue(all(factors[row["region"]] == row["factor"] for row in per_triangle))
+
+    def test_cross_sections_need_less(self):
+        _, found, _ = self.study("tune-regions", self.valve(), "--yield-strain", 0.12, "--regions", "mesh",
+                                 "--chord-sections")
+        self.assertTrue(found["reached"])
+        self.assertEqual([region["name"] for region in found["regions"]], ["anterior", "posterior"])
+        self.assertGreater(found["chords"][0]["area_scale"], 1)
+
+    def test_says_what_cannot_be_reached(self):
+        text, found, _ = self.study("tune-regions", self.valve(), "--yield-strain", 1e-4, "--greatest-factor", 1.2,
+                                    "--regions", "mesh", code=1)
+        self.assertFalse(found["reached"])
+        self.assertIn("no factors from 0.833333 to 1.2", text)
+        self.assertGreater(found["after"]["strained_chords"], 0)
+
+    def test_leaves_a_valve_alone_that_needs_nothing(self):
+        _, found, rows = self.study("tune-regions", self.valve(), "--yield-strain", 1)
+        self.assertEqual((found["message"], found["solves"]), ("nothing to tune", 1))
+        self.assertEqual({row["factor"] for row in rows}, {"1"})
+
+    def test_refuses_scenes_and_options_that_make_no_sense(self):
+        scene = self.valve()
+        self.assert_bad_input(coapt("tune-regions", scene), "--yield-strain")
+        self.assert_bad_input(coapt("tune-regions", scene, "--yield-strain", 0.1, "--regions", 3), "3 regions", "2 zones")
+        self.assert_bad_input(coapt("tune-regions", scene, "--yield-strain", 0.1, "--regions", "many"), "mesh")
+        scene = self.generate("disc", "--triangles", 100)
+        self.assert_bad_input(coapt("tune-regions", scene, "--yield-strain", 0.1), "annulus")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
