@@ -136,6 +136,13 @@ TermPointer build_cable_ogden(const TermSpec& spec, BuildContext& context) {
   return build_cable_law(spec, context, law);
 }
 
+TermPointer build_cable_toe(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  return build_cable_law(
+      spec, context,
+      ToeLine{p.number("young"), p.number("intercept"), p.number("recruitment_strain"), p.number("exponent")});
+}
+
 TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
   return build_cable_law(spec, context,
@@ -301,6 +308,27 @@ std::vector<TermType> line_term_types() {
              return defects;
            },
        .build = build_cable_ogden},
+      {.name = "cable_toe",
+       .summary = "Tendon-like cables: an exponential toe, then linear (Kaiser et al. 2019); tension only.",
+       .spec = {.keys = with({positive("young", kPressure, "Modulus once all fibres are recruited."),
+                              positive("recruitment_strain", kDimensionless,
+                                       "Engineering strain at which they all are."),
+                              {.name = "intercept",
+                               .required = true,
+                               .min = 0,
+                               .doc = "Strain at which the straight part, prolonged, has no stress."},
+                              positive("exponent", kDimensionless, "Exponent of the toe."), area_key(),
+                              area_scale_key(), smoothing_key()},
+                             line_keys()),
+                .groups = {{{"network", "edges"}, true}}},
+       .check =
+           [](const Parameters& p) {
+             Defects defects = check_area(p);
+             if (p.number("intercept") >= p.number("recruitment_strain"))
+               defects.push_back("intercept: must be less than recruitment_strain");
+             return defects;
+           },
+       .build = build_cable_toe},
       {.name = "cable_crimped_fibre",
        .summary = "Bundles of crimped collagen fibres (Freed & Doehring 2005); tension only.",
        .spec = {.keys = with({positive("fibre_young", kPressure, "Modulus of the straight fibres."),

@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
+#include "scene/detail/read_points.hpp"
 #include "scene/term_types.hpp"
 
 #include <algorithm>
@@ -42,8 +43,23 @@ std::pair<Vec3, Vec3> end_points(const Parameters& p, const BuildContext& contex
   return {a, X.col(last)};
 }
 
-TermPointer build_field(const TermSpec& spec, BuildContext& context) {
-  const Parameters& p = spec.parameters;
+// One force per vertex of the scene's own mesh, from a file; a vertex of a coarser one carries its share of
+// those that are gone.
+Points read_forces(const Parameters& p, const BuildContext& context) {
+  const Points read = read_csv(p.text("forces"));
+  if (read.cols() != context.scene_mesh.vertex_count())
+    throw InputError(p.text("forces") + ": has " + std::to_string(read.cols()) + " forces; the mesh has " +
+                     std::to_string(context.scene_mesh.vertex_count()) + " vertices");
+  Points forces = Points::Zero(3, context.model.X.cols());
+  const double share = context.multiplicity(nullptr, p.where("forces"));
+  for (int c = 0; c < 3; ++c)
+    forces.row(c).head(context.model.mesh.vertex_count()) =
+        share * context.at_vertices(read.row(c).transpose()).transpose();
+  return forces;
+}
+
+Points field_forces(const Parameters& p, BuildContext& context) {
+  if (p.has("forces")) return read_forces(p, context);
   Model& model = context.model;
   Vector magnitudes = loaded_nodes(p, context);
   if (p.has("force")) {
@@ -53,14 +69,18 @@ TermPointer build_field(const TermSpec& spec, BuildContext& context) {
     magnitudes = magnitudes.cwiseProduct(rest_areas(model));
     magnitudes *= p.has("pressure") ? p.number("pressure") : p.number("density") * p.number("thickness");
   }
-  Points forces;
   if (p.has("toward_line")) {
     const auto [a, b] = end_points(p, context);
-    forces = forces_toward_line(model.X, magnitudes, a, b);
-  } else {
-    const Vec3 along = p.has("gravity") ? p.vector("gravity") : Vec3(p.vector("direction").normalized());
-    forces = area_forces(magnitudes, along);
+    return forces_toward_line(model.X, magnitudes, a, b);
   }
+  const Vec3 along = p.has("gravity") ? p.vector("gravity") : Vec3(p.vector("direction").normalized());
+  return area_forces(magnitudes, along);
+}
+
+TermPointer build_field(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  Model& model = context.model;
+  const Points forces = field_forces(p, context);
   const Vector areas = rest_areas(model);
   for (int node = 0; node < areas.size(); ++node)
     if (areas[node] > 0)
@@ -74,6 +94,11 @@ std::vector<std::string> check_field(const Parameters& p) {
   std::vector<std::string> defects;
   if (p.has("direction") && p.vector("direction").norm() == 0) defects.push_back("direction: is zero");
   const bool has_magnitude = p.has("pressure") || p.has("force");
+  if (p.has("forces")) {
+    if (has_magnitude || p.has("nodes") || p.has("density") || p.has("thickness"))
+      defects.push_back("forces: says all; pressure, force, nodes, density and thickness do not go with it");
+    return defects;
+  }
   if (p.has("gravity")) {
     if (has_magnitude) defects.push_back("pressure and force do not go with gravity");
     if (!p.has("density") || !p.has("thickness"))
@@ -112,8 +137,8 @@ TermPointer build_pressure(const TermSpec& spec, BuildContext& context) {
 std::vector<TermType> load_term_types() {
   return {
       {.name = "load_field",
-       .summary = "Nodal forces that keep their size and direction: a fixed direction, toward a line, or "
-                  "gravity (Burlina et al. 2010).",
+       .summary = "Nodal forces that keep their size and direction: a fixed direction, toward a line, "
+                  "gravity, or one by one (Burlina et al. 2010).",
        .spec = {.keys = {{.name = "direction",
                           .kind = KeyKind::Triple,
                           .doc = "Direction of the force; its length does not matter."},
@@ -125,6 +150,9 @@ std::vector<TermType> load_term_types() {
                           .kind = KeyKind::Triple,
                           .dimension = kAcceleration,
                           .doc = "Acceleration that acts on the mass of the membrane."},
+                         {.name = "forces",
+                          .kind = KeyKind::File,
+                          .doc = "CSV file with the force (x, y, z in N) on each vertex of the mesh."},
                          {.name = "pressure",
                           .dimension = kPressure,
                           .doc = "Force per rest area around each node."},
@@ -142,7 +170,7 @@ std::vector<TermType> load_term_types() {
                           .min = 0,
                           .excludes_min = true,
                           .doc = "Thickness of the membrane, for gravity."}},
-                .groups = {{{"direction", "toward_line", "gravity"}, true}}},
+                .groups = {{{"direction", "toward_line", "gravity", "forces"}, true}}},
        .check = check_field,
        .build = build_field},
       {.name = "load_pressure",

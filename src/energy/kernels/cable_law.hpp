@@ -24,6 +24,10 @@ struct CableLawName<OgdenLine> {
   static constexpr std::string_view kType = "cable_ogden";
 };
 template <>
+struct CableLawName<ToeLine> {
+  static constexpr std::string_view kType = "cable_toe";
+};
+template <>
 struct CableLawName<CrimpedLine> {
   static constexpr std::string_view kType = "cable_crimped_fibre";
 };
@@ -100,6 +104,7 @@ struct CableLaw {
 
 using CableBilinear = CableLaw<BilinearLine>;
 using CableOgden = CableLaw<OgdenLine>;
+using CableToe = CableLaw<ToeLine>;
 using CableCrimpedFibre = CableLaw<CrimpedLine>;
 
 }  // namespace coapt

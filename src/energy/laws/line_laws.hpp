@@ -58,6 +58,24 @@ struct OgdenLine {
   }
 };
 
+// Tendon-like: an exponential toe until all fibres are recruited, then a straight line:
+//   s = E (e1 - e0) (exp(b e) - 1)/(exp(b e1) - 1) for e < e1,   s = E (e - e0) beyond
+// E modulus [stress], e1 strain of full recruitment, e0 < e1 where the line meets zero stress, b > 0 exponent of
+// the toe. The stress is continuous; its slope is where b (e1 - e0) = 1 - exp(-b e1), as in fits of it. Source:
+// Kaiser et al. 2019.
+struct ToeLine {
+  double young = 0, intercept = 0, recruited = 0, exponent = 1;
+
+  CurveValue at(double e) const {
+    const double end = young * (recruited - intercept), scale = end / std::expm1(exponent * recruited);
+    const auto toe_energy = [&](double at) { return scale * (std::expm1(exponent * at) / exponent - at); };
+    if (e < recruited)
+      return {toe_energy(e), scale * std::expm1(exponent * e), scale * exponent * std::exp(exponent * e)};
+    const double past = e - recruited;
+    return {toe_energy(recruited) + end * past + 0.5 * young * past * past, end + young * past, young};
+  }
+};
+
 // A bundle of crimped fibres.
 struct CrimpedLine {
   CrimpedFibre fibre;

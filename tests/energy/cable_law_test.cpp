@@ -1,0 +1,94 @@
+// Nonlinear cables: the term suite, and their curves against closed forms.
+#include "energy/kernels/cable_law.hpp"
+
+#include "energy/element_term.hpp"
+#include "support/term_suite.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coapt {
+namespace {
+
+BilinearLine bilinear(double stress) { return {stress, {9 * stress, 0.2, 0.05}}; }
+OgdenLine ogden(double stress) { return {{stress, 0.5 * stress, 0}, {6, 12, 0}}; }
+ToeLine toe(double stress) { return {30 * stress, 0.12, 0.15, 45}; }
+CrimpedLine crimped(double stress) { return {CrimpedFibre(20 * stress, 9, 1.6, 0.02)}; }
+
+template <typename Law>
+TermCase line_case(const std::string& label, Law (*law_of)(double), double smoothing, double stretch) {
+  TermCase c;
+  c.label = label;
+  Points chain(3, 4);
+  chain << 0, 0.9, 0.9, 0.1, 0, 0.1, 0.5, 0.7, 0, 0.2, -0.1, 0.1;
+  c.rest = 0.5 * chain;  // all slack
+  c.state = stretch * chain;
+  c.reach = 2e-3;
+  c.make = [=](const Frame& f) -> std::unique_ptr<EnergyTerm> {
+    const double stress = f.force / (f.length * f.length);
+    const std::vector<double> lengths{0.75, 0.65, 0.6};
+    std::vector<typename CableLaw<Law>::Rest> rest;
+    for (const double length : lengths)
+      rest.push_back(CableLaw<Law>::rest(length * f.length, 0.3 * f.length * f.length, smoothing, law_of(stress)));
+    return std::make_unique<ElementTerm<CableLaw<Law>>>("lines", f.nodes({0, 1, 1, 2, 2, 3}), rest);
+  };
+  return c;
+}
+
+template <typename Law>
+void expect_passes(const std::string& label, Law (*law_of)(double)) {
+  EXPECT_EQ(examine_term(line_case(label + ", taut", law_of, 0.002, 1.0)), "");
+  EXPECT_EQ(examine_term(line_case(label + ", rounded", law_of, 0.9, 1.0)), "");
+}
+
+TEST(CableLaw, PassesTheSuite) {
+  expect_passes("bilinear", bilinear);
+  expect_passes("Ogden", ogden);
+  expect_passes("toe", toe);
+  expect_passes("crimped fibre", crimped);
+}
+
+TEST(CableLaw, FollowsTheClosedForms) {
+  const auto b = CableBilinear::rest(2, 0.3, 0.002, bilinear(1));
+  const auto o = CableOgden::rest(2, 0.3, 0.002, ogden(1));
+  for (const double e : {0.01, 0.1, 0.3, 0.6}) {
+    EXPECT_NEAR(CableBilinear::elastic(b, e).force,
+                0.3 * (e + (e <= 0.15 ? 0 : e >= 0.25 ? 9 * (e - 0.2) : 45 * (e - 0.15) * (e - 0.15))), 1e-12);
+    const double l = 1 + e;
+    // Uniaxial Cauchy stress s = sum 2 mu/alpha (l^alpha - l^(-alpha/2)) over the stretch.
+    const double cauchy = 2.0 / 6 * (std::pow(l, 6) - std::pow(l, -3)) +
+                          1.0 / 12 * (std::pow(l, 12) - std::pow(l, -6));
+    EXPECT_NEAR(CableOgden::elastic(o, e).force / (0.3 * cauchy / l), 1, 1e-13);
+  }
+  const auto t = CableToe::rest(2, 0.3, 0, toe(1));
+  EXPECT_NEAR(CableToe::elastic(t, 0.1).force, 0.3 * 0.9 * std::expm1(4.5) / std::expm1(6.75), 1e-13);
+  EXPECT_NEAR(CableToe::elastic(t, 0.2).force, 0.3 * 30 * 0.08, 1e-13);
+  EXPECT_EQ(CableOgden::elastic(o, -0.1).force, 0);
+  EXPECT_EQ(CableOgden::elastic(o, 0).stiffness, 0);
+}
+
+// An exponent next to zero, as fits of real chords have, must not cancel the energy away.
+TEST(CableLaw, OgdenEnergyKeepsItsDigitsAtSmallExponents) {
+  const OgdenLine law{{33.75, 0, 0}, {1.5e-4, 0, 0}};
+  for (const double e : {1e-3, 0.01, 0.1}) {
+    // alpha -> 0: 2 mu/alpha^2 (1/2 + 2/8) (alpha ln l)^2, with a correction of the order of alpha.
+    const double limit = 1.5 * 33.75 * std::pow(std::log1p(e), 2);
+    EXPECT_NEAR(law.at(e).energy / limit, 1, 1e-4);
+    const double h = 1e-6;
+    EXPECT_NEAR((law.at(e + h).energy - law.at(e - h).energy) / (2 * h) / law.at(e).stress, 1, 1e-6);
+  }
+}
+
+TEST(CableLaw, CanBeRoundedMoreForAWhile) {
+  ElementTerm<CableOgden> term("cable", {0, 1}, {CableOgden::rest(2, 0.3, 0.002, ogden(1))});
+  Points x = Points::Zero(3, 2);
+  x(0, 1) = 2.3;
+  Sink value_only;
+  const double sharp = term.evaluate(x, value_only);
+  EXPECT_TRUE(term.round_kinks(0.5));
+  EXPECT_LT(term.evaluate(x, value_only), 0.9 * sharp);
+  term.round_kinks(0);
+  EXPECT_EQ(term.evaluate(x, value_only), sharp);
+}
+
+}  // namespace
+}  // namespace coapt
