@@ -30,6 +30,7 @@ int run_command(int argc, char** argv) {
   add_generate_command(app, exit_code);
   add_import_command(app, exit_code);
   add_chords_command(app, exit_code);
+  add_export_command(app, exit_code);
   add_schema_command(app, exit_code);
   add_mesh_study_command(app, exit_code);
   add_sensitivity_command(app, exit_code);

@@ -23,10 +23,11 @@ std::string extension(const std::filesystem::path& path) {
                    "' is not a mesh format; use .obj, .ply, .stl, .off or .vtp");
 }
 
-VtpSurface vtp_surface(const TriangleMesh& mesh) {
+VtpSurface vtp_surface(const TriangleMesh& mesh, const std::string& space) {
   VtpSurface surface;
   surface.vertices = mesh.vertices;
   surface.triangles = mesh.triangles;
+  if (!space.empty()) surface.texts.push_back({"SPACE", {space}});
   if (mesh.regions.empty()) return surface;
   const auto count = static_cast<Eigen::Index>(mesh.regions.size());
   VtpArray region{"region", Eigen::MatrixXd(1, count), true};
@@ -50,19 +51,19 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   return read(formats::read_whole(path), path.string());
 }
 
-void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
-                std::optional<MeshCoding> coding) {
-  const std::string format = extension(path);
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, std::optional<MeshCoding> coding,
+                const std::string& space) {
+  const std::string format = extension(path), remark = space.empty() ? "" : "SPACE=" + space;
   if (format == ".obj")
-    formats::write_whole(path, formats::write_obj(mesh));
+    formats::write_whole(path, formats::write_obj(mesh, remark));
   else if (format == ".ply")
-    formats::write_whole(path, formats::write_ply(mesh, coding.value_or(MeshCoding::Binary)));
+    formats::write_whole(path, formats::write_ply(mesh, coding.value_or(MeshCoding::Binary), remark));
   else if (format == ".stl")
-    formats::write_whole(path, formats::write_stl(mesh, coding.value_or(MeshCoding::Ascii)));
+    formats::write_whole(path, formats::write_stl(mesh, coding.value_or(MeshCoding::Ascii), remark));
   else if (format == ".off")
-    formats::write_whole(path, formats::write_off(mesh));
+    formats::write_whole(path, formats::write_off(mesh, remark));
   else if (format == ".vtp")
-    write_vtp(path, vtp_surface(mesh), coding.value_or(MeshCoding::Binary));
+    write_vtp(path, vtp_surface(mesh, space), coding.value_or(MeshCoding::Binary));
   else
     refuse_extension(path);
 }

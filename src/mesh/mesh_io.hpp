@@ -28,10 +28,11 @@ enum class MeshCoding { Ascii, Binary };
 // Writes a surface with its regions where the format can hold them (OBJ, PLY, STL ASCII, VTP), so that
 // reading gives the same numbers bit by bit; binary STL alone keeps single precision, and STL forgets
 // vertices without a triangle. Without `coding`, PLY and VTP are binary and STL is ASCII; OBJ and OFF are
-// always text. The file appears under its name only when it is whole.
-// Pre: regions, where not empty, has one entry per triangle and indexes region_names.
-// Throws InputError for an unknown extension, or when the file cannot be written.
+// always text. `space` is the frame of the coordinates as 3D Slicer reads it, "LPS" or "RAS": where it is
+// given and the format has a place for it (all but STL ASCII) the file says "SPACE=LPS". The file appears
+// under its name only when it is whole. Pre: regions, where not empty, has one entry per triangle and indexes
+// region_names. Throws InputError for an unknown extension, or when the file cannot be written.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
-                std::optional<MeshCoding> coding = std::nullopt);
+                std::optional<MeshCoding> coding = std::nullopt, const std::string& space = "");
 
 }  // namespace coapt

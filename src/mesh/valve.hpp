@@ -3,8 +3,11 @@
 
 #include "mesh/triangle_mesh.hpp"
 
+#include <array>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace coapt {
@@ -32,6 +35,21 @@ struct ChordNetwork {
   std::vector<Chord> chords;
 };
 
+// A law as the scene writes it: the type of a term, and its keys with their values as JSON text, units
+// included: {"young", "\"1 MPa\""}, {"c2", "4.57"}.
+struct Material {
+  std::string type;
+  std::vector<std::pair<std::string, std::string>> keys;
+};
+
+// Vertices that are held or moved and are no annulus: a clamped rim, a symmetry plane.
+struct Support {
+  std::string name;                               // a set of vertices; unique
+  std::vector<int> vertices;                      // of the leaflets
+  std::array<bool, 3> axes = {true, true, true};  // prescribed coordinates
+  Points closed = Points(3, 0);                   // where they go; empty: they stay [length]
+};
+
 struct Valve {
   std::string name;
   TriangleMesh leaflets;  // start shape, normals point to the high-pressure side
@@ -41,8 +59,12 @@ struct Valve {
   std::vector<int> free_edge;            // ordered closed loop of vertices, may be empty
   std::vector<int> commissures;          // vertices where the leaflets meet at the annulus, may be empty
   ChordNetwork chords;
-  double pressure = 0;   // [force/length^2]; 0 = not stated
-  double thickness = 0;  // [length]; 0 = not stated
+  double pressure = 0;                           // [force/length^2]; 0 = not stated
+  double thickness = 0;                          // [length]; 0 = not stated
+  std::map<std::string, Material> membranes;     // by region of the leaflets; may be empty
+  std::map<std::string, Material> cables;        // by Chord::material; may be empty
+  std::map<std::string, std::vector<int>> sets;  // other named vertices
+  std::vector<Support> supports;
 };
 
 }  // namespace coapt

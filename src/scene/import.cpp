@@ -1,11 +1,16 @@
 #include "scene/import.hpp"
 
 #include "core/error.hpp"
+#include "mesh/mesh_io.hpp"
+#include "mesh/valve_import.hpp"
+#include "scene/detail/law_terms.hpp"
 #include "scene/detail/read_json.hpp"
+#include "scene/detail/valve_curves.hpp"
+#include "scene/markups.hpp"
 #include "scene/units.hpp"
 #include "scene/valve_json.hpp"
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
@@ -13,14 +18,9 @@ namespace {
 
 constexpr const char* kUsualPressure = "120 mmHg";
 
-// The shortest digits that read back as the same number.
-std::string digits(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, result.ptr};
-}
-
-std::string quoted(const std::string& text) { return Json(text).dump(); }
+using detail::digits;
+using detail::law_terms;
+using detail::quoted;
 
 void check_options(const ImportOptions& options) {
   std::vector<std::string> defects;
@@ -35,10 +35,11 @@ void check_options(const ImportOptions& options) {
   check("chord_young", options.chord_young);
   if (!options.pressure.empty()) check("pressure", options.pressure);
   const std::string& model = options.pressure_model;
-  if (model != "follower" && model != "frozen" && model != "field")
+  if (!model.empty() && model != "follower" && model != "frozen" && model != "field")
     defects.push_back("pressure model: read \"" + model +
                       "\"; a valve's free edge moves, so it takes one of follower, frozen, field");
-  if (options.contact != "none" && options.contact != "barrier" && options.contact != "facet")
+  if (!options.contact.empty() && options.contact != "none" && options.contact != "barrier" &&
+      options.contact != "facet")
     defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, barrier, facet");
   if (options.membrane != "tension_field" && options.membrane != "stvk")
     defects.push_back("membrane: read \"" + options.membrane + "\"; expected one of tension_field, stvk");
@@ -70,7 +71,25 @@ std::string load_text(const Valve& valve, const ImportOptions& options) {
   }
   return "    // Acts on the side that the normals point to.\n"
          "    { \"type\": \"load_pressure\", \"value\": " +
-         pressure + ", \"model\": " + quoted(options.pressure_model) + ", \"side\": \"front\" }";
+         pressure +
+         ", \"model\": " + quoted(options.pressure_model.empty() ? "follower" : options.pressure_model) +
+         ", \"side\": \"front\" }";
+}
+
+std::string listed_text(const std::vector<std::string>& entries) {
+  std::string text;
+  for (const std::string& entry : entries) text += (text.empty() ? "\n" : ",\n") + entry;
+  return "[" + text + "\n  ]";
+}
+
+std::string support_text(const Support& support) {
+  std::vector<std::string> axes;
+  for (size_t c = 0; c < 3; ++c)
+    if (support.axes[c]) axes.push_back(std::string(1, "xyz"[c]));
+  std::string text = "    { \"nodes\": " + quoted(support.name) +
+                     ", \"fix\": " + (axes.size() == 3 ? "true" : Json(axes).dump());
+  if (support.closed.cols() > 0) text += ", \"move_to\": " + quoted(support.name + "_closed");
+  return text + " }";
 }
 
 std::string boundary_text(const Valve& valve) {
@@ -83,33 +102,16 @@ std::string boundary_text(const Valve& valve) {
     entries.push_back(valve.chords.papillary_closed.cols() > 0
                           ? "    { \"nodes\": \"papillary\", \"move_to\": \"papillary_closed\" }"
                           : "    { \"nodes\": \"papillary\", \"fix\": true }");
-  std::string text;
-  for (const std::string& entry : entries) text += (text.empty() ? "\n" : ",\n") + entry;
-  return "[" + text + "\n  ]";
+  for (const Support& support : valve.supports) entries.push_back(support_text(support));
+  return listed_text(entries);
 }
 
 std::string terms_text(const Valve& valve, const ImportOptions& options) {
-  const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
-  std::vector<std::string> terms;
-  const bool relaxes = options.membrane == "tension_field";
-  terms.push_back("    { \"type\": " + quoted("cst_" + options.membrane) +
-                  ", \"name\": \"leaflets\", \"young\": " + quoted(options.young) +
-                  ", \"poisson\": " + digits(options.poisson) +
-                  ",\n      \"thickness\": " + quoted(digits(thickness) + " mm") + " }");
-  if (relaxes)
-    terms.push_back(
-        "    // Plate stiffness of the same sheet: it decides how the wrinkled parts lie.\n"
-        "    { \"type\": \"bending\" }");
-  if (!valve.chords.chords.empty())
-    terms.push_back(
-        "    // Tension only; rest lengths and cross-sections come from the network.\n"
-        "    { \"type\": \"cable\", \"name\": \"chords\", \"network\": \"valve.json\", \"young\": " +
-        quoted(options.chord_young) + " }");
+  std::vector<std::string> terms = law_terms(valve, options);
   terms.push_back(load_text(valve, options));
-  if (options.contact != "none") terms.push_back("    { \"type\": \"contact_" + options.contact + "\" }");
-  std::string text;
-  for (const std::string& term : terms) text += (text.empty() ? "\n" : ",\n") + term;
-  return "[" + text + "\n  ]";
+  const std::string contact = options.contact.empty() ? "barrier" : options.contact;
+  if (contact != "none") terms.push_back("    { \"type\": \"contact_" + contact + "\" }");
+  return listed_text(terms);
 }
 
 std::string scene_text(const Valve& valve, const ImportOptions& options) {
@@ -121,6 +123,55 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
   text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) + " }";
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
   return text + "\n}\n";
+}
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+// A surface alone: its longest rim is the annulus, and the other one, if there is one, the free edge.
+Valve valve_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  MeshFile read = read_mesh(file);
+  append(warnings, read.warnings);
+  Valve valve;
+  valve.name = file.stem().string();
+  valve.leaflets = std::move(read.mesh);
+  if (detail::states_ras(file)) valve.leaflets.vertices.topRows(2) *= -1;
+  detail::choose_annulus(valve, {});
+  return valve;
+}
+
+// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist.
+void take_membrane_option(const ImportOptions& options, Material& law) {
+  const bool resists = options.membrane == "stvk";
+  if (law.type == "cst_stvk")
+    law.type = "cst_" + options.membrane;
+  else if (resists)
+    law.keys.emplace_back("compression", "\"resisted\"");
+}
+
+Valve read_any(const std::filesystem::path& file, ImportOptions& options,
+               std::vector<std::string>& warnings) {
+  if (is_markup_file(file))
+    throw InputError(
+        file.string() +
+        ": points and curves alone are no valve; give its leaflets (a mesh) and this file behind "
+        "--annulus-closed or --papillary");
+  if (is_model_file(file)) {
+    ValveModel model = read_model(file);
+    append(warnings, model.warnings);
+    if (options.pressure_model.empty() && model.is_pressure_dead) options.pressure_model = "frozen";
+    if (options.contact.empty() && !model.has_contact) {
+      options.contact = "none";
+      warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
+    }
+    for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, law);
+    return std::move(model.valve);
+  }
+  if (file.extension() != ".json") return valve_of_mesh(file, warnings);
+  ValveFile read = read_valve(file);
+  append(warnings, read.warnings);
+  return std::move(read.valve);
 }
 
 }  // namespace
@@ -136,20 +187,29 @@ void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
   write_text(out_dir / "scene.json", scene_text(valve, options));
 }
 
-std::vector<std::string> import_valve(const std::filesystem::path& valve_json,
-                                      const std::filesystem::path& out_dir, const ImportOptions& options) {
-  ValveFile file = read_valve(valve_json);
-  if (file.valve.leaflets.triangle_count() == 0)
-    throw InputError(valve_json.string() + ": leaflets: missing; it must name the mesh file beside it");
-  std::vector<std::string> warnings = std::move(file.warnings);
-  if (file.valve.thickness == 0)
-    warnings.push_back(valve_json.string() + ": states no leaflet thickness; the scene has " +
+std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
+                                      const ImportOptions& given) {
+  ImportOptions options = given;
+  std::vector<std::string> warnings;
+  Valve valve = read_any(file, options, warnings);
+  if (valve.leaflets.triangle_count() == 0)
+    throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
+  detail::apply_curves(options, file.string(), valve, warnings);
+  if (options.incompressible)
+    for (auto& [region, law] : valve.membranes)
+      std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; });
+  const std::vector<std::string>& regions = valve.leaflets.region_names;
+  const bool has_laws =
+      !regions.empty() && std::all_of(regions.begin(), regions.end(),
+                                      [&](const auto& region) { return valve.membranes.contains(region); });
+  if (valve.thickness == 0 && !has_laws)
+    warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
                        digits(options.default_thickness) + " mm.");
-  if (file.valve.pressure == 0 && options.pressure.empty())
-    warnings.push_back(valve_json.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
-  if (file.valve.annulus.empty())
-    warnings.push_back(valve_json.string() + ": names no annulus; nothing holds the leaflets' rim.");
-  write_valve_scene(file.valve, out_dir, options);
+  if (valve.pressure == 0 && options.pressure.empty())
+    warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
+  if (valve.annulus.empty() && valve.supports.empty())
+    warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
+  write_valve_scene(valve, out_dir, options);
   return warnings;
 }
 

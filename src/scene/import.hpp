@@ -10,21 +10,26 @@
 namespace coapt {
 
 struct ImportOptions {
-  std::string membrane = "tension_field";  // tension_field with bending, or stvk for comparison
-  std::string young = "1 MPa";             // of the leaflets, as written into the scene
+  std::string membrane = "tension_field";  // of leaflets without a law: tension_field with bending, or stvk
+  std::string young = "1 MPa";             // of the same, as written into the scene
   double poisson = 0.45;
-  std::string chord_young = "40 MPa";       // Hammer et al. 2011
-  std::string pressure = "";                // empty: the valve's, else 120 mmHg
-  std::string pressure_model = "follower";  // follower, volume, frozen, or field (toward the commissure line)
-  std::string contact = "barrier";          // none, barrier or facet
-  double default_thickness = 0.65;          // where the valve states none [mm]
+  std::string chord_young = "40 MPa";  // of chords without a law; Hammer et al. 2011
+  std::string pressure = "";           // empty: the valve's, else 120 mmHg
+  std::string pressure_model = "";  // follower, volume, frozen, or field (toward the commissure line); empty:
+                                    // what the file says, else follower
+  std::string contact = "";         // none, barrier or facet; empty: barrier, or none where a model has none
+  double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
+  bool incompressible = false;  // leaves the key `bulk` of membrane laws out
+  std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
 };
 
-// Reads a valve JSON and the meshes beside it and writes the folder. Returns warnings, whole sentences.
-// Throws InputError.
-std::vector<std::string> import_valve(const std::filesystem::path& valve_json,
-                                      const std::filesystem::path& out_dir,
+// Reads a valve JSON with the meshes beside it, a finite-element model (.inp, .feb) or a mesh, and writes the
+// folder. Returns warnings, whole sentences. Of a mesh the rim nearest to annulus_closed, or else the
+// longest, is the annulus; its vertices go to the points of the curve at the same part of the length.
+// papillary gives a valve without chords tips, and chords to the free edge
+// (mesh/generators/leaflet_chords.hpp). Throws InputError.
+std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
                                       const ImportOptions& options = {});
 
 // Writes leaflets.obj, valve.json, closed_reference.obj (where the valve has one) and scene.json, a commented

@@ -28,6 +28,10 @@ class ValveReader {
     join_free_edges();
     fill_valve();
     read_chords();
+    file_.valve.membranes = materials("membranes");
+    file_.valve.cables = materials("cables");
+    read_supports();
+    keep_other_sets();
     if (meshes == ValveMeshes::Read) read_meshes();
     if (!defects_.empty()) throw InputError(defects_);
     return std::move(file_);
@@ -226,6 +230,73 @@ class ValveReader {
     file_.valve.chords.chords.push_back(std::move(chord));
   }
 
+  std::map<std::string, Material> materials(const std::string& key) {
+    std::map<std::string, Material> result;
+    const Json* all = find(key);
+    if (all == nullptr) return result;
+    if (!all->is_object()) {
+      refuse(key, "expected an object: a name and the keys of its law for each");
+      return result;
+    }
+    for (const auto& [name, law] : all->items()) {
+      if (!law.is_object() || !law.contains("type") || !law["type"].is_string()) {
+        refuse(key + "." + name, "expected an object with a type, such as {\"type\": \"cst_stvk\", ...}");
+        continue;
+      }
+      Material& material = result[name];
+      material.type = law["type"].get<std::string>();
+      for (const auto& [entry, value] : law.items())
+        if (entry != "type") material.keys.emplace_back(entry, value.dump());
+    }
+    return result;
+  }
+
+  // Its vertices are a set of its name, and where they go are positions of its name with "_closed".
+  void read_supports() {
+    const Json* all = find("supports");
+    if (all == nullptr) return;
+    if (!all->is_array()) return refuse("supports", "expected a list of supports");
+    for (size_t k = 0; k < all->size(); ++k) {
+      const Json& json = (*all)[k];
+      const std::string place = "supports[" + std::to_string(k) + "]";
+      if (!json.is_object() || !json.contains("name") || !json["name"].is_string()) {
+        refuse(place, "expected an object with name and fix");
+        continue;
+      }
+      Support support;
+      support.name = json["name"].get<std::string>();
+      if (file_.sets.contains(support.name))
+        support.vertices = file_.sets[support.name];
+      else
+        refuse(place + ".name", "no set of vertices is named \"" + support.name + "\"");
+      if (const auto found = file_.points.find(support.name + "_closed"); found != file_.points.end())
+        support.closed = found->second;
+      if (support.closed.cols() > 0 && support.closed.cols() != static_cast<int>(support.vertices.size()))
+        refuse(place, "has " + std::to_string(support.closed.cols()) + " closed positions for " +
+                          std::to_string(support.vertices.size()) + " vertices");
+      if (json.contains("fix")) read_axes(json["fix"], place + ".fix", support.axes);
+      file_.valve.supports.push_back(std::move(support));
+    }
+  }
+
+  void read_axes(const Json& json, const std::string& place, std::array<bool, 3>& axes) {
+    axes.fill(false);
+    const auto is_axis = [](const Json& entry) { return entry == "x" || entry == "y" || entry == "z"; };
+    if (!json.is_array() || json.empty() || !std::all_of(json.begin(), json.end(), is_axis))
+      return refuse(place, "expected some of [\"x\", \"y\", \"z\"]");
+    for (const Json& entry : json) axes[static_cast<size_t>(entry.get<std::string>()[0] - 'x')] = true;
+  }
+
+  // What is left of the object `sets` when the valve's own lists and the supports have taken theirs.
+  void keep_other_sets() {
+    for (const auto& [name, vertices] : file_.sets) {
+      if (!json_.contains("sets") || !json_["sets"].is_object() || !json_["sets"].contains(name)) continue;
+      const auto& supports = file_.valve.supports;
+      if (std::none_of(supports.begin(), supports.end(), [&](const Support& s) { return s.name == name; }))
+        file_.valve.sets[name] = vertices;
+    }
+  }
+
   TriangleMesh read_scaled(const std::string& key) {
     MeshFile read = read_mesh(path_.parent_path() / text(key));
     read.mesh.vertices *= scale_;
@@ -269,11 +340,13 @@ std::vector<std::string> vertex_defects(const ValveFile& file, const std::string
       defects.push_back(name + ": " + place + ": vertex " + std::to_string(vertex) +
                         " does not exist; the mesh has " + std::to_string(vertex_count) + ", counted from 0");
   };
-  for (const char* key : {"annulus", "free_edge", "commissures"}) {
+  std::vector<std::string> keys = {"annulus", "free_edge", "commissures"};
+  for (const Support& support : file.valve.supports) keys.push_back(support.name);
+  for (const std::string& key : keys) {
     const auto found = file.sets.find(key);
     if (found == file.sets.end()) continue;
     for (size_t k = 0; k < found->second.size(); ++k)
-      compare(std::string(key) + "[" + std::to_string(k) + "]", found->second[k]);
+      compare(key + "[" + std::to_string(k) + "]", found->second[k]);
   }
   const std::vector<Chord>& chords = file.valve.chords.chords;
   for (size_t k = 0; k < chords.size(); ++k) {

@@ -3,7 +3,10 @@
 // Keys that are read: name, units, leaflets, closed_reference, pressure {value, unit}, leaflet_thickness
 // (or leaflet_thickness_mm), annulus, annulus_closed, free_edge (or free_edges, a list of lists),
 // commissures, papillary, papillary_closed, junctions, chords [{from, to, rest_length, area, material,
-// level}]. Every other key is passed over, but a list of whole numbers is kept as a named node set and a list
+// level}], membranes {region: {type, keys of that term}}, cables {material: {type, keys of that term}},
+// supports
+// [{name, fix: ["x", ...]}], whose vertices and closed positions stand as NAME and NAME_closed in sets. Every
+// other key is passed over, but a list of whole numbers is kept as a named node set and a list
 // of positions as named points, and so are the members of an object "sets".
 #pragma once
 
@@ -17,10 +20,11 @@
 namespace coapt {
 
 struct ValveFile {
-  Valve valve;                                   // mm, MPa
-  std::map<std::string, std::vector<int>> sets;  // vertices of the leaflets, 0-based, in the file's order
-  std::map<std::string, Points> points;          // [mm]
-  std::vector<std::string> warnings;             // whole sentences
+  Valve valve;  // mm, MPa
+  std::map<std::string, std::vector<int>>
+      sets;                              // all named vertices of the leaflets, 0-based, in the file's order
+  std::map<std::string, Points> points;  // [mm]
+  std::vector<std::string> warnings;     // whole sentences
 };
 
 enum class ValveMeshes { Read, Skip };

@@ -37,6 +37,31 @@ OrderedJson chord_of(const Chord& chord) {
   return json;
 }
 
+OrderedJson materials_of(const std::map<std::string, Material>& materials) {
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [name, material] : materials) {
+    OrderedJson& law = json[name];
+    law["type"] = material.type;
+    for (const auto& [key, value] : material.keys) law[key] = OrderedJson::parse(value);
+  }
+  return json;
+}
+
+void add_supports(const Valve& valve, OrderedJson& json) {
+  OrderedJson sets = OrderedJson::object(), supports = OrderedJson::array();
+  for (const auto& [name, vertices] : valve.sets) sets[name] = vertices;
+  for (const Support& support : valve.supports) {
+    sets[support.name] = support.vertices;
+    if (support.closed.cols() > 0) sets[support.name + "_closed"] = positions(support.closed);
+    OrderedJson axes = OrderedJson::array();
+    for (size_t c = 0; c < 3; ++c)
+      if (support.axes[c]) axes.push_back(std::string(1, "xyz"[c]));
+    supports.push_back({{"name", support.name}, {"fix", axes}});
+  }
+  if (!sets.empty()) json["sets"] = sets;
+  if (!supports.empty()) json["supports"] = supports;
+}
+
 // One entry of a long list per line: people compare such files.
 std::string laid_out(const OrderedJson& json) {
   std::string text = "{";
@@ -75,6 +100,9 @@ void write_valve(const std::filesystem::path& path, const Valve& valve) {
   if (valve.annulus_closed.cols() > 0) json["annulus_closed"] = positions(valve.annulus_closed);
   if (!valve.free_edge.empty()) json["free_edge"] = valve.free_edge;
   if (!valve.commissures.empty()) json["commissures"] = valve.commissures;
+  add_supports(valve, json);
+  if (!valve.membranes.empty()) json["membranes"] = materials_of(valve.membranes);
+  if (!valve.cables.empty()) json["cables"] = materials_of(valve.cables);
   const ChordNetwork& chords = valve.chords;
   if (chords.papillary.cols() > 0) json["papillary"] = positions(chords.papillary);
   if (chords.papillary_closed.cols() > 0) json["papillary_closed"] = positions(chords.papillary_closed);

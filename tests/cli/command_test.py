@@ -152,6 +152,37 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(self.result()["status"], "converged")
 
+    def test_exports_and_imports_a_febio_model(self):
+        scene, model, copy = self.generate("mitral", "--triangles", 300), self.folder / "m.feb", self.folder / "copy"
+        run = coapt("export", scene, "-o", model)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("warning: ", run.stdout)
+        run = coapt("import", model, "-o", copy)
+        if "rebuild with pugixml" in run.stderr:
+            self.skipTest("skipped: built without pugixml")
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertEqual(coapt("check", copy / "scene.json").returncode, 0)
+        model.write_text(model.read_text()[:5000])
+        self.assert_bad_input(coapt("import", model, "-o", copy), "m.feb", "XML")
+
+    def test_exports_meshes_and_points_and_imports_them(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        for name in ["leaflets.ply", "tips.mrk.json", "ring.mrk.json"]:
+            points = "papillary" if name.startswith("tips") else "annulus_closed"
+            run = coapt("export", scene, "-o", self.folder / name, "--points", points)
+            self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        out = self.folder / "out"
+        run = coapt("import", self.folder / "leaflets.ply", "--annulus-closed", self.folder / "ring.mrk.json",
+                    "--papillary", self.folder / "tips.mrk.json", "-o", out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("chords", run.stdout)
+        run = coapt("check", out / "scene.json")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        for name in ["nothing.inp", "nothing.feb", "nothing.obj", "nothing.xyz"]:
+            self.assert_bad_input(coapt("import", self.folder / name, "-o", out), name)
+        self.assert_bad_input(coapt("export", scene, "-o", self.folder / "x.doc"), "x.doc")
+        self.assert_bad_input(coapt("export", scene, "-o", self.folder / "x.mrk.json", "--points", "anulus"), "annulus")
+
     def test_names_every_defect_of_a_scene_on_its_own_line(self):
         scene = self.generate("disc", "--triangles", 100)
         text = scene.read_text().replace('"young": "1 MPa"', '"yuong": "1 MPa"').replace('"0.1 kPa"', '"0.1 kg"')

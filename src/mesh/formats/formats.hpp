@@ -17,9 +17,10 @@ MeshFile read_vtp(std::string_view bytes, const std::string& file);
 
 using Coding = MeshCoding;
 
-std::string write_obj(const TriangleMesh& mesh);
-std::string write_ply(const TriangleMesh& mesh, Coding coding);
-std::string write_stl(const TriangleMesh& mesh, Coding coding);
-std::string write_off(const TriangleMesh& mesh);
+// `remark` is a comment of one line in the header; empty: none.
+std::string write_obj(const TriangleMesh& mesh, const std::string& remark = "");
+std::string write_ply(const TriangleMesh& mesh, Coding coding, const std::string& remark = "");
+std::string write_stl(const TriangleMesh& mesh, Coding coding, const std::string& remark = "");
+std::string write_off(const TriangleMesh& mesh, const std::string& remark = "");
 
 }  // namespace coapt::formats

@@ -142,8 +142,8 @@ class ObjReader {
 
 MeshFile read_obj(std::string_view bytes, const std::string& file) { return ObjReader(bytes, file).read(); }
 
-std::string write_obj(const TriangleMesh& mesh) {
-  std::string text;
+std::string write_obj(const TriangleMesh& mesh, const std::string& remark) {
+  std::string text = remark.empty() ? "" : "# " + remark + "\n";
   text.reserve(static_cast<size_t>(mesh.vertex_count()) * 60 +
                static_cast<size_t>(mesh.triangle_count()) * 24);
   for (int i = 0; i < mesh.vertex_count(); ++i) {

@@ -98,9 +98,10 @@ class OffReader {
 
 MeshFile read_off(std::string_view bytes, const std::string& file) { return OffReader(bytes, file).read(); }
 
-std::string write_off(const TriangleMesh& mesh) {
-  std::string text =
-      "OFF\n" + std::to_string(mesh.vertex_count()) + ' ' + std::to_string(mesh.triangle_count()) + " 0\n";
+std::string write_off(const TriangleMesh& mesh, const std::string& remark) {
+  std::string text = "OFF\n" + (remark.empty() ? "" : "# " + remark + "\n") +
+                     std::to_string(mesh.vertex_count()) + ' ' + std::to_string(mesh.triangle_count()) +
+                     " 0\n";
   for (int i = 0; i < mesh.vertex_count(); ++i)
     for (int k = 0; k < 3; ++k) {
       append_number(text, mesh.vertices(k, i));

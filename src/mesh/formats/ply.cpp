@@ -148,8 +148,9 @@ class PlyReader {
   bool has_regions_ = false;
 };
 
-std::string header_of(const TriangleMesh& mesh, const std::string& format) {
+std::string header_of(const TriangleMesh& mesh, const std::string& format, const std::string& remark) {
   std::string text = "ply\nformat " + format + " 1.0\n";
+  if (!remark.empty()) text += "comment " + remark + "\n";
   for (size_t r = 0; r < mesh.region_names.size() && !mesh.regions.empty(); ++r)
     text += "comment region " + std::to_string(r) + " " + mesh.region_names[r] + "\n";
   text += "element vertex " + std::to_string(mesh.vertex_count()) +
@@ -159,8 +160,8 @@ std::string header_of(const TriangleMesh& mesh, const std::string& format) {
   return text + "end_header\n";
 }
 
-std::string write_ascii(const TriangleMesh& mesh) {
-  std::string text = header_of(mesh, "ascii");
+std::string write_ascii(const TriangleMesh& mesh, const std::string& remark) {
+  std::string text = header_of(mesh, "ascii", remark);
   for (int i = 0; i < mesh.vertex_count(); ++i)
     for (int k = 0; k < 3; ++k) {
       append_number(text, mesh.vertices(k, i));
@@ -180,9 +181,9 @@ std::string write_ascii(const TriangleMesh& mesh) {
 
 MeshFile read_ply(std::string_view bytes, const std::string& file) { return PlyReader(bytes, file).read(); }
 
-std::string write_ply(const TriangleMesh& mesh, Coding coding) {
-  if (coding == Coding::Ascii) return write_ascii(mesh);
-  std::string bytes = header_of(mesh, kLittleEndian ? "binary_little_endian" : "binary_big_endian");
+std::string write_ply(const TriangleMesh& mesh, Coding coding, const std::string& remark) {
+  if (coding == Coding::Ascii) return write_ascii(mesh, remark);
+  std::string bytes = header_of(mesh, kLittleEndian ? "binary_little_endian" : "binary_big_endian", remark);
   for (int i = 0; i < mesh.vertex_count(); ++i)
     for (int k = 0; k < 3; ++k) store(bytes, mesh.vertices(k, i));
   for (int t = 0; t < mesh.triangle_count(); ++t) {

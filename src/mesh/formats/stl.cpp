@@ -142,8 +142,8 @@ Vec3 unit_normal(const TriangleMesh& mesh, int t) {
   return length > 0 ? Vec3(area / length) : Vec3(Vec3::Zero());
 }
 
-std::string write_binary(const TriangleMesh& mesh) {
-  std::string bytes = "binary STL";
+std::string write_binary(const TriangleMesh& mesh, const std::string& remark) {
+  std::string bytes = "binary STL " + remark;
   bytes.resize(80, ' ');
   store(bytes, static_cast<std::uint32_t>(mesh.triangle_count()));
   for (int t = 0; t < mesh.triangle_count(); ++t) {
@@ -173,8 +173,8 @@ void append_facet(std::string& text, const TriangleMesh& mesh, int t) {
 
 MeshFile read_stl(std::string_view bytes, const std::string& file) { return StlReader(bytes, file).read(); }
 
-std::string write_stl(const TriangleMesh& mesh, Coding coding) {
-  if (coding == Coding::Binary && kLittleEndian) return write_binary(mesh);
+std::string write_stl(const TriangleMesh& mesh, Coding coding, const std::string& remark) {
+  if (coding == Coding::Binary && kLittleEndian) return write_binary(mesh, remark);
   const std::vector<std::string> names =
       mesh.regions.empty() ? std::vector<std::string>{"surface"} : mesh.region_names;
   std::string text;

@@ -1,0 +1,37 @@
+#include "cli/commands.hpp"
+#include "scene/export.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace coapt::cli {
+
+void add_export_command(CLI::App& app, int& /*exit_code*/) {
+  struct Arguments {
+    std::string from, out, what = "annulus";
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "export",
+      "Write a scene as a FEBio model, its mesh, or its annulus and papillary points for 3D Slicer");
+  command->add_option("SCENE", arguments->from, "Scene file (JSON), or a mesh to convert")->required();
+  command
+      ->add_option("-o,--output", arguments->out,
+                   "File to write; its extension says what: .feb, .obj, .ply, .stl, .off, .vtp or .mrk.json")
+      ->required();
+  command
+      ->add_option(
+          "--points", arguments->what,
+          "Which points go into a .mrk.json: a set of nodes, or with _closed behind it where they go")
+      ->capture_default_str();
+  command->callback([arguments] {
+    for (const std::string& warning : export_file(arguments->from, arguments->out, arguments->what))
+      std::printf("warning: %s\n", warning.c_str());
+    std::printf("written: %s\n", arguments->out.c_str());
+  });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,53 @@
+#include "cli/commands.hpp"
+#include "cli/scene_arguments.hpp"
+#include "scene/import.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : SceneArguments {
+  std::string file, annulus_closed, papillary, papillary_closed;
+  bool incompressible = false;
+};
+
+void import_file(const Arguments& arguments) {
+  ImportOptions options = import_options(arguments);
+  options.incompressible = arguments.incompressible;
+  options.annulus_closed = arguments.annulus_closed;
+  options.papillary = arguments.papillary;
+  options.papillary_closed = arguments.papillary_closed;
+  for (const std::string& warning : import_valve(arguments.file, arguments.folder, options))
+    std::printf("warning: %s\n", warning.c_str());
+  announce_scene(arguments.folder);
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& app, int& /*exit_code*/) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "import",
+      "Write a scene from a valve JSON, an Abaqus or FEBio model, or a mesh with curves of 3D Slicer");
+  command
+      ->add_option("FILE", arguments->file,
+                   "Valve JSON with its meshes beside it, .inp, .feb, or a mesh (.obj .ply .stl .off .vtp)")
+      ->required();
+  add_scene_options(*command, *arguments);
+  command->add_flag("--incompressible", arguments->incompressible,
+                    "Leave the bulk modulus of membrane laws out: incompressible leaflets");
+  command->add_option("--annulus-closed", arguments->annulus_closed,
+                      "Closed curve (.mrk.json) to which the annulus moves, matched by its length");
+  command->add_option("--papillary", arguments->papillary,
+                      "Points (.mrk.json): papillary tips for a valve without chords, tied to the free edge");
+  command->add_option("--papillary-closed", arguments->papillary_closed,
+                      "Points (.mrk.json) to which the papillary tips move, in their order");
+  command->callback([arguments] { import_file(*arguments); });
+}
+
+}  // namespace coapt::cli

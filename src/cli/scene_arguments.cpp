@@ -1,0 +1,39 @@
+#include "cli/scene_arguments.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+
+namespace coapt::cli {
+
+void add_scene_options(CLI::App& command, SceneArguments& arguments) {
+  command.add_option("-o,--output", arguments.folder, "Folder to write into")->required();
+  command
+      .add_option("--contact", arguments.contact,
+                  "Contact term of the scene (default: barrier for a valve, none for a shape)")
+      ->check(CLI::IsMember({"none", "barrier", "facet"}));
+  command
+      .add_option("--membrane", arguments.membrane,
+                  "Leaflets of a valve: a tension field with bending, or for comparison one that resists "
+                  "compression")
+      ->check(CLI::IsMember({"tension_field", "stvk"}))
+      ->capture_default_str();
+  command
+      .add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")
+      ->check(CLI::IsMember({"follower", "frozen", "volume", "field"}));
+}
+
+ImportOptions import_options(const SceneArguments& arguments) {
+  ImportOptions options;
+  if (!arguments.contact.empty()) options.contact = arguments.contact;
+  options.membrane = arguments.membrane;
+  if (!arguments.pressure.empty()) options.pressure_model = arguments.pressure;
+  return options;
+}
+
+void announce_scene(const std::string& folder) {
+  const std::string scene = (std::filesystem::path(folder) / "scene.json").string();
+  std::printf("written: %s\nnext:    coapt solve %s\n", scene.c_str(), scene.c_str());
+}
+
+}  // namespace coapt::cli

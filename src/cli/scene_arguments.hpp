@@ -1,0 +1,24 @@
+// The options that every command has which writes a valve's scene.
+#pragma once
+
+#include "scene/import.hpp"
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace coapt::cli {
+
+struct SceneArguments {
+  std::string folder, contact, pressure, membrane = "tension_field";
+};
+
+void add_scene_options(CLI::App& command, SceneArguments& arguments);
+ImportOptions import_options(const SceneArguments& arguments);
+
+// Says where the scene is and how to solve it.
+void announce_scene(const std::string& folder);
+
+}  // namespace coapt::cli

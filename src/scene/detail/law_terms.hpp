@@ -1,0 +1,20 @@
+// The membranes and chords of a valve as terms of a scene, in JSON text. Private to this room.
+#pragma once
+
+#include "mesh/valve.hpp"
+#include "scene/import.hpp"
+
+#include <string>
+#include <vector>
+
+namespace coapt::detail {
+
+// One term for each region and each chord material whose law the valve states; what is left shares the usual
+// law of the options.
+std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& options);
+
+// The shortest digits that read back as the same number, and a text in quotes.
+std::string digits(double value);
+std::string quoted(const std::string& text);
+
+}  // namespace coapt::detail
