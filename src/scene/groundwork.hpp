@@ -28,8 +28,8 @@ struct Groundwork {
   // The fibres of the scene's own mesh once they were asked for, for the coarser meshes too.
   std::shared_ptr<std::optional<FibreField>> fibres = std::make_shared<std::optional<FibreField>>();
 
-  // On a mesh that is finer than the scene's own, on which nodes are selected anew: the next coarser one, whose
-  // triangles were cut into four, and the ends of the edges that the vertices added here halve.
+  // On a mesh that is finer than the scene's own, on which nodes are selected anew: the next coarser one,
+  // whose triangles were cut into four, and the ends of the edges that the vertices added here halve.
   bool is_refined = false;
   const Groundwork* coarser = nullptr;
   std::vector<std::array<int, 2>> parents = {};
@@ -48,9 +48,9 @@ std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork
 // vertices.
 double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where);
 
-// The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here: a coarser
-// mesh keeps the values of its vertices, and its triangles take the mean over their corners of the mean over
-// the triangles that met there.
+// The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here: a
+// coarser mesh keeps the values of its vertices, and its triangles take the mean over their corners of the
+// mean over the triangles that met there.
 const TriangleMesh& scene_mesh(const Groundwork& ground);
 Vector at_vertices(const Vector& values, const Groundwork& ground);
 Vector on_triangles(const Vector& values, const Groundwork& ground);

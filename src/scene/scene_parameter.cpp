@@ -14,11 +14,6 @@ namespace {
 constexpr const char* kDiameter = "diameter";
 constexpr const char* kAreaScale = "area_scale";  // of which the diameter is the root
 
-// Whether the term has a diameter: an elastic cable.
-bool has_diameter(const TermSpec& term) {
-  return term.parameters.has(kAreaScale) && term.parameters.has("young");
-}
-
 const KeySpec* find_key(const TermSpec& term, const std::string& name) {
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
     if (key.name == name && key.kind == KeyKind::Quantity) return &key;
@@ -31,13 +26,13 @@ std::vector<std::string> numbers_of(const TermSpec& term) {
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
     if (key.kind == KeyKind::Quantity && term.parameters.has(key.name) && key.name != kAreaScale)
       names.push_back(key.name);
-  if (has_diameter(term)) names.emplace_back(kDiameter);
+  if (is_elastic_cable(term)) names.emplace_back(kDiameter);
   return names;
 }
 
 SceneParameter parameter_of(const Scene& scene, size_t index, const std::string& key) {
   const TermSpec& term = scene.terms[index];
-  if (key == kDiameter && has_diameter(term))
+  if (key == kDiameter && is_elastic_cable(term))
     return {term.name + "." + key, index, kAreaScale, 2, 1, kDimensionless};
   return {term.name + "." + key, index, key, 1, term.parameters.number(key), find_key(term, key)->dimension};
 }
@@ -49,6 +44,10 @@ std::string text_of(double value) {
 }
 
 }  // namespace
+
+bool is_elastic_cable(const TermSpec& term) {
+  return term.parameters.has(kAreaScale) && !term.parameters.has("tension");
+}
 
 SceneParameter find_parameter(const Scene& scene, const std::string& name) {
   std::vector<std::string> terms;

@@ -20,6 +20,9 @@ struct SceneParameter {
   Dimension dimension = kDimensionless;
 };
 
+// Whether the term's lines have a cross-section that counts: cables of any law but a constant force.
+bool is_elastic_cable(const TermSpec& term);
+
 // Throws InputError for a name that is not TERM.KEY, an unknown term or key (listing those there are), a key
 // that is no number, and a number that is not given, or zero: a relative change means nothing there.
 SceneParameter find_parameter(const Scene& scene, const std::string& name);

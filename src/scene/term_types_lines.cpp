@@ -106,7 +106,8 @@ TermPointer build_cable_law(const TermSpec& spec, BuildContext& context, const L
   std::vector<typename CableLaw<Law>::Rest> rest;
   std::vector<std::string> defects;
   for (const RestLine& line : rest_lines(p, context)) {
-    const double area = p.number_or("area", line.area) * p.number("area_scale"), length = line.length * p.number("length_scale");
+    const double area = p.number_or("area", line.area) * p.number("area_scale"),
+                 length = line.length * p.number("length_scale");
     if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
     if (length <= 0) {
       warn_of_no_length(line, context.model);
@@ -125,7 +126,8 @@ TermPointer build_cable_bilinear(const TermSpec& spec, BuildContext& context) {
   const double before = p.number("young_pre");
   return build_cable_law(
       spec, context,
-      BilinearLine{before, {p.number("young_post") - before, p.number("transition_strain"), p.number("knee")}});
+      BilinearLine{before,
+                   {p.number("young_post") - before, p.number("transition_strain"), p.number("knee")}});
 }
 
 TermPointer build_cable_ogden(const TermSpec& spec, BuildContext& context) {
@@ -228,8 +230,9 @@ KeySpec smoothing_key() {
           .fallback = "0.002",
           .min = 0,
           .max = 1,
-          .doc = "Elongation, as a fraction of the rest length, over which the onset of tension is rounded; the "
-                 "sharp kink of 0 costs iterations."};
+          .doc =
+              "Elongation, as a fraction of the rest length, over which the onset of tension is rounded; the "
+              "sharp kink of 0 costs iterations."};
 }
 
 KeySpec knee_key() {
@@ -265,18 +268,21 @@ std::vector<TermType> line_term_types() {
                                .min = 0,
                                .excludes_min = true,
                                .doc = "Tension of a constant-force cable."},
-                              area_key(), area_scale_key(), smoothing_key()},
+                              area_key(),
+                              area_scale_key(),
+                              smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
        .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : Defects{}; },
        .build = build_cable},
       {.name = "cable_bilinear",
        .summary = "Cables of two moduli: soft up to a transition strain, stiff beyond it; tension only.",
-       .spec = {.keys = with({positive("young_pre", kPressure, "Young's modulus below the knee."),
-                              positive("young_post", kPressure, "Slope beyond the knee."),
-                              positive("transition_strain", kDimensionless, "Engineering strain of the knee."),
-                              knee_key(), area_key(), area_scale_key(), smoothing_key()},
-                             line_keys()),
+       .spec = {.keys =
+                    with({positive("young_pre", kPressure, "Young's modulus below the knee."),
+                          positive("young_post", kPressure, "Slope beyond the knee."),
+                          positive("transition_strain", kDimensionless, "Engineering strain of the knee."),
+                          knee_key(), area_key(), area_scale_key(), smoothing_key()},
+                         line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check =
            [](const Parameters& p) {
@@ -287,20 +293,22 @@ std::vector<TermType> line_term_types() {
            },
        .build = build_cable_bilinear},
       {.name = "cable_ogden",
-       .summary = "Incompressible Ogden cables, sum of 2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3); tension "
-                  "only.",
-       .spec = {.keys = with({{.name = "mu",
-                               .kind = KeyKind::Quantities,
-                               .dimension = kPressure,
-                               .required = true,
-                               .doc = "Moduli of up to three terms."},
-                              {.name = "alpha",
-                               .kind = KeyKind::Quantities,
-                               .required = true,
-                               .doc = "Their exponents."},
-                              area_key(), area_scale_key(), smoothing_key()},
-                             line_keys()),
-                .groups = {{{"network", "edges"}, true}}},
+       .summary =
+           "Incompressible Ogden cables, sum of 2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3); tension "
+           "only.",
+       .spec =
+           {.keys = with(
+                {{.name = "mu",
+                  .kind = KeyKind::Quantities,
+                  .dimension = kPressure,
+                  .required = true,
+                  .doc = "Moduli of up to three terms."},
+                 {.name = "alpha", .kind = KeyKind::Quantities, .required = true, .doc = "Their exponents."},
+                 area_key(),
+                 area_scale_key(),
+                 smoothing_key()},
+                line_keys()),
+            .groups = {{{"network", "edges"}, true}}},
        .check =
            [](const Parameters& p) {
              Defects defects = check_ogden(p);
@@ -331,14 +339,14 @@ std::vector<TermType> line_term_types() {
        .build = build_cable_toe},
       {.name = "cable_crimped_fibre",
        .summary = "Bundles of crimped collagen fibres (Freed & Doehring 2005); tension only.",
-       .spec = {.keys = with({positive("fibre_young", kPressure, "Modulus of the straight fibres."),
-                              positive("crimp_ratio", kDimensionless,
-                                       "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner "
-                                       "the fibres are straight."),
-                              positive("radius_ratio", kDimensionless,
-                                       "Amplitude over radius of the fibre, R0/r0."),
-                              knee_key(), area_key(), area_scale_key(), smoothing_key()},
-                             line_keys()),
+       .spec = {.keys = with(
+                    {positive("fibre_young", kPressure, "Modulus of the straight fibres."),
+                     positive("crimp_ratio", kDimensionless,
+                              "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner "
+                              "the fibres are straight."),
+                     positive("radius_ratio", kDimensionless, "Amplitude over radius of the fibre, R0/r0."),
+                     knee_key(), area_key(), area_scale_key(), smoothing_key()},
+                    line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check = check_area,
        .build = build_cable_crimped_fibre},

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/leaflet_regions.hpp"
+#include "scene/scene_parameter.hpp"
 #include "scene/term_types.hpp"
 
 #include <algorithm>
@@ -22,8 +23,6 @@ std::vector<std::string> moduli_of(const TermSpec& term) {
       keys.push_back(key.name);
   return keys;
 }
-
-bool is_elastic_cable(const TermSpec& term) { return term.type == "cable" && term.parameters.has("young"); }
 
 void set_regions(TriangleMesh& mesh, const std::map<std::string, std::vector<int>>& sets,
                  const RegionTuningOptions& options, const Scene& scene) {
