@@ -53,7 +53,7 @@ bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vec
 void ShiftedHessian::add_exact_product(const Vector& v, Vector& product) const {
   const Eigen::Map<const SparseMatrix> exact(h_.rows(), h_.cols(), h_.nonZeros(), h_.outerIndexPtr(),
                                              h_.innerIndexPtr(), exact_.data());
-  product += exact.selfadjointView<Eigen::Lower>() * v;
+  product.noalias() += exact.selfadjointView<Eigen::Lower>() * v;
 }
 
 bool ShiftedHessian::raise(Monitor& monitor, double& shift) {

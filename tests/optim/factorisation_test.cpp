@@ -50,7 +50,7 @@ struct Stiffness {
     FixedMask fixed = FixedMask::Constant(3, X.cols(), false);
     for (int node : valve.annulus) fixed.col(node).setConstant(true);
     for (int node = 7; node < X.cols(); node += 20) fixed(node % 3, node) = true;
-    Objective objective(stretch * X, fixed, terms_of(sheet_term(Material::StVK, X, t, {0.8, 0.45, 0})));
+    Objective objective(stretch * X, fixed, terms_of(sheet_term(SheetLaw::StVK, X, t, {0.8, 0.45, 0})));
     Vector g;
     objective.hessian(stretch * objective.unknowns(X), g, matrix);
   }

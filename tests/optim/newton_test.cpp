@@ -215,7 +215,7 @@ TEST(CarryAlong, TakesASheetWhereItsRimGoesAndLeavesTheRestAlone) {
   for (const auto& loop : boundary_loops(mesh.triangles))
     for (const int node : loop) fixed.col(node).setConstant(true);
   Objective objective(mesh.vertices, fixed,
-                      terms_of(sheet_term(Material::StVK, mesh.vertices, mesh.triangles, {})));
+                      terms_of(sheet_term(SheetLaw::StVK, mesh.vertices, mesh.triangles, {})));
   const Vec3 shift(0.3, -2, 5);
   const Points target = mesh.vertices.colwise() + shift;
   const Vector q = objective.unknowns(mesh.vertices);

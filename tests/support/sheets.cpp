@@ -29,9 +29,9 @@ std::unique_ptr<EnergyTerm> tension_field_term(const Points& X, const Triangles&
                                                         rest_states(X, triangles, membrane));
 }
 
-std::unique_ptr<EnergyTerm> sheet_term(Material material, const Points& X, const Triangles& triangles,
+std::unique_ptr<EnergyTerm> sheet_term(SheetLaw material, const Points& X, const Triangles& triangles,
                                        const Membrane& membrane) {
-  if (material == Material::TensionField) return tension_field_term(X, triangles, membrane);
+  if (material == SheetLaw::TensionField) return tension_field_term(X, triangles, membrane);
   return membrane_term(X, triangles, membrane);
 }
 

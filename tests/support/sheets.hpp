@@ -12,8 +12,8 @@ std::unique_ptr<EnergyTerm> tension_field_term(const Points& X, const Triangles&
                                                const Membrane& membrane);
 
 // The same as cst_stvk or cst_tension_field.
-enum class Material { StVK, TensionField };
-std::unique_ptr<EnergyTerm> sheet_term(Material material, const Points& X, const Triangles& triangles,
+enum class SheetLaw { StVK, TensionField };
+std::unique_ptr<EnergyTerm> sheet_term(SheetLaw material, const Points& X, const Triangles& triangles,
                                        const Membrane& membrane);
 
 // Hinges on all inner edges; stiffness D [force x length]. Pre: the mesh is manifold.

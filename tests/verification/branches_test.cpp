@@ -56,12 +56,12 @@ TEST(Kink, S11SheetOnTheBorderOfTautAndWrinkled) {
       fixed(0, grid_node(n, i, j)) = true;
       start(0, grid_node(n, i, j)) *= 1.1;
     }
-  const auto solved = [&](Material material) {
+  const auto solved = [&](SheetLaw material) {
     return find_equilibrium(start, fixed,
                             terms_of(sheet_term(material, mesh.vertices, mesh.triangles, {1, 0.3, 0})),
                             {.tolerance = 1e-8});
   };
-  const Equilibrium kinked = solved(Material::TensionField), smooth = solved(Material::StVK);
+  const Equilibrium kinked = solved(SheetLaw::TensionField), smooth = solved(SheetLaw::StVK);
   expect_few_more("taut and wrinkled", kinked.result, smooth.result);
 }
 

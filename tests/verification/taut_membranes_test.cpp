@@ -19,12 +19,12 @@ namespace {
 // What a membrane is made of and who solves for it.
 struct Means {
   std::string name;
-  Material material;
+  SheetLaw material;
   std::string solver;
 };
 
-const Means kMeans[] = {{"cst_stvk by lbfgs", Material::StVK, "lbfgs"},
-                        {"cst_tension_field by newton", Material::TensionField, "newton"}};
+const Means kMeans[] = {{"cst_stvk by lbfgs", SheetLaw::StVK, "lbfgs"},
+                        {"cst_tension_field by newton", SheetLaw::TensionField, "newton"}};
 
 // Eh = 1, nu = 0.3.
 Equilibrium find(const Means& means, const TriangleMesh& mesh, const Points& start, const FixedMask& fixed,

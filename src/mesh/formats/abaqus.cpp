@@ -90,7 +90,7 @@ class AbaqusReader {
     if (name.empty()) return defects_.add("line", card.line, "*Material without a name");
     const auto [found, is_new] = materials_.emplace(upper_case(name), AbaqusMaterial{name, card.line, {}});
     if (!is_new)
-      defects_.add("line", card.line, "a material " + quoted(name) + " stands in the file already");
+      defects_.add("line", card.line, "a material " + formats::quoted(name) + " stands in the file already");
     material_ = &found->second;
   }
 
@@ -151,7 +151,7 @@ class AbaqusReader {
     if (found != materials_.end()) return &found->second;
     if (missing_.insert(upper_case(section.material)).second)
       defects_.add("line", section.line,
-                   "material " + quoted(section.material) + " does not stand in the file");
+                   "material " + formats::quoted(section.material) + " does not stand in the file");
     return nullptr;
   }
 
@@ -181,11 +181,11 @@ class AbaqusReader {
   }
 
   void note_lawless(const AbaqusSection& section, const AbaqusMaterial& material, const std::string& region) {
-    lawless_.push_back("material " + quoted(material.name) + " of " + quoted(region));
+    lawless_.push_back("material " + formats::quoted(material.name) + " of " + formats::quoted(region));
     if (model_.thickness > 0 && model_.thickness != section.size)
       model_.warnings.push_back(model_.file +
                                 ": shells without a law differ in thickness; the scene has that of " +
-                                quoted(region) + " for all of them.");
+                                formats::quoted(region) + " for all of them.");
     model_.thickness = section.size;
   }
 
@@ -230,7 +230,7 @@ class AbaqusReader {
       if (const auto law = truss_law(*material, defects_))
         model_.cables[material->name] = *law;
       else
-        lawless_.push_back("material " + quoted(material->name) + " of trusses");
+        lawless_.push_back("material " + formats::quoted(material->name) + " of trusses");
     }
     model_.lines.push_back({a, b, length, section->size, material->name, element.label});
   }
@@ -256,7 +256,7 @@ class AbaqusReader {
       const AbaqusSurface* surface = assembly_.surface(pressure.target);
       if (surface == nullptr) {
         defects_.add("line", pressure.line,
-                     "surface " + quoted(pressure.target) + " of elements does not exist");
+                     "surface " + formats::quoted(pressure.target) + " of elements does not exist");
         continue;
       }
       for (const AbaqusFacets& facets : surface->facets) {

@@ -100,7 +100,7 @@ void AbaqusAssembly::begin_part(const AbaqusCard& card) {
   if (name.empty()) defects_.add("line", card.line, "*Part without a name");
   for (const AbaqusScope& part : parts_)
     if (upper_case(part.name) == upper_case(name))
-      defects_.add("line", card.line, "a part " + quoted(name) + " stands in the file already");
+      defects_.add("line", card.line, "a part " + formats::quoted(name) + " stands in the file already");
   parts_.emplace_back().name = name;
   place_ = Place::Part;
   begun_ = card.line;
@@ -114,10 +114,10 @@ void AbaqusAssembly::begin_instance(const AbaqusCard& card) {
   if (found != parts_.end())
     scope = *found;
   else if (!part.empty())
-    defects_.add("line", card.line, "part " + quoted(card.text("PART")) + " does not stand in the file");
+    defects_.add("line", card.line, "part " + formats::quoted(card.text("PART")) + " does not stand in the file");
   for (size_t k = 1; k < scopes_.size(); ++k)
     if (upper_case(scopes_[k].name) == upper_case(name))
-      defects_.add("line", card.line, "an instance " + quoted(name) + " stands in the file already");
+      defects_.add("line", card.line, "an instance " + formats::quoted(name) + " stands in the file already");
   const int number = static_cast<int>(scopes_.size());
   scope.name = name;
   set_scope(scope.node_sets, kOwn, number);
@@ -239,7 +239,7 @@ void AbaqusAssembly::read_set(const AbaqusCard& card, bool of_nodes) {
       if (upper_case(scopes_[k].name) == instance) scope = static_cast<int>(k);
     if (scope == 0)
       return defects_.add("line", card.line,
-                          "instance " + quoted(card.text("INSTANCE")) + " does not stand in the file");
+                          "instance " + formats::quoted(card.text("INSTANCE")) + " does not stand in the file");
   }
   AbaqusSet added;
   for (const AbaqusLine& line : card.data) {
@@ -333,7 +333,7 @@ std::vector<AbaqusItem> AbaqusAssembly::items(std::string_view text, int scope, 
   }
   const AbaqusScope& in = *this->scope(scope);
   const bool is_empty_set = (are_nodes ? in.node_sets : in.element_sets).contains(name);
-  if (!is_empty_set) defects_.add("line", line, thing + " or set " + quoted(text) + " does not exist");
+  if (!is_empty_set) defects_.add("line", line, thing + " or set " + formats::quoted(text) + " does not exist");
   return {};
 }
 

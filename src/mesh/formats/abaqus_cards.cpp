@@ -112,7 +112,7 @@ std::optional<double> abaqus_number(std::string_view field, int line, Defects& d
       digits.begin(), digits.end(), [](char c) { return c == 'D' || c == 'd'; }, 'e');
   double value = 0;
   if (const auto reason = read_number(digits, value)) {
-    defects.add("line", line, quoted(field) + reason->substr(quoted(digits).size()));
+    defects.add("line", line, formats::quoted(field) + reason->substr(formats::quoted(digits).size()));
     return std::nullopt;
   }
   return value;

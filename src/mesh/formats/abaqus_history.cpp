@@ -65,7 +65,7 @@ void AbaqusHistory::read_amplitude(const AbaqusCard& card) {
   if (amplitude.points.empty()) return defects_.add("line", card.line, "an amplitude without values");
   if (!amplitudes_.emplace(card.upper("NAME"), std::move(amplitude)).second)
     defects_.add("line", card.line,
-                 "an amplitude " + quoted(card.text("NAME")) + " stands in the file already");
+                 "an amplitude " + formats::quoted(card.text("NAME")) + " stands in the file already");
 }
 
 void AbaqusHistory::begin_step(const AbaqusCard& card) {
@@ -87,7 +87,7 @@ double AbaqusHistory::final_factor(const AbaqusCard& card) {
   const auto found = amplitudes_.find(card.upper("AMPLITUDE"));
   if (found == amplitudes_.end()) {
     defects_.add("line", card.line,
-                 "amplitude " + quoted(card.text("AMPLITUDE")) +
+                 "amplitude " + formats::quoted(card.text("AMPLITUDE")) +
                      " does not stand before this line as a table or a smooth step");
     return 1;
   }
@@ -140,7 +140,7 @@ void AbaqusHistory::hold(const AbaqusLine& line, const AbaqusCard& card, double 
   const std::string type = card.upper("TYPE");
   if (value != 0 && !type.empty() && type != "DISPLACEMENT")
     return defects_.add("line", line.number,
-                        "a prescribed " + quoted(type) + "; only displacements can be read");
+                        "a prescribed " + formats::quoted(type) + "; only displacements can be read");
   for (const AbaqusItem& item : assembly_.items(line.fields[0], 0, true, line.number)) {
     FeHold& hold = holds_[{item.scope, item.label}];
     for (const int axis : axes) {

@@ -24,7 +24,7 @@ std::optional<std::vector<double>> numbers(const AbaqusMaterial& material, size_
     }
   if (values.size() >= least) return values;
   defects.add("line", material.law->line,
-              "material " + quoted(material.name) + ": " + std::to_string(values.size()) + " numbers; *" +
+              "material " + formats::quoted(material.name) + ": " + std::to_string(values.size()) + " numbers; *" +
                   material.law->keyword + " needs " + std::to_string(least) + " (is the file truncated?)");
   return std::nullopt;
 }
@@ -32,7 +32,7 @@ std::optional<std::vector<double>> numbers(const AbaqusMaterial& material, size_
 bool is_positive(double value, const std::string& what, const AbaqusMaterial& material, Defects& defects) {
   if (value > 0) return true;
   defects.add("line", material.law->line,
-              "material " + quoted(material.name) + ": " + what + " must be positive");
+              "material " + formats::quoted(material.name) + ": " + what + " must be positive");
   return false;
 }
 
@@ -52,7 +52,7 @@ std::optional<Material> linear_shell(const AbaqusMaterial& material, Defects& de
   const double poisson = (*values)[1];
   if (poisson <= -1 || poisson > 0.5) {
     defects.add("line", material.law->line,
-                "material " + quoted(material.name) + ": Poisson's ratio must lie above -1 and up to 0.5");
+                "material " + formats::quoted(material.name) + ": Poisson's ratio must lie above -1 and up to 0.5");
     return std::nullopt;
   }
   return Material{"cst_stvk",
@@ -74,7 +74,7 @@ std::optional<Material> exponential_shell(const AbaqusMaterial& material, Defect
   const auto [c0, d, c1, c2] = std::array{(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
   if (c1 < 0 || c2 < 0 || d < 0) {
     defects.add("line", material.law->line,
-                "material " + quoted(material.name) + ": C1, C2 and D must not be negative");
+                "material " + formats::quoted(material.name) + ": C1, C2 and D must not be negative");
     return std::nullopt;
   }
   Material law{"cst_exponential",
@@ -89,7 +89,7 @@ std::optional<Material> ogden_truss(const AbaqusMaterial& material, Defects& def
     terms = abaqus_number(material.law->text("N"), material.law->line, defects).value_or(0);
   if (!(terms >= 1 && terms <= 6 && terms == static_cast<int>(terms))) {
     defects.add("line", material.law->line,
-                "material " + quoted(material.name) + ": N must be a whole number from 1 to 6");
+                "material " + formats::quoted(material.name) + ": N must be a whole number from 1 to 6");
     return std::nullopt;
   }
   const size_t count = static_cast<size_t>(terms);

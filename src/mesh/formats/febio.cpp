@@ -51,7 +51,7 @@ class FebioReader {
     if (!root_) defects_.fail("is no FEBio model: <febio_spec> is missing");
     const std::string version = root_.attribute("version").as_string();
     if (version != "4.0" && version != "3.0")
-      defects_.fail("is of FEBio's specification " + quoted(version) + "; 3.0 and 4.0 are read");
+      defects_.fail("is of FEBio's specification " + formats::quoted(version) + "; 3.0 and 4.0 are read");
     for (const pugi::xml_node& step : root_.child("Step").children("step")) sections_.push_back(step);
     sections_.insert(sections_.begin(), root_);
     read_time();
@@ -115,7 +115,7 @@ class FebioReader {
     if (!lc) return 1;
     const auto found = curves_.find(lc.as_string());
     if (found != curves_.end()) return found->second.end_value(end_);
-    places_.add(value, "load controller " + quoted(lc.as_string()) + " is no load curve of the file");
+    places_.add(value, "load controller " + formats::quoted(lc.as_string()) + " is no load curve of the file");
     return 1;
   }
 
@@ -160,7 +160,7 @@ class FebioReader {
       if (entry.type() != pugi::node_element) continue;
       const auto found = index_.find(entry.attribute("id").as_llong(0));
       if (found == index_.end())
-        places_.add(entry, "node " + quoted(entry.attribute("id").as_string()) + " does not exist");
+        places_.add(entry, "node " + formats::quoted(entry.attribute("id").as_string()) + " does not exist");
       else
         nodes.push_back(found->second);
     }
@@ -181,7 +181,7 @@ class FebioReader {
       return;
     }
     const pugi::xml_node domain = named(root_.child("MeshDomains"), "ShellDomain", name);
-    if (!domain) return places_.add(elements, "no <ShellDomain> is named " + quoted(name));
+    if (!domain) return places_.add(elements, "no <ShellDomain> is named " + formats::quoted(name));
     const int region = static_cast<int>(model_.region_names.size());
     std::string region_name = name;
     std::replace(region_name.begin(), region_name.end(), ' ', '_');
@@ -192,7 +192,7 @@ class FebioReader {
     read_domain(domain, region_name);
     for (const pugi::xml_node& element : elements.children("elem")) {
       if (!element_ids_.insert(element.attribute("id").as_llong(0)).second)
-        places_.add(element, "element " + quoted(element.attribute("id").as_string()) + " is given twice");
+        places_.add(element, "element " + formats::quoted(element.attribute("id").as_string()) + " is given twice");
       add_shell(element, type == "tri3" ? 3 : 4, region);
     }
   }
@@ -204,7 +204,7 @@ class FebioReader {
         named(root_.child("Material"), "material", domain.attribute("mat").as_string());
     if (!material)
       return places_.add(domain,
-                         "material " + quoted(domain.attribute("mat").as_string()) + " does not exist");
+                         "material " + formats::quoted(domain.attribute("mat").as_string()) + " does not exist");
     if (const auto law = febio_shell_law(material, thickness, places_)) model_.membranes[region] = *law;
   }
 
@@ -239,7 +239,7 @@ class FebioReader {
       if (std::string_view(load.name()) == "surface_load" && type == "pressure")
         read_pressure(load);
       else
-        left_out_.insert("load " + quoted(type));
+        left_out_.insert("load " + formats::quoted(type));
     }
     if (section.child("Contact").child("contact")) model_.has_contact = true;
   }
@@ -247,12 +247,12 @@ class FebioReader {
   void read_bc(const pugi::xml_node& bc) {
     const std::string type = bc.attribute("type").as_string(), set = bc.attribute("node_set").as_string();
     if (type != "zero displacement" && type != "prescribed displacement") {
-      left_out_.insert("boundary condition " + quoted(type));
+      left_out_.insert("boundary condition " + formats::quoted(type));
       return;
     }
     const auto nodes = model_.node_sets.find(set);
     if (nodes == model_.node_sets.end())
-      return places_.add(bc, "node set " + quoted(set) + " does not exist");
+      return places_.add(bc, "node set " + formats::quoted(set) + " does not exist");
     const char* const axes[] = {"x", "y", "z"};
     for (size_t c = 0; c < 3; ++c) {
       if (type == "zero displacement") {
@@ -283,7 +283,7 @@ class FebioReader {
     const pugi::xml_node data = named(root_.child("MeshData"), "NodeData", name);
     if (!data ||
         std::string_view(data.attribute("node_set").as_string()) != bc.attribute("node_set").as_string()) {
-      places_.add(value, "no <NodeData> of this node set is named " + quoted(name));
+      places_.add(value, "no <NodeData> of this node set is named " + formats::quoted(name));
       return {};
     }
     std::vector<double> values(count, 0);
@@ -305,7 +305,7 @@ class FebioReader {
   void read_pressure(const pugi::xml_node& load) {
     const std::string name = load.attribute("surface").as_string();
     const pugi::xml_node surface = named(mesh(), "Surface", name);
-    if (!surface) return places_.add(load, "surface " + quoted(name) + " does not exist");
+    if (!surface) return places_.add(load, "surface " + formats::quoted(name) + " does not exist");
     const double pressure = factor(load.child("pressure")) * places_.required(load, "pressure");
     if (places_.number_or(load, "linear", 0) != 0) model_.is_pressure_dead = true;
     for (const pugi::xml_node& facet : surface.children()) {
@@ -355,10 +355,10 @@ class FebioReader {
     }
     for (const std::string& name : lawless_)
       model_.warnings.push_back(
-          model_.file + ": the springs of " + quoted(name) +
+          model_.file + ": the springs of " + formats::quoted(name) +
           " have a curve that no law of a scene is like; the scene has its usual law there.");
     for (const std::string& name : pushing)
-      model_.warnings.push_back(model_.file + ": the springs of " + quoted(name) +
+      model_.warnings.push_back(model_.file + ": the springs of " + formats::quoted(name) +
                                 " push as well as pull; the scene's cables pull only.");
   }
 

@@ -160,7 +160,7 @@ std::optional<Material> febio_shell_law(const pugi::xml_node& material, double t
         {{"c0", pressure_text(value("c0"))}, {"c1", pressure_text(value("c1"))}, {"c2", plain(value("c2"))}}};
     if (type == "isotropic Lee-Sacks") law.keys.emplace_back("bulk", pressure_text(value("k")));
   } else {
-    places.add(material, "no law of a scene is like " + quoted(type));
+    places.add(material, "no law of a scene is like " + formats::quoted(type));
     return std::nullopt;
   }
   law.keys.emplace_back("thickness", length_text(thickness));
@@ -172,7 +172,7 @@ std::optional<FebioSpring> febio_spring(const pugi::xml_node& material, double d
   const std::string type = material.attribute("type").as_string();
   if (type == "nonlinear spring") return nonlinear(material, distance, places);
   if (type != "linear spring" && type != "tension-only linear spring") {
-    places.add(material, "no law of a scene is like " + quoted(type));
+    places.add(material, "no law of a scene is like " + formats::quoted(type));
     return std::nullopt;
   }
   // A stiffness alone: the cross-section that a cable of 1 MPa needs for it.
