@@ -3,10 +3,9 @@
     mitral_reference.py COAPT SHARED_DATA_FOLDER
 
 Exit code 77, "skipped", where the data is not there. Fibres and chords of the model are cables with a toe, the
-loads are the stored nodal forces, the leaflets have no stiffness of their own. Checked: at the stored state the
-relative residual is at most 1e-9, and from a state that is shaken by 0.1 mm the solver comes back to it. With
-pressure on the triangles and a membrane instead of fibres the distance is reported only: the model's reference
-was not made so.
+loads are the stored nodal forces, the leaflets have no stiffness of their own. Checked: the equilibrium,
+to a residual of 1e-9, is the stored state to the six decimals of its file, from there and from a state that is shaken
+by 0.1 mm. (As its file rounds it, the stored state has a residual of 4e-6.)
 """
 import json
 import pathlib
@@ -80,8 +79,6 @@ def main() -> int:
                   f"farthest vertex {farthest:.1e} mm")
             rules = {"converged": result["converged"], "residual at most 1e-9": result["residual"] <= 1e-9,
                      "every vertex within 1e-6 mm": farthest < 1e-6}
-            if shake == 0:
-                rules["an equilibrium as it stands"] = result["iterations"] == 0
             broken += [f"shake {shake}: {rule}" for rule, holds in rules.items() if not holds]
     print("\n".join(broken) or "passed")
     return 1 if broken else 0

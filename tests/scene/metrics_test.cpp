@@ -2,6 +2,7 @@
 
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
+#include "energy/kernels/cst_tension_field.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "mesh/vertex_gaps.hpp"
 #include "scene/reference_distance.hpp"
@@ -157,9 +158,23 @@ TEST(Metrics, CountFacetsThatPassThroughEachOther) {
   EXPECT_GT(measure_at(model, model.X).intersections, 10);
 }
 
+// All triangles, E = 1000, nu = 0.3, h = 1.
+template <typename Kernel>
+MembranePatch membrane_patch(const Model& model) {
+  MembranePatch patch;
+  std::vector<typename Kernel::Rest> rest;
+  for (int t = 0; t < model.mesh.triangle_count(); ++t) {
+    const Eigen::Vector3i c = model.mesh.triangles.col(t);
+    patch.triangles.push_back(t);
+    rest.push_back(Kernel::rest(model.X.col(c[0]), model.X.col(c[1]), model.X.col(c[2]), 1000, 0.3, 1));
+  }
+  patch.state = [rest](int e, const CstVector& x) { return Kernel::state(rest[static_cast<size_t>(e)], x); };
+  return patch;
+}
+
 TEST(Fields, GivePrincipalStretchAndStressOfABiaxialPatch) {
   Model model = model_of(square(1, 8));
-  model.membrane.assign(8, {1000, 0.3, 1, 0});
+  model.membrane_patches = {membrane_patch<CstStVK>(model)};
   Points x = model.X;
   x.row(0) *= 1.2;
   x.row(1) *= 1.1;
@@ -175,7 +190,7 @@ TEST(Fields, GivePrincipalStretchAndStressOfABiaxialPatch) {
 // A strip drawn out and free to wrinkle across, one triangle pair left at rest and one gone slack.
 TEST(Fields, GiveTheRelaxedStressAndTheRegimeOfATensionField) {
   Model model = model_of(square(1, 8));
-  model.membrane.assign(8, {.young = 1000, .poisson = 0.3, .thickness = 1, .relaxes = true});
+  model.membrane_patches = {membrane_patch<CstTensionField>(model)};
   const auto stretched = [&](double along, double across) {
     Points x = model.X;
     x.row(0) *= along;
@@ -200,7 +215,7 @@ TEST(Fields, GiveTheRelaxedStressAndTheRegimeOfATensionField) {
   const Fields wrinkled = compute_fields(model, stretched(1.2, 0.7));
   EXPECT_NEAR(wrinkled.principal_stress(0, 3), 1000 * 0.5 * (1.44 - 1), 1e-10);
   EXPECT_NEAR(wrinkled.principal_stress(1, 3), 0, 1e-12);
-  model.membrane.assign(8, {1000, 0.3, 1, 0});
+  model.membrane_patches = {membrane_patch<CstStVK>(model)};
   EXPECT_LT(compute_fields(model, stretched(1.2, 0.7)).principal_stress(1, 3), -100);
 }
 
