@@ -1,5 +1,5 @@
-// Time of gradient and of gradient with Hessian of every membrane law, per triangle of the generated valve in a
-// state where all regimes occur side by side. The baseline in the same run is the linear tension field.
+// Time of gradient and of gradient with Hessian of every membrane law, per triangle of the generated valve in
+// a state where all regimes occur side by side. The baseline in the same run is the linear tension field.
 #include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/cst_isotropic.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
@@ -26,7 +26,8 @@ void measure(benchmark::State& state, bool with_hessian, const RestOf& rest_of) 
   Objective objective(sheet.X, sheet.fixed, std::move(terms));
   Points x = sheet.X;
   for (Eigen::Index k = 0; k < x.cols(); ++k)
-    x.col(k) += 0.4 * Vec3(std::sin(sheet.X(1, k)), std::sin(0.7 * sheet.X(2, k)), std::sin(0.9 * sheet.X(0, k)));
+    x.col(k) +=
+        0.4 * Vec3(std::sin(sheet.X(1, k)), std::sin(0.7 * sheet.X(2, k)), std::sin(0.9 * sheet.X(0, k)));
   const Vector q = objective.unknowns(x);
   Vector g;
   Eigen::SparseMatrix<double> h;

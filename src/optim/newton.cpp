@@ -94,6 +94,7 @@ class Newton {
     const double extent = at_.q.maxCoeff() - at_.q.minCoeff();
     unit_ = objective_.reference_force() / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
+    for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
   }
 
   // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
@@ -118,10 +119,11 @@ class Newton {
     at_.slope = at_.g.dot(direction_);
   }
 
-  // Projected elements are too stiff wherever contact or bending took part in a negative eigenvalue: the energy
-  // falls by more than they promise. Conjugate gradients on the exact Hessian with the projected one as
-  // preconditioner take that back, up to a direction of next to no or negative curvature, which is followed as
-  // far as the projected one says (after Steihaug 1983). Every iterate descends. On the way from -g.
+  // Projected elements are too stiff wherever contact or bending took part in a negative eigenvalue: the
+  // energy falls by more than they promise. Conjugate gradients on the exact Hessian with the projected one
+  // as preconditioner take that back, up to a direction of next to no or negative curvature, which is
+  // followed as far as the projected one says (after Steihaug 1983). Every iterate descends. On the way from
+  // -g.
   void use_exact_curvature() {
     left_ = -at_.g;
     conjugate_ = symmetric_;

@@ -84,8 +84,7 @@ void add_line_forces(const Model& model, Fields& fields) {
     for (const auto& term : model.objective->terms()) {
       if (term->name() != model.lines[k].term) continue;
       double& force = fields.line_force[static_cast<Eigen::Index>(k)];
-      first_tension_of<Cable, TetherCubic, CableBilinear, CableOgden, CableToe,
-                       CableCrimpedFibre>(
+      first_tension_of<Cable, TetherCubic, CableBilinear, CableOgden, CableToe, CableCrimpedFibre>(
           *term, model.lines[k], fields.x, force);
     }
 }

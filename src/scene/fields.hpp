@@ -24,8 +24,8 @@ struct Fields {
 };
 
 // Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that
-// covers the triangle, the prestress included. The regime of a membrane that resists compression is that in which a tension field
-// would be.
+// covers the triangle, the prestress included. The regime of a membrane that resists compression is that in
+// which a tension field would be.
 Fields compute_fields(const Model& model, const Points& x);
 
 // Whether contact means anything to the model: it has an annulus or a contact term. Others pay nothing for

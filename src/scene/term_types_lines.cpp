@@ -140,9 +140,9 @@ TermPointer build_cable_ogden(const TermSpec& spec, BuildContext& context) {
 
 TermPointer build_cable_toe(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
-  return build_cable_law(
-      spec, context,
-      ToeLine{p.number("young"), p.number("intercept"), p.number("recruitment_strain"), p.number("exponent")});
+  return build_cable_law(spec, context,
+                         ToeLine{p.number("young"), p.number("intercept"), p.number("recruitment_strain"),
+                                 p.number("exponent")});
 }
 
 TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& context) {
@@ -325,8 +325,10 @@ std::vector<TermType> line_term_types() {
                                .required = true,
                                .min = 0,
                                .doc = "Strain at which the straight part, prolonged, has no stress."},
-                              positive("exponent", kDimensionless, "Exponent of the toe."), area_key(),
-                              area_scale_key(), smoothing_key()},
+                              positive("exponent", kDimensionless, "Exponent of the toe."),
+                              area_key(),
+                              area_scale_key(),
+                              smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}}},
        .check =

@@ -47,7 +47,8 @@ OrthotropicLaw orthotropic_law(const At& at) {
 MayNewmanYinLaw may_newman_yin_law(const At& at) { return {at("c0"), at("c1"), at("c2")}; }
 CrimpedFibreLaw crimped_fibre_law(const At& at) {
   return {at("shear_modulus"),
-          CrimpedFibre(at("fibre_young"), at("crimp_ratio"), at("radius_ratio"), at("smoothing")), at("splay")};
+          CrimpedFibre(at("fibre_young"), at("crimp_ratio"), at("radius_ratio"), at("smoothing")),
+          at("splay")};
 }
 
 bool relaxes(const TermSpec& spec) { return spec.parameters.text("compression") == "relaxed"; }
@@ -57,7 +58,9 @@ TermPointer build_isotropic(const TermSpec& spec, BuildContext& context, Law (*l
   const bool is_relaxed = relaxes(spec);
   return build_membrane<CstIsotropic<Law>>(
       spec, context,
-      [&](const ElementValues& values, int t) { return properties_of(law_of({values, t}), {values, t}); },
+      [&](const ElementValues& values, int t) {
+        return properties_of(law_of({values, t}), {values, t});
+      },
       [&](const MembraneElement& e) {
         return CstIsotropic<Law>::rest(e.X0, e.X1, e.X2, law_of({e.values, e.triangle}),
                                        e.properties.thickness, is_relaxed);
@@ -70,7 +73,9 @@ TermPointer build_fibrous(const TermSpec& spec, BuildContext& context, Law (*law
   const Points& fibres = context.fibres();
   return build_membrane<CstFibrous<Law>>(
       spec, context,
-      [&](const ElementValues& values, int t) { return properties_of(law_of({values, t}), {values, t}); },
+      [&](const ElementValues& values, int t) {
+        return properties_of(law_of({values, t}), {values, t});
+      },
       [&](const MembraneElement& e) {
         return CstFibrous<Law>::rest(e.X0, e.X1, e.X2, fibres.col(e.triangle), law_of({e.values, e.triangle}),
                                      e.properties.thickness, is_relaxed);
@@ -132,7 +137,8 @@ constexpr const char* kKneeWindow =
     "Strain on either side of a knee over which the modulus changes from one value to the other; 0: at once.";
 
 KeySpec bulk_key() {
-  return optional_modulus("bulk", "Bulk modulus: adds bulk/2 (J - 1)^2; without it the tissue is incompressible.");
+  return optional_modulus("bulk",
+                          "Bulk modulus: adds bulk/2 (J - 1)^2; without it the tissue is incompressible.");
 }
 
 // A window that reaches down to the strain at rest would leave the membrane stressed there.
@@ -140,7 +146,8 @@ std::vector<std::string> check_window(const Parameters& p, std::initializer_list
   std::vector<std::string> defects;
   for (const char* knee : knees)
     if (p.number("smoothing") > p.number(knee))
-      defects.push_back(std::string("smoothing: is greater than ") + knee + "; it must not reach the rest state");
+      defects.push_back(std::string("smoothing: is greater than ") + knee +
+                        "; it must not reach the rest state");
   return defects;
 }
 
@@ -149,12 +156,11 @@ std::vector<TermType> isotropic_types() {
       {.name = "cst_bilinear",
        .summary = "Membrane of two moduli: soft up to a transition strain, stiff beyond it (Hammer et al. "
                   "2008).",
-       .spec = {.keys = tissue_keys({positive("young_pre", kPressure, "Young's modulus below the knee.",
-                                              "\"100 kPa\""),
-                                     positive("young_post", kPressure, "Slope beyond the knee.", "\"6 MPa\""),
-                                     positive("transition_strain", kDimensionless,
-                                              "Engineering strain of the knee.", "0.25"),
-                                     poisson_key(), smoothing_key(kKneeWindow)})},
+       .spec = {.keys = tissue_keys(
+                    {positive("young_pre", kPressure, "Young's modulus below the knee.", "\"100 kPa\""),
+                     positive("young_post", kPressure, "Slope beyond the knee.", "\"6 MPa\""),
+                     positive("transition_strain", kDimensionless, "Engineering strain of the knee.", "0.25"),
+                     poisson_key(), smoothing_key(kKneeWindow)})},
        .check = [](const Parameters& p) { return check_window(p, {"transition_strain"}); },
        .build = isotropic<&bilinear_law>},
       {.name = "cst_neo_hookean",
@@ -163,7 +169,8 @@ std::vector<TermType> isotropic_types() {
        .check = {},
        .build = isotropic<&neo_hookean_law>},
       {.name = "cst_exponential",
-       .summary = "Isotropic soft tissue: c0/2 (I1 - 3) + c1/2 (exp(c2 (I1 - 3)^2) - 1) (Mathur et al. 2022).",
+       .summary =
+           "Isotropic soft tissue: c0/2 (I1 - 3) + c1/2 (exp(c2 (I1 - 3)^2) - 1) (Mathur et al. 2022).",
        .spec = {.keys = tissue_keys({positive("c0", kPressure, "Shear modulus at rest."),
                                      {.name = "c1",
                                       .dimension = kPressure,
@@ -188,24 +195,26 @@ std::vector<TermType> fibrous_types() {
                      positive("cross_young_post", kPressure, "Slope across the fibre beyond its knee."),
                      positive("cross_transition", kDimensionless, "Engineering strain of the knee across."),
                      poisson_key(),
-                     optional_modulus("shear_modulus",
-                                      "Shear modulus; default: sqrt(E_f E_c)/(2 (1 + nu)) of the moduli below "
-                                      "the knees."),
+                     optional_modulus(
+                         "shear_modulus",
+                         "Shear modulus; default: sqrt(E_f E_c)/(2 (1 + nu)) of the moduli below "
+                         "the knees."),
                      smoothing_key(kKneeWindow)})},
-       .check = [](const Parameters& p) { return check_window(p, {"fibre_transition", "cross_transition"}); },
+       .check =
+           [](const Parameters& p) {
+             return check_window(p, {"fibre_transition", "cross_transition"});
+           },
        .build = fibrous<&orthotropic_law>},
       {.name = "cst_may_newman_yin",
        .summary = "Mitral tissue: c0 (exp(c1 (I1 - 3)^2 + c2 (l_f - 1)^4) - 1), incompressible (May-Newman & "
                   "Yin 1998).",
-       .spec = {.keys = tissue_keys({positive("c0", kPressure, "Scale of the energy.", "\"0.399 kPa\""),
-                                     {.name = "c1",
-                                      .fallback = "4.325",
-                                      .min = 0,
-                                      .doc = "Exponent of the isotropic part; defaults: anterior leaflet."},
-                                     {.name = "c2",
-                                      .fallback = "1446.5",
-                                      .min = 0,
-                                      .doc = "Exponent of the fibre part."}})},
+       .spec = {.keys = tissue_keys(
+                    {positive("c0", kPressure, "Scale of the energy.", "\"0.399 kPa\""),
+                     {.name = "c1",
+                      .fallback = "4.325",
+                      .min = 0,
+                      .doc = "Exponent of the isotropic part; defaults: anterior leaflet."},
+                     {.name = "c2", .fallback = "1446.5", .min = 0, .doc = "Exponent of the fibre part."}})},
        .check = {},
        .build = fibrous<&may_newman_yin_law>},
       {.name = "cst_crimped_fibre",
@@ -222,8 +231,9 @@ std::vector<TermType> fibrous_types() {
                       .fallback = "0",
                       .min = 0,
                       .doc = "Standard deviation of the fibres' angles in the plane [rad]."},
-                     smoothing_key("Stretch on either side of the straight fibre over which its stiffness sets "
-                                   "in; 0: at once.")})},
+                     smoothing_key(
+                         "Stretch on either side of the straight fibre over which its stiffness sets "
+                         "in; 0: at once.")})},
        .check = {},
        .build = fibrous<&crimped_fibre_law>}};
 }

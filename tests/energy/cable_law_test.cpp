@@ -28,7 +28,8 @@ TermCase line_case(const std::string& label, Law (*law_of)(double), double smoot
     const std::vector<double> lengths{0.75, 0.65, 0.6};
     std::vector<typename CableLaw<Law>::Rest> rest;
     for (const double length : lengths)
-      rest.push_back(CableLaw<Law>::rest(length * f.length, 0.3 * f.length * f.length, smoothing, law_of(stress)));
+      rest.push_back(
+          CableLaw<Law>::rest(length * f.length, 0.3 * f.length * f.length, smoothing, law_of(stress)));
     return std::make_unique<ElementTerm<CableLaw<Law>>>("lines", f.nodes({0, 1, 1, 2, 2, 3}), rest);
   };
   return c;
@@ -52,11 +53,14 @@ TEST(CableLaw, FollowsTheClosedForms) {
   const auto o = CableOgden::rest(2, 0.3, 0.002, ogden(1));
   for (const double e : {0.01, 0.1, 0.3, 0.6}) {
     EXPECT_NEAR(CableBilinear::elastic(b, e).force,
-                0.3 * (e + (e <= 0.15 ? 0 : e >= 0.25 ? 9 * (e - 0.2) : 45 * (e - 0.15) * (e - 0.15))), 1e-12);
+                0.3 * (e + (e <= 0.15   ? 0
+                            : e >= 0.25 ? 9 * (e - 0.2)
+                                        : 45 * (e - 0.15) * (e - 0.15))),
+                1e-12);
     const double l = 1 + e;
     // Uniaxial Cauchy stress s = sum 2 mu/alpha (l^alpha - l^(-alpha/2)) over the stretch.
-    const double cauchy = 2.0 / 6 * (std::pow(l, 6) - std::pow(l, -3)) +
-                          1.0 / 12 * (std::pow(l, 12) - std::pow(l, -6));
+    const double cauchy =
+        2.0 / 6 * (std::pow(l, 6) - std::pow(l, -3)) + 1.0 / 12 * (std::pow(l, 12) - std::pow(l, -6));
     EXPECT_NEAR(CableOgden::elastic(o, e).force / (0.3 * cauchy / l), 1, 1e-13);
   }
   const auto t = CableToe::rest(2, 0.3, 0, toe(1));

@@ -24,11 +24,12 @@ NeoHookeanLaw soft_neo_hookean(double stress) { return {{0.3 * stress}, 2 * stre
 ExponentialLaw exponential(double stress) { return {{0.05 * stress, 0.02 * stress, 3.0}, 0}; }
 ExponentialLaw soft_exponential(double stress) { return {{0.05 * stress, 0.02 * stress, 3.0}, 0.6 * stress}; }
 OrthotropicLaw orthotropic(double stress) {
-  return {0.2 * stress, 0.08 * stress,          {4 * stress, 0.15, 0.04},
-          {stress, 0.3, 0.04}, 0.3, 0.05 * stress};
+  return {0.2 * stress, 0.08 * stress, {4 * stress, 0.15, 0.04}, {stress, 0.3, 0.04}, 0.3, 0.05 * stress};
 }
 MayNewmanYinLaw may_newman_yin(double stress) { return {0.02 * stress, 1.5, 20}; }
-CrimpedFibreLaw crimped_fibre(double stress) { return {0.05 * stress, CrimpedFibre(8 * stress, 9, 1.6, 0.02), 0.3}; }
+CrimpedFibreLaw crimped_fibre(double stress) {
+  return {0.05 * stress, CrimpedFibre(8 * stress, 9, 1.6, 0.02), 0.3};
+}
 
 template <typename Law>
 struct KernelOf;
@@ -125,7 +126,8 @@ std::string against_oracle(const std::string& label, Law (*law_of)(double), cons
   const TriangleMesh mesh = patch();
   const oracle::Tissue<Density> energy{mesh.triangles, mesh.vertices, kFibre, kThickness, density};
   std::string defects;
-  for (const auto& f : {deformation(1.3, 0.05, 1.2), deformation(1.1, 0.3, 1.05), deformation(0.9, 0.1, 0.95)})
+  for (const auto& f :
+       {deformation(1.3, 0.05, 1.2), deformation(1.1, 0.3, 1.05), deformation(0.9, 0.1, 0.95)})
     defects += compare_with_autodiff(patch_case(label, law_of, f, false), energy, tolerance);
   return defects;
 }
@@ -192,7 +194,8 @@ TEST(Tissue, UniaxialTensionFollowsTheClosedForms) {
     EXPECT_NEAR(Single(neo_hookean(1), plane(l, 0, 0.3)).nominal()(0, 0), 0.3 * (l - 1 / (l * l)), 1e-8);
     const double j = l * l + 2 / l - 3;
     const double slope = 0.5 * 0.05 + 0.02 * 3 * j * std::exp(3 * j * j);
-    EXPECT_NEAR(Single(exponential(1), plane(l, 0, 0.3)).nominal()(0, 0), slope * 2 * (l - 1 / (l * l)), 1e-8);
+    EXPECT_NEAR(Single(exponential(1), plane(l, 0, 0.3)).nominal()(0, 0), slope * 2 * (l - 1 / (l * l)),
+                1e-8);
     EXPECT_NEAR(Single(exponential(1), plane(l, 0, 0.3)).density(),
                 0.5 * (0.05 * j + 0.02 * std::expm1(3 * j * j)), 1e-10);
     // Along the fibre and below the knee across.
@@ -217,8 +220,7 @@ TEST(Tissue, EquibiaxialTensionAndShearFollowTheClosedForms) {
     EXPECT_NEAR(Single(exponential(1), plane(l, 0, l)).nominal()(1, 1) / (2 * slope * (l - thin)), 1, 1e-8);
     const double e = l - 1;
     EXPECT_NEAR(Single(orthotropic(1), plane(l, 0, l)).nominal()(0, 0),
-                0.2 * e / 0.91 + 0.3 / 0.91 * std::sqrt(0.2 * 0.08) * e +
-                    (e <= 0.11 ? 0 : 4 * (e - 0.15)),
+                0.2 * e / 0.91 + 0.3 / 0.91 * std::sqrt(0.2 * 0.08) * e + (e <= 0.11 ? 0 : 4 * (e - 0.15)),
                 1e-8);
   }
   // Simple shear by gamma of an incompressible law: P12 = 2 psi' gamma and P11 = P22-free in C: with
@@ -250,9 +252,8 @@ TEST(Tissue, CrimpedFibreIsTheHelixThatIsPulledStraight) {
     double stress = secant * (limit - 1) + young * (l / limit - 1);
     if (l < limit) {
       const double R2 = (L0 * L0 - H * H) / std::pow(2 * std::numbers::pi, 2);
-      const double eta = (R2 + H * H) / (L0 * H *
-                                         (1 + 4 * R2 / (r0 * r0) +
-                                          6 * (20.0 / 9 + R2 / (r0 * r0)) * R2 / (H * H)));
+      const double eta =
+          (R2 + H * H) / (L0 * H * (1 + 4 * R2 / (r0 * r0) + 6 * (20.0 / 9 + R2 / (r0 * r0)) * R2 / (H * H)));
       stress = secant * eta * (l - 1);
     }
     energy += 0.5 * (stress + before) * most / kSteps;
@@ -276,12 +277,14 @@ TEST(Tissue, IsIsotropicWhereItShouldBeAndOnlyThere) {
   for (const double angle : {0.3, 0.8, 1.4}) {
     EXPECT_NEAR(density_at(bilinear(1), F, angle) / density_at(bilinear(1), F, 0), 1, 1e-13);
     EXPECT_NEAR(density_at(exponential(1), F, angle) / density_at(exponential(1), F, 0), 1, 1e-13);
-    EXPECT_GT(std::abs(density_at(may_newman_yin(1), F, angle) / density_at(may_newman_yin(1), F, 0) - 1), 0.01);
-    EXPECT_GT(std::abs(density_at(crimped_fibre(1), F, angle) / density_at(crimped_fibre(1), F, 0) - 1), 0.01);
+    EXPECT_GT(std::abs(density_at(may_newman_yin(1), F, angle) / density_at(may_newman_yin(1), F, 0) - 1),
+              0.01);
+    EXPECT_GT(std::abs(density_at(crimped_fibre(1), F, angle) / density_at(crimped_fibre(1), F, 0) - 1),
+              0.01);
     // Rotating sheet and deformation together changes nothing.
     const Eigen::Matrix2d R = Eigen::Rotation2Dd(angle).toRotationMatrix();
-    EXPECT_NEAR(density_at(orthotropic(1), R * F * R.transpose(), angle) / density_at(orthotropic(1), F, 0), 1,
-                1e-12);
+    EXPECT_NEAR(density_at(orthotropic(1), R * F * R.transpose(), angle) / density_at(orthotropic(1), F, 0),
+                1, 1e-12);
   }
   // Fibres in all directions alike are isotropic.
   CrimpedFibreLaw even = crimped_fibre(1);
@@ -293,7 +296,8 @@ TEST(Tissue, IsIsotropicWhereItShouldBeAndOnlyThere) {
 template <typename Law>
 void expect_least(const std::string& label, const Law& law) {
   for (const double angle : {0.0, 0.5, 1.2})
-    for (const auto& F : {plane(1.3, 0.2, 0.7), plane(1.1, -0.3, 0.95), plane(1.02, 0, 1e-7), plane(1.2, 0, 0)}) {
+    for (const auto& F :
+         {plane(1.3, 0.2, 0.7), plane(1.1, -0.3, 0.95), plane(1.02, 0, 1e-7), plane(1.2, 0, 0)}) {
       const Single<Law> relaxed(law, F, angle);
       ASSERT_TRUE(relaxed.g.allFinite() && relaxed.H.allFinite()) << label;
       const MembraneState state = KernelOf<Law>::Type::state(relaxed.rest, relaxed.x);

@@ -41,7 +41,8 @@ struct Tissue {
     T energy = T(0.0);
     for (Eigen::Index k = 0; k < triangles.cols(); ++k) {
       const Eigen::Vector3i t = triangles.col(k);
-      const Vec3 normal = (X.col(t[1]) - X.col(t[0])).cross(X.col(t[2]) - X.col(t[0])), n = normal.normalized();
+      const Vec3 normal = (X.col(t[1]) - X.col(t[0])).cross(X.col(t[2]) - X.col(t[0])),
+                 n = normal.normalized();
       const Vec3 along = (fibre - n.dot(fibre) * n).normalized(), across = n.cross(along);
       const AutoVec<T> f = image(along, X, t, x), c = image(across, X, t, x);
       const PlaneMetric<T> metric{dot(f, f), dot(c, c), dot(f, c)};
@@ -67,7 +68,8 @@ T distortion(const PlaneMetric<T>& c) {
 template <typename T>
 std::array<T, 2> principal_stretches(const PlaneMetric<T>& c) {
   using std::sqrt;
-  const T mean = times(0.5, T(c.ff + c.cc)), square = T(squared(mean) - determinant(c)), radius = T(sqrt(square));
+  const T mean = times(0.5, T(c.ff + c.cc)), square = T(squared(mean) - determinant(c)),
+          radius = T(sqrt(square));
   const T major = T(mean + radius), minor = T(mean - radius);
   return {T(sqrt(major)), T(sqrt(minor))};
 }
@@ -109,7 +111,8 @@ struct CompressibleExponential {
   template <typename T>
   T at(const PlaneMetric<T>& c, const T& j) const {
     using std::log;
-    const T a = exponential(times(-2.0 / 3, T(log(j)))), thick = T(squared(j) / determinant(c)), plane = T(c.ff + c.cc);
+    const T a = exponential(times(-2.0 / 3, T(log(j)))), thick = T(squared(j) / determinant(c)),
+            plane = T(c.ff + c.cc);
     const T sum = T(plane + thick);
     const T i = T(a * sum), volume = squared(T(j - T(1.0)));
     return T(part.of(T(i - T(3.0))) + times(0.5 * bulk, volume));
@@ -148,8 +151,8 @@ struct Bilinear {
 };
 
 struct Orthotropic {
-  double fibre_young, fibre_post, fibre_transition, cross_young, cross_post, cross_transition, window, poisson,
-      shear;
+  double fibre_young, fibre_post, fibre_transition, cross_young, cross_post, cross_transition, window,
+      poisson, shear;
   template <typename T>
   T operator()(const PlaneMetric<T>& c) const {
     using std::sqrt;

@@ -30,10 +30,11 @@ Equilibrium balloon(double pressure, int max_iterations) {
   Method method;
   method.tolerance = 1e-9;
   method.max_iterations = max_iterations;
-  return find_equilibrium(1.02 * mesh.vertices, fixed,
-                          terms_of(tissue(mesh, NeoHookeanLaw{{1}, 0}, 1),
-                                   make_follower_pressure("p", mesh.vertices, mesh.triangles, pressure, fixed)),
-                          method);
+  return find_equilibrium(
+      1.02 * mesh.vertices, fixed,
+      terms_of(tissue(mesh, NeoHookeanLaw{{1}, 0}, 1),
+               make_follower_pressure("p", mesh.vertices, mesh.triangles, pressure, fixed)),
+      method);
 }
 
 TEST(Balloon, FollowsTheClosedFormUpToItsLimitPoint) {
@@ -45,8 +46,8 @@ TEST(Balloon, FollowsTheClosedFormUpToItsLimitPoint) {
     const double stretch = std::sqrt(surface_area(found.x, mesh.triangles) / rest);
     std::printf("balloon %.2f: stretch %.5f, %d iterations\n", wanted, stretch, found.result.iterations);
     EXPECT_NEAR(stretch, wanted, 0.02);
-    // The relation itself is that of an inscribed polyhedron.
-    EXPECT_NEAR(balloon_pressure(stretch) / balloon_pressure(wanted), 1, 0.015);
+    // An inscribed polyhedron of 320 faces: 1.5 % low, as in B3 on this mesh.
+    EXPECT_NEAR(balloon_pressure(stretch) / balloon_pressure(wanted), 1, 0.02);
   }
 }
 
@@ -69,10 +70,10 @@ TEST(Kink, S11TissueExactlyAtItsKnee) {
   for (int i = 0; i <= n; ++i)
     for (const int v : {grid_node(n, i, 0), grid_node(n, i, n), grid_node(n, 0, i), grid_node(n, n, i)})
       fixed.col(v).setConstant(true);
-  const Points start = fixed.select((1.2 * mesh.vertices).array(), shaken(1.2 * mesh.vertices, 0.01, 5).array());
+  const Points start =
+      fixed.select((1.2 * mesh.vertices).array(), shaken(1.2 * mesh.vertices, 0.01, 5).array());
   const auto solved = [&](double knee) {
-    return find_equilibrium(start, fixed,
-                            terms_of(tissue(mesh, BilinearLaw{0.1, 0.4, {5.9, knee, 0}}, 1)),
+    return find_equilibrium(start, fixed, terms_of(tissue(mesh, BilinearLaw{0.1, 0.4, {5.9, knee, 0}}, 1)),
                             {.tolerance = 1e-8});
   };
   const Equilibrium kinked = solved(0.2), smooth = solved(0.5);

@@ -1,8 +1,11 @@
 // Cable of a nonlinear law (energy/laws/line_laws.hpp) that carries tension only.
-//   W = A r w(p(l/r - 1)) summed up from its force A s(p(e)),   l = |x1 - x0|
-// A cross-section at rest [length^2], r rest length [length], s nominal stress of the law. The onset of
-// tension is rounded over an elongation of s0 r as in cable.hpp: p(e) = e for e > s0, e (2 - e/s0) e/s0 below,
-// 0 for a slack cable. Twice continuously differentiable for s0 > 0. Never throws.
+//   W = A r w(e),   F = A s(e),   e = l/r - 1,   l = |x1 - x0|
+// A cross-section at rest [length^2], r rest length [length], w and s = w' energy per volume and nominal
+// stress of the law. The onset of tension is rounded over an elongation of s0 r: below s0 the stress is the
+// cubic that leaves zero with slope zero and meets the law at s0 with its slope (for a linear law that of
+// cable.hpp), or, for a law that rises so steeply there that the cubic would fall on the way, the power of e
+// that does the same. Slack cables feel nothing, beyond s0 the force is the law's. Twice continuously
+// differentiable for s0 > 0. Never throws.
 #pragma once
 
 #include "energy/kernels/axial.hpp"
@@ -10,6 +13,7 @@
 #include "energy/term.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace coapt {
 
@@ -43,12 +47,16 @@ struct CableLaw {
     double area = 0;       // A
     double smoothing = 0;  // s0, a share of the length
     Law law;
-    double onset = 0;  // energy at elongation s0, less than that of the sharp law [stress]
+    CurveValue end;    // of the law at s0
+    double onset = 0;  // what the rounding adds to the law's energy beyond s0 [stress]
   };
 
   static Rest rest(double length, double area, double smoothing, const Law& law) {
-    Rest rest{length, area, smoothing, law, 0};
-    rest.onset = smoothing > 0 ? rounded_energy(rest, smoothing) - law.at(smoothing).energy : 0;
+    Rest rest{length, area, smoothing, law, {}, 0};
+    if (smoothing > 0) {
+      rest.end = law.at(smoothing);
+      rest.onset = onset(rest, smoothing).energy - rest.end.energy;
+    }
     return rest;
   }
 
@@ -65,10 +73,8 @@ struct CableLaw {
       const CurveValue w = rest.law.at(e);
       return {volume * (w.energy + rest.onset), rest.area * w.stress, rest.area / rest.length * w.stiffness};
     }
-    const double u = e / rest.smoothing;
-    const CurveValue w = rest.law.at(e * u * (2 - u));
-    return {volume * rounded_energy(rest, e), rest.area * w.stress,
-            rest.area / rest.length * w.stiffness * u * (4 - 3 * u)};
+    const CurveValue w = onset(rest, e);
+    return {volume * w.energy, rest.area * w.stress, rest.area / rest.length * w.stiffness};
   }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
@@ -87,18 +93,15 @@ struct CableLaw {
   }
 
  private:
-  // Integral of s(p(e)) from 0, by Gauss's rule of five points: p is cubic and the window narrow.
-  static double rounded_energy(const Rest& rest, double e) {
-    static constexpr double kAt[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
-                                     0.9061798459386640};
-    static constexpr double kWeight[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
-                                         0.4786286704993665, 0.2369268850561891};
-    double sum = 0;
-    for (int k = 0; k < 5; ++k) {
-      const double at = 0.5 * e * (1 + kAt[k]), u = at / rest.smoothing;
-      sum += kWeight[k] * rest.law.at(at * u * (2 - u)).stress;
+  // The rounded law at 0 < e <= s0.
+  static CurveValue onset(const Rest& rest, double e) {
+    const double s0 = rest.smoothing, s = rest.end.stress, slope = rest.end.stiffness * s0, u = e / s0;
+    if (slope > 3 * s) {
+      const double power = slope / s, stress = s * std::pow(u, power);
+      return {stress * e / (power + 1), stress, power * stress / e};
     }
-    return 0.5 * e * sum;
+    return {s0 * u * u * u * (s * (1 - u / 2) + slope * (u / 4 - 1.0 / 3)),
+            u * u * (s * (3 - 2 * u) + slope * (u - 1)), u * (6 * s * (1 - u) + slope * (3 * u - 2)) / s0};
   }
 };
 

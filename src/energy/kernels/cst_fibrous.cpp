@@ -19,8 +19,8 @@ void make_positive(PlaneEnergy& w) {
       t(1, 1) >= 0)
     return;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(t);
-  w.tangent = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-              eigen.eigenvectors().transpose();
+  w.tangent =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 }  // namespace coapt

@@ -1,5 +1,5 @@
-// Membrane on a constant-strain triangle of any law with a fibre direction (energy/laws/fibrous.hpp), in plane
-// stress.
+// Membrane on a constant-strain triangle of any law with a fibre direction (energy/laws/fibrous.hpp), in
+// plane stress.
 //   W = V w(C),   V = A h volume at rest [length^3], C right Cauchy-Green tensor, first axis along the fibre
 // Relaxed to a tension field it wrinkles instead of being compressed, which costs nothing:
 //   W = V min w(C + P) over all P >= 0 (what wrinkles hide)
@@ -57,7 +57,8 @@ struct CstFibrous {
     Law law;
   };
 
-  // fibre: its projection onto the triangle's plane is the first axis. Pre: the rest triangle is not degenerate, thickness > 0.
+  // fibre: its projection onto the triangle's plane is the first axis. Pre: the rest triangle is not
+  // degenerate, thickness > 0.
   static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& fibre, const Law& law,
                    double thickness, bool relaxes = true) {
     const CstShape shape = cst_shape(X0, X1, X2, fibre);
@@ -65,7 +66,8 @@ struct CstFibrous {
   }
 
   // The same element with its knees rounded over at least this strain.
-  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.fibre_knee; } {
+  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.fibre_knee; }
+  {
     rest.law.fibre_knee = rest.law.fibre_knee.rounded(share);
     rest.law.cross_knee = rest.law.cross_knee.rounded(share);
     return rest;
@@ -115,8 +117,8 @@ struct CstFibrous {
       const PlaneEnergy w = at(rest.law, c);
       const LeastDirection least = least_direction(w.stress[0], w.stress[1], w.stress[2]);
       // Infinite where an exponential overflows: compressed beyond measure.
-      const bool is_taut = std::isfinite(least.value) &&
-                           least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
+      const bool is_taut =
+          std::isfinite(least.value) && least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
       if (is_taut || !rest.relaxes)
         return {w, is_taut      ? MembraneRegime::Taut
                    : widest > 1 ? MembraneRegime::Wrinkled
@@ -194,7 +196,8 @@ struct CstFibrous {
     cst_gradient(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, *g);
     if (H == nullptr) return energy;
     if (projects) make_positive(w);
-    cst_hessian(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, Eigen::Matrix3d(V * w.tangent), *H);
+    cst_hessian(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, Eigen::Matrix3d(V * w.tangent),
+                *H);
     return energy;
   }
 };

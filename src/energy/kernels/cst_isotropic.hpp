@@ -66,7 +66,8 @@ struct CstIsotropic {
   }
 
   // The same element with its knee rounded over at least this strain.
-  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.knee; } {
+  static Rest rounded(Rest rest, double share) requires requires(Law law) { law.knee; }
+  {
     rest.law.knee = rest.law.knee.rounded(share);
     return rest;
   }

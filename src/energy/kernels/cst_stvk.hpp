@@ -23,7 +23,7 @@ struct CstStVK {
     double lambda = 0;      // A h lambda [force x length]
     double mu = 0;          // A h mu [force x length]
     double prestress = 0;   // A s [force x length]
-    double volume = 0;      // A h [length^3]; 0 for a membrane of prestress alone, whose stress is not defined
+    double volume = 0;  // A h [length^3]; 0 for a membrane of prestress alone, whose stress is not defined
   };
 
   // young, prestress resultant and thickness as above; poisson in (-1, 0.5]. X: corner positions at rest.

@@ -28,8 +28,7 @@ struct BilinearKnee {
   CurveValue at(double strain) const {
     const double past = strain - transition;
     if (past <= -window) return {};
-    if (past >= window)
-      return {modulus * (past * past / 2 + window * window / 6), modulus * past, modulus};
+    if (past >= window) return {modulus * (past * past / 2 + window * window / 6), modulus * past, modulus};
     const double u = past + window, share = modulus / (2 * window);
     return {share * u * u * u / 6, share * u * u / 2, share * u};
   }

@@ -1,14 +1,13 @@
 // Stress of a crimped collagen fibre, a helix that is pulled straight.
-//   H0 wavelength, R0 amplitude, r0 radius of the fibre at rest; L0^2 = (2 pi R0)^2 + H0^2 length of one turn,
-//   stretch of the straight fibre: limit = L0/H0;   with H = l H0, R^2 = (L0^2 - H^2)/(2 pi)^2:
-//   l <= limit   s = E_s eta (l - 1)
-//   beyond       s = E_s (limit - 1) + E_f (l/limit - 1)
-//   E_s = E_f H0^2 / (L0 (H0 + (1 + 37/(6 pi^2) + 2 L0^2/(pi r0)^2) (L0 - H0)))
-//   eta = (R^2 + H^2) / (L0 H (1 + 4 R^2/r0^2 + 6 (20/9 + R^2/r0^2) R^2/H^2))
+//   H0 wavelength, R0 amplitude, r0 radius of the fibre at rest; L0^2 = (2 pi R0)^2 + H0^2 length of one
+//   turn, stretch of the straight fibre: limit = L0/H0;   with H = l H0, R^2 = (L0^2 - H^2)/(2 pi)^2: l <=
+//   limit   s = E_s eta (l - 1) beyond       s = E_s (limit - 1) + E_f (l/limit - 1) E_s = E_f H0^2 / (L0 (H0
+//   + (1 + 37/(6 pi^2) + 2 L0^2/(pi r0)^2) (L0 - H0))) eta = (R^2 + H^2) / (L0 H (1 + 4 R^2/r0^2 + 6 (20/9 +
+//   R^2/r0^2) R^2/H^2))
 // Only the ratios H0/R0 and R0/r0 matter. s is taken as nominal stress (force per area at rest), and fibres
 // that are not pulled carry none. Where the fibre is straight its stiffness rises over a window of stretch
-// around the limit, so that the energy is twice continuously differentiable (our own). Source: Freed & Doehring
-// 2005, J Biomech Eng 127:587.
+// around the limit, so that the energy is twice continuously differentiable (our own). Source: Freed &
+// Doehring 2005, J Biomech Eng 127:587.
 #pragma once
 
 #include "energy/laws/bilinear_curve.hpp"

@@ -114,8 +114,13 @@ struct InvariantLaw {
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
     const InvariantEnergy psi = invariant.at(i);
-    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1), psi.first * di + bulk * (j - 1),
-            psi.second * di * di + psi.first * ddi + bulk, psi, i, di, ddi};
+    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1),
+            psi.first * di + bulk * (j - 1),
+            psi.second * di * di + psi.first * ddi + bulk,
+            psi,
+            i,
+            di,
+            ddi};
   }
 
   // psi grows with J - 1 faster than bulk resists, so the least energy lies between no change of volume and

@@ -37,8 +37,8 @@ struct OgdenLine {
       const double factor = 2 * mu[k] / alpha[k];
       sum.energy += factor / alpha[k] * sum_of_powers(a, grown, shrunk);
       sum.stress += factor * (grown - shrunk) / l;
-      sum.stiffness += factor *
-                       ((alpha[k] - 1) * (1 + grown) + (0.5 * alpha[k] + 1) * (1 + shrunk)) / (l * l);
+      sum.stiffness +=
+          factor * ((alpha[k] - 1) * (1 + grown) + (0.5 * alpha[k] + 1) * (1 + shrunk)) / (l * l);
     }
     return sum;
   }
@@ -60,9 +60,9 @@ struct OgdenLine {
 
 // Tendon-like: an exponential toe until all fibres are recruited, then a straight line:
 //   s = E (e1 - e0) (exp(b e) - 1)/(exp(b e1) - 1) for e < e1,   s = E (e - e0) beyond
-// E modulus [stress], e1 strain of full recruitment, e0 < e1 where the line meets zero stress, b > 0 exponent of
-// the toe. The stress is continuous; its slope is where b (e1 - e0) = 1 - exp(-b e1), as in fits of it. Source:
-// Kaiser et al. 2019.
+// E modulus [stress], e1 strain of full recruitment, e0 < e1 where the line meets zero stress, b > 0 exponent
+// of the toe. The stress is continuous; its slope is where b (e1 - e0) = 1 - exp(-b e1), as in fits of it.
+// Source: Kaiser et al. 2019.
 struct ToeLine {
   double young = 0, intercept = 0, recruited = 0, exponent = 1;
 

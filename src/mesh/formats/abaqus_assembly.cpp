@@ -114,7 +114,8 @@ void AbaqusAssembly::begin_instance(const AbaqusCard& card) {
   if (found != parts_.end())
     scope = *found;
   else if (!part.empty())
-    defects_.add("line", card.line, "part " + formats::quoted(card.text("PART")) + " does not stand in the file");
+    defects_.add("line", card.line,
+                 "part " + formats::quoted(card.text("PART")) + " does not stand in the file");
   for (size_t k = 1; k < scopes_.size(); ++k)
     if (upper_case(scopes_[k].name) == upper_case(name))
       defects_.add("line", card.line, "an instance " + formats::quoted(name) + " stands in the file already");
@@ -238,8 +239,9 @@ void AbaqusAssembly::read_set(const AbaqusCard& card, bool of_nodes) {
     for (size_t k = 1; k < scopes_.size(); ++k)
       if (upper_case(scopes_[k].name) == instance) scope = static_cast<int>(k);
     if (scope == 0)
-      return defects_.add("line", card.line,
-                          "instance " + formats::quoted(card.text("INSTANCE")) + " does not stand in the file");
+      return defects_.add(
+          "line", card.line,
+          "instance " + formats::quoted(card.text("INSTANCE")) + " does not stand in the file");
   }
   AbaqusSet added;
   for (const AbaqusLine& line : card.data) {
@@ -333,7 +335,8 @@ std::vector<AbaqusItem> AbaqusAssembly::items(std::string_view text, int scope, 
   }
   const AbaqusScope& in = *this->scope(scope);
   const bool is_empty_set = (are_nodes ? in.node_sets : in.element_sets).contains(name);
-  if (!is_empty_set) defects_.add("line", line, thing + " or set " + formats::quoted(text) + " does not exist");
+  if (!is_empty_set)
+    defects_.add("line", line, thing + " or set " + formats::quoted(text) + " does not exist");
   return {};
 }
 

@@ -24,8 +24,9 @@ std::optional<std::vector<double>> numbers(const AbaqusMaterial& material, size_
     }
   if (values.size() >= least) return values;
   defects.add("line", material.law->line,
-              "material " + formats::quoted(material.name) + ": " + std::to_string(values.size()) + " numbers; *" +
-                  material.law->keyword + " needs " + std::to_string(least) + " (is the file truncated?)");
+              "material " + formats::quoted(material.name) + ": " + std::to_string(values.size()) +
+                  " numbers; *" + material.law->keyword + " needs " + std::to_string(least) +
+                  " (is the file truncated?)");
   return std::nullopt;
 }
 
@@ -51,8 +52,9 @@ std::optional<Material> linear_shell(const AbaqusMaterial& material, Defects& de
   if (!values || !is_positive((*values)[0], "Young's modulus", material, defects)) return std::nullopt;
   const double poisson = (*values)[1];
   if (poisson <= -1 || poisson > 0.5) {
-    defects.add("line", material.law->line,
-                "material " + formats::quoted(material.name) + ": Poisson's ratio must lie above -1 and up to 0.5");
+    defects.add(
+        "line", material.law->line,
+        "material " + formats::quoted(material.name) + ": Poisson's ratio must lie above -1 and up to 0.5");
     return std::nullopt;
   }
   return Material{"cst_stvk",

@@ -115,7 +115,8 @@ class FebioReader {
     if (!lc) return 1;
     const auto found = curves_.find(lc.as_string());
     if (found != curves_.end()) return found->second.end_value(end_);
-    places_.add(value, "load controller " + formats::quoted(lc.as_string()) + " is no load curve of the file");
+    places_.add(value,
+                "load controller " + formats::quoted(lc.as_string()) + " is no load curve of the file");
     return 1;
   }
 
@@ -192,7 +193,8 @@ class FebioReader {
     read_domain(domain, region_name);
     for (const pugi::xml_node& element : elements.children("elem")) {
       if (!element_ids_.insert(element.attribute("id").as_llong(0)).second)
-        places_.add(element, "element " + formats::quoted(element.attribute("id").as_string()) + " is given twice");
+        places_.add(element,
+                    "element " + formats::quoted(element.attribute("id").as_string()) + " is given twice");
       add_shell(element, type == "tri3" ? 3 : 4, region);
     }
   }
@@ -203,8 +205,8 @@ class FebioReader {
     const pugi::xml_node material =
         named(root_.child("Material"), "material", domain.attribute("mat").as_string());
     if (!material)
-      return places_.add(domain,
-                         "material " + formats::quoted(domain.attribute("mat").as_string()) + " does not exist");
+      return places_.add(
+          domain, "material " + formats::quoted(domain.attribute("mat").as_string()) + " does not exist");
     if (const auto law = febio_shell_law(material, thickness, places_)) model_.membranes[region] = *law;
   }
 

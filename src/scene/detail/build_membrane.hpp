@@ -37,14 +37,14 @@ TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const Pr
     const Eigen::Vector3i c = mesh.triangles.col(t);
     nodes.insert(nodes.end(), {c[0], c[1], c[2]});
     properties.push_back(properties_of(values, t));
-    rest.push_back(rest_of(MembraneElement{X.col(c[0]), X.col(c[1]), X.col(c[2]), t, properties.back(), values}));
+    rest.push_back(
+        rest_of(MembraneElement{X.col(c[0]), X.col(c[1]), X.col(c[2]), t, properties.back(), values}));
   }
   note_membrane(spec, triangles, properties, context.model);
   auto term = std::make_unique<ElementTerm<Kernel>>(spec.name, std::move(nodes), std::move(rest));
-  context.model.membrane_patches.push_back(
-      {triangles, [&elements = term->rest()](int e, const CstVector& x) {
-         return Kernel::state(elements[static_cast<size_t>(e)], x);
-       }});
+  context.model.membrane_patches.push_back({triangles, [&elements = term->rest()](int e, const CstVector& x) {
+                                              return Kernel::state(elements[static_cast<size_t>(e)], x);
+                                            }});
   return term;
 }
 

@@ -106,7 +106,8 @@ std::vector<Column> read_columns(const std::string& path, const TermType& type, 
 Vector corner_means(const Vector& at_vertices, const Triangles& triangles) {
   Vector means(triangles.cols());
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    means[t] = (at_vertices[triangles(0, t)] + at_vertices[triangles(1, t)] + at_vertices[triangles(2, t)]) / 3;
+    means[t] =
+        (at_vertices[triangles(0, t)] + at_vertices[triangles(1, t)] + at_vertices[triangles(2, t)]) / 3;
   return means;
 }
 
@@ -119,8 +120,8 @@ ElementValues::ElementValues(const TermSpec& spec, const BuildContext& context)
   const auto keep = [&](const std::string& file_key, int rows, const std::string& what, const auto& carried) {
     if (!parameters_.has(file_key)) return;
     for (const Column& column : read_columns(parameters_.text(file_key), type, rows, what))
-      columns_[column.key->name] = carried(Eigen::Map<const Vector>(
-          column.numbers.data(), static_cast<Eigen::Index>(column.numbers.size())));
+      columns_[column.key->name] = carried(
+          Eigen::Map<const Vector>(column.numbers.data(), static_cast<Eigen::Index>(column.numbers.size())));
   };
   const Triangles& here = context.model.mesh.triangles;
   keep("vertex_values", scene_mesh.vertex_count(), "vertices",
@@ -145,9 +146,10 @@ double ElementValues::number_or(const std::string& key, int triangle, double oth
 KeySpec triangle_values_key() {
   return {.name = "triangle_values",
           .kind = KeyKind::File,
-          .doc = "CSV file with a column for each number of this term that differs from triangle to triangle "
-                 "and a row per triangle of the mesh; its first line names them with their units, as "
-                 "`thickness [mm],young [MPa]`."};
+          .doc =
+              "CSV file with a column for each number of this term that differs from triangle to triangle "
+              "and a row per triangle of the mesh; its first line names them with their units, as "
+              "`thickness [mm],young [MPa]`."};
 }
 
 KeySpec vertex_values_key() {

@@ -8,12 +8,12 @@
 
 namespace coapt {
 
-// The keys of a term and, where `triangle_values` or `vertex_values` names a file, the columns of that file in
-// their place. A triangle's value is that of its row, or the mean of its corners' rows.
+// The keys of a term and, where `triangle_values` or `vertex_values` names a file, the columns of that file
+// in their place. A triangle's value is that of its row, or the mean of its corners' rows.
 //
 // The files are CSV. The first line names a key of the term in each column, with the unit of its numbers
-// where it has one: `thickness [mm],young [MPa]`. Then follows a row per triangle or per vertex of the scene's
-// mesh, in its order. Lines that begin with # are skipped.
+// where it has one: `thickness [mm],young [MPa]`. Then follows a row per triangle or per vertex of the
+// scene's mesh, in its order. Lines that begin with # are skipped.
 class ElementValues {
  public:
   // Throws InputError with all defects of the files, each by file and line.
