@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <unistd.h>
 
 namespace coapt {
 
@@ -14,7 +15,8 @@ class TemporaryFolder {
   TemporaryFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("coapt_") + test->test_suite_name() + "_" + test->name());
+            (std::string("coapt_") + test->test_suite_name() + "_" + test->name() + "_" +
+             std::to_string(::getpid()));  // two builds may be tested at once
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -39,6 +39,8 @@ struct Tissue {
   const char *name, *term;
 };
 
+void PrintTo(const Tissue& tissue, std::ostream* out) { *out << tissue.name; }
+
 // Tissues of about the default membrane's stiffness under its pressure, so that the valve closes.
 constexpr Tissue kTissues[] = {
     {"bilinear", R"({"type": "cst_bilinear", "young_pre": "0.3 MPa", "young_post": "6 MPa",
