@@ -19,9 +19,9 @@ struct CheckReport {
 
 // Reads the scene and its meshes and looks at all of it in one pass. The derivatives are examined at the
 // start shape, moved at random (same seed each time) by up to a twentieth of the mean edge; a term that is
-// not active there (a slack chord) at the shape enlarged by a tenth, and one that does not pass (a membrane at the
-// borders of its regimes, where the Hessian jumps) at the start shape enlarged by a quarter.
-// Throws nothing for a bad scene: that is the report.
+// not active there (a slack chord) at the shape enlarged by a tenth, and one that does not pass (a membrane
+// at the borders of its regimes, where the Hessian jumps) at the start shape enlarged by a quarter. Throws
+// nothing for a bad scene: that is the report.
 CheckReport check(const std::filesystem::path& scene_file);
 
 }  // namespace coapt
