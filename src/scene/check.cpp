@@ -82,8 +82,8 @@ std::vector<DerivativeReport> check_model(Model& model) {
   const Points near = start + Eigen::Map<const Points>(motion.data(), 3, start.cols());
   const Vec3 centre = near.rowwise().mean();
   const Points larger = (1.1 * (near.colwise() - centre)).colwise() + centre;
-  // Beside its rest state a membrane that wrinkles has a border of its regimes in every other facet, where the
-  // Hessian jumps by right. Enlarged by a quarter it is taut.
+  // Beside its rest state a membrane that wrinkles has a border of its regimes in every other facet, where
+  // the Hessian jumps by right. Enlarged by a quarter it is taut.
   const Points taut = (1.25 * (start + 0.2 * (near - start))).colwise() - 0.25 * centre;
 
   std::vector<DerivativeReport> reports;
