@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/formats/formats.hpp"
+#include "mesh/formats/lower_extension.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/vtp_writer.hpp"
 
@@ -11,15 +12,8 @@
 namespace coapt {
 namespace {
 
-std::string extension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 [[noreturn]] void refuse_extension(const std::filesystem::path& path) {
-  throw InputError(path.string() + ": the extension '" + extension(path) +
+  throw InputError(path.string() + ": the extension '" + formats::lower_extension(path) +
                    "' is not a mesh format; use .obj, .ply, .stl, .off or .vtp");
 }
 
@@ -40,7 +34,7 @@ VtpSurface vtp_surface(const TriangleMesh& mesh, const std::string& space) {
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-  const std::string format = extension(path);
+  const std::string format = formats::lower_extension(path);
   MeshFile (*read)(std::string_view, const std::string&) = format == ".obj"   ? formats::read_obj
                                                            : format == ".ply" ? formats::read_ply
                                                            : format == ".stl" ? formats::read_stl
@@ -53,7 +47,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, std::optional<MeshCoding> coding,
                 const std::string& space) {
-  const std::string format = extension(path), remark = space.empty() ? "" : "SPACE=" + space;
+  const std::string format = formats::lower_extension(path), remark = space.empty() ? "" : "SPACE=" + space;
   if (format == ".obj")
     formats::write_whole(path, formats::write_obj(mesh, remark));
   else if (format == ".ply")

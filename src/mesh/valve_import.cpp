@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/formats/fe_readers.hpp"
+#include "mesh/formats/lower_extension.hpp"
 #include "mesh/formats/whole_file.hpp"
 
 #include <algorithm>
@@ -9,13 +10,6 @@
 
 namespace coapt {
 namespace {
-
-std::string extension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool is_utf8(const std::string& bytes) {
   int following = 0;                      // bytes of the character that are still to come
@@ -57,17 +51,18 @@ std::string utf8_from_latin1(const std::string& bytes) {
 }  // namespace
 
 bool is_model_file(const std::filesystem::path& path) {
-  return extension(path) == ".inp" || extension(path) == ".feb";
+  return formats::lower_extension(path) == ".inp" || formats::lower_extension(path) == ".feb";
 }
 
 ValveModel read_model(const std::filesystem::path& path) {
   if (!is_model_file(path))
-    throw InputError(path.string() + ": the extension '" + extension(path) +
+    throw InputError(path.string() + ": the extension '" + formats::lower_extension(path) +
                      "' is no finite-element model; use .inp or .feb");
   std::string bytes = formats::read_whole(path);
   if (!is_utf8(bytes)) bytes = utf8_from_latin1(bytes);
-  formats::FeModel model = extension(path) == ".inp" ? formats::read_abaqus(bytes, path.string())
-                                                     : formats::read_febio(bytes, path.string());
+  formats::FeModel model = formats::lower_extension(path) == ".inp"
+                               ? formats::read_abaqus(bytes, path.string())
+                               : formats::read_febio(bytes, path.string());
   ValveModel result;
   result.valve = formats::valve_of(model);
   if (result.valve.name.empty()) result.valve.name = path.stem().string();

@@ -4,6 +4,7 @@
 #include "mesh/formats/bytes.hpp"
 #include "mesh/formats/text.hpp"
 #include "mesh/formats/whole_file.hpp"
+#include "mesh/formats/xml_escaped.hpp"
 
 #include <cmath>
 #include <set>
@@ -13,23 +14,7 @@ namespace {
 
 using formats::append_number;
 using formats::store;
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
+using formats::xml_escaped;
 
 // Whole numbers that VTK holds in 32 bits; a value without meaning is -1.
 std::int32_t whole(double value) {
@@ -69,7 +54,7 @@ class VtpDocument {
 
   // VTK keeps a string as its character codes and a zero, in text also for appended files.
   void text(const VtpText& text) {
-    xml_ += "<Array type=\"String\" Name=\"" + escaped(text.name) + "\" NumberOfTuples=\"" +
+    xml_ += "<Array type=\"String\" Name=\"" + xml_escaped(text.name) + "\" NumberOfTuples=\"" +
             std::to_string(text.values.size()) + "\" format=\"ascii\">\n";
     for (const std::string& value : text.values) {
       for (const char c : value) xml_ += std::to_string(static_cast<unsigned char>(c)) + ' ';
@@ -88,7 +73,7 @@ class VtpDocument {
 
  private:
   void open(const std::string& name, const char* type, Eigen::Index components) {
-    xml_ += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + escaped(name) +
+    xml_ += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) +
             "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"";
   }
   void begin(size_t byte_count) {

@@ -1,6 +1,7 @@
 #include "scene/febio_export.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/xml_escaped.hpp"
 #include "scene/detail/febio_laws.hpp"
 #include "scene/detail/law_terms.hpp"
 #include "scene/groundwork.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 using detail::digits;
 using detail::FebioLaw;
-using detail::xml_escaped;
+using formats::xml_escaped;
 
 std::string attribute(const char* name, const std::string& value) {
   return std::string(" ") + name + "=\"" + xml_escaped(value) + "\"";

@@ -23,6 +23,4 @@ std::optional<FebioLaw> febio_membrane(const TermSpec& term);
 // none.
 std::optional<FebioLaw> febio_cable(const TermSpec& term, double distance, double rest_length, double area);
 
-std::string xml_escaped(const std::string& text);
-
 }  // namespace coapt::detail
