@@ -20,6 +20,11 @@ constexpr double kNear = 1e-3;                   // residual at which an equilib
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
+// Conjugate gradients: how many at most, to which share of the gradient, and the share of the projected
+// curvature below which a direction counts as flat.
+constexpr int kConjugate = 15;
+constexpr double kCurved = 0.1, kFlat = 0.2;
+
 // Rounding of the kinks, as a share of the element's length.
 constexpr double kOverloaded = 2;  // residual of a start that asks for it
 constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;
@@ -89,6 +94,7 @@ class Newton {
     const double extent = at_.q.maxCoeff() - at_.q.minCoeff();
     unit_ = objective_.reference_force() / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
+    for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
   }
 
   // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
@@ -97,6 +103,7 @@ class Newton {
     PhaseTimer timer(monitor_.phases(), "direction");
     work_ = -at_.g;
     hessian_.solve(work_, symmetric_);
+    if (!hessian_.is_exact()) use_exact_curvature();
     direction_ = symmetric_;
     if (objective_.has_skew_tangent())
       gmres_.solve(
@@ -110,6 +117,37 @@ class Newton {
     if (at_.slope < 0) return;
     direction_ = symmetric_;  // GMRES stopped early
     at_.slope = at_.g.dot(direction_);
+  }
+
+  // Projected elements are too stiff wherever contact or bending took part in a negative eigenvalue: the
+  // energy falls by more than they promise. Conjugate gradients on the exact Hessian with the projected one
+  // as preconditioner take that back, up to a direction of next to no or negative curvature, which is
+  // followed as far as the projected one says (after Steihaug 1983). Every iterate descends. On the way from
+  // -g.
+  void use_exact_curvature() {
+    left_ = -at_.g;
+    conjugate_ = symmetric_;
+    image_ = left_;  // of `conjugate_` under the projected Hessian
+    symmetric_.setZero();
+    double square = left_.dot(conjugate_);
+    const double enough = kCurved * kCurved * square;
+    for (int k = 0; k < kConjugate; ++k) {
+      work_ = shift_ * conjugate_;
+      hessian_.add_exact_product(conjugate_, work_);
+      const double curvature = conjugate_.dot(work_), projected = conjugate_.dot(image_);
+      if (!(curvature > kFlat * projected)) {
+        symmetric_ += (square / projected) * conjugate_;
+        return;
+      }
+      symmetric_ += (square / curvature) * conjugate_;
+      left_ -= (square / curvature) * work_;
+      hessian_.solve(left_, work_);
+      const double next = left_.dot(work_);
+      if (!(next > enough)) return;
+      conjugate_ = work_ + (next / square) * conjugate_;
+      image_ = left_ + (next / square) * image_;
+      square = next;
+    }
   }
 
   // Where the force has no potential the symmetric part of the tangent need not be positive definite at an
@@ -198,6 +236,7 @@ class Newton {
   double rounding_ = 0;
   LinePoint at_, next_;
   Vector work_, symmetric_, direction_, last_;
+  Vector left_, conjugate_, image_;  // of the conjugate gradients
 };
 
 class SolverNewton final : public Solver {
