@@ -94,5 +94,28 @@ TEST(CableLaw, CanBeRoundedMoreForAWhile) {
   EXPECT_EQ(term.evaluate(x, value_only), sharp);
 }
 
+// As a solver's continuation needs it: a wide rounding carries the same force at a few times the elongation,
+// not at one that the law itself would answer with a force of another magnitude.
+TEST(CableLaw, StaysSoftAndMovesLittleHoweverWideTheRounding) {
+  const OgdenLine steep{{19, 22, 20}, {98, 98, 98}};
+  const auto given = CableOgden::rest(2, 0.3, 0.002, steep);
+  const double sought = CableOgden::elastic(given, 0.01).force;
+  double before = 0.01;
+  for (const double share : {0.003, 0.01, 0.03, 0.1, 0.3, 1.0}) {
+    const auto wide = CableOgden::rounded(given, share);
+    double low = 0, high = 1;
+    for (int k = 0; k < 60; ++k) {
+      const double e = 0.5 * (low + high);
+      const AxialLaw law = CableOgden::elastic(wide, e);
+      EXPECT_GT(law.stiffness, 0) << share << " at " << e;
+      (law.force < sought ? low : high) = e;
+    }
+    EXPECT_GE(low, before * (1 - 1e-9)) << share;
+    EXPECT_LT(low, 2 * before) << share;
+    before = low;
+  }
+  EXPECT_LT(before, 0.05);
+}
+
 }  // namespace
 }  // namespace coapt

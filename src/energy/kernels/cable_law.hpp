@@ -1,11 +1,12 @@
 // Cable of a nonlinear law (energy/laws/line_laws.hpp) that carries tension only.
-//   W = A r w(e),   F = A s(e),   e = l/r - 1,   l = |x1 - x0|
-// A cross-section at rest [length^2], r rest length [length], w and s = w' energy per volume and nominal
-// stress of the law. The onset of tension is rounded over an elongation of s0 r: below s0 the stress is the
-// cubic that leaves zero with slope zero and meets the law at s0 with its slope (for a linear law that of
-// cable.hpp), or, for a law that rises so steeply there that the cubic would fall on the way, the power of e
-// that does the same. Slack cables feel nothing, beyond s0 the force is the law's. Twice continuously
-// differentiable for s0 > 0. Never throws.
+//   W = A r w(rho(e)),   F = A w'(rho) rho',   e = l/r - 1,   l = |x1 - x0|
+// A cross-section at rest [length^2], r rest length [length], w energy per volume of the law at an
+// elongation. The onset of tension is rounded over an elongation of s0 r by what the law is asked for:
+//   rho = s0 u^(3/2) (15 - 10 u + 3 u^2)/8,  u = e/s0,  below s0,   rho = e beyond
+// so that the force leaves zero with slope zero and meets the law at s0 with its slope. Slack cables feel
+// nothing, beyond s0 the law is exact. Twice continuously differentiable for s0 > 0. Rounding the elongation
+// and not the stress keeps a steep law (Ogden exponents of a hundred) soft at small elongations however wide
+// the rounding is, as the continuation of a solver needs it. Never throws.
 #pragma once
 
 #include "energy/kernels/axial.hpp"
@@ -47,17 +48,10 @@ struct CableLaw {
     double area = 0;       // A
     double smoothing = 0;  // s0, a share of the length
     Law law;
-    CurveValue end;    // of the law at s0
-    double onset = 0;  // what the rounding adds to the law's energy beyond s0 [stress]
   };
 
   static Rest rest(double length, double area, double smoothing, const Law& law) {
-    Rest rest{length, area, smoothing, law, {}, 0};
-    if (smoothing > 0) {
-      rest.end = law.at(smoothing);
-      rest.onset = onset(rest, smoothing).energy - rest.end.energy;
-    }
-    return rest;
+    return {length, area, smoothing, law};
   }
 
   // The same cable with the onset of its tension rounded over at least this share of its length.
@@ -68,13 +62,10 @@ struct CableLaw {
   // Energy, force and stiffness at elongation e = l/r - 1.
   static AxialLaw elastic(const Rest& rest, double e) {
     if (e <= 0) return {};
-    const double volume = rest.area * rest.length;
-    if (e >= rest.smoothing) {
-      const CurveValue w = rest.law.at(e);
-      return {volume * (w.energy + rest.onset), rest.area * w.stress, rest.area / rest.length * w.stiffness};
-    }
-    const CurveValue w = onset(rest, e);
-    return {volume * w.energy, rest.area * w.stress, rest.area / rest.length * w.stiffness};
+    const Elongation rho = rounded_elongation(e, rest.smoothing);
+    const CurveValue w = rest.law.at(rho.value);
+    return {rest.area * rest.length * w.energy, rest.area * w.stress * rho.slope,
+            rest.area / rest.length * (w.stiffness * rho.slope * rho.slope + w.stress * rho.curvature)};
   }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
@@ -93,15 +84,16 @@ struct CableLaw {
   }
 
  private:
-  // The rounded law at 0 < e <= s0.
-  static CurveValue onset(const Rest& rest, double e) {
-    const double s0 = rest.smoothing, s = rest.end.stress, slope = rest.end.stiffness * s0, u = e / s0;
-    if (slope > 3 * s) {
-      const double power = slope / s, stress = s * std::pow(u, power);
-      return {stress * e / (power + 1), stress, power * stress / e};
-    }
-    return {s0 * u * u * u * (s * (1 - u / 2) + slope * (u / 4 - 1.0 / 3)),
-            u * u * (s * (3 - 2 * u) + slope * (u - 1)), u * (6 * s * (1 - u) + slope * (3 * u - 2)) / s0};
+  struct Elongation {
+    double value = 0, slope = 1, curvature = 0;
+  };
+
+  // rho at e > 0, with its derivatives.
+  static Elongation rounded_elongation(double e, double s0) {
+    if (e >= s0) return {e, 1, 0};
+    const double u = e / s0, root = std::sqrt(u);
+    return {e * root * (15 - 10 * u + 3 * u * u) / 8, root * (45 - 50 * u + 21 * u * u) / 16,
+            (45 - 150 * u + 105 * u * u) / (32 * s0 * root)};
   }
 };
 
