@@ -58,6 +58,11 @@ Points Objective::positions(const Vector& q) const {
   return x;
 }
 
+double Objective::extent(const Vector& q) const {
+  const Points x = positions(q);
+  return x.cols() == 0 ? 0 : (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+}
+
 void Objective::scale(double load, double stiffness) {
   load_factor_ = load;
   stiffness_factor_ = stiffness;

@@ -49,6 +49,8 @@ class Objective {
 
   Vector unknowns(const Points& x) const;
   Points positions(const Vector& q) const;
+  // Longest side of the box around all nodes [length], whatever the place and the unknowns are.
+  double extent(const Vector& q) const;
 
   // Factors on all loads and on all other energies, for continuation; 1 from the start. Load and stiffness
   // scaled alike leave an equilibrium where it is.

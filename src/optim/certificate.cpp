@@ -75,7 +75,7 @@ StabilityReport stability_at(Objective& objective, const Vector& q, const Stabil
   objective.hessian(q, g, h, Projection::None);
   if (!g.allFinite() || !std::isfinite(h.sum())) return report;
   // A rigid turn of a body that is not quite in balance has the stiffness force over length.
-  const double extent = q.maxCoeff() - q.minCoeff();
+  const double extent = objective.extent(q);
   const double noise = extent > 0 ? 10 * g.lpNorm<Eigen::Infinity>() / extent : 0;
   return judge_stability(h, prescribed_unknowns(objective.fixed()), noise, options);
 }

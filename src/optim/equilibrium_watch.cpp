@@ -34,7 +34,7 @@ EquilibriumWatch::EquilibriumWatch(const Objective& objective, const Vector& q)
     : reason_("the shape grows without bound") {
   const Points x = objective.positions(q);
   if (x.cols() == 0) return;
-  extent_ = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+  extent_ = objective.extent(q);
   const std::vector<Part> parts = connected_parts(objective.terms(), x, objective.fixed());
   for (const Part& part : parts)
     if (part.can_shift_at_all()) adrift_.push_back({part.nodes, centre(x, part.nodes), part.description()});

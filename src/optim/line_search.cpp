@@ -62,6 +62,7 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
   bool is_limited = step < first;
   for (int k = 0; k < kMaxEvaluations; ++k) {
     if (monitor.is_out_of_time()) break;
+    if (!(step > 0)) break;  // nothing may move
     const Sample now = evaluate(monitor, from, direction, step, to);
     if (now.energy == kInfinity) {  // infeasible: come back quickly
       high = now;

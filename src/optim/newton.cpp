@@ -26,7 +26,7 @@ constexpr int kConjugate = 15;
 constexpr double kCurved = 0.1, kFlat = 0.2;
 
 // Rounding of the kinks, as a share of the element's length.
-constexpr double kOverloaded = 2;  // residual of a start that asks for it
+constexpr double kOverloaded = 3;  // residual of a start that asks for it
 constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;
 constexpr double kSharpen = 0.3;   // its fall
 constexpr double kSettled = 0.03;  // residual at which it falls
@@ -91,7 +91,7 @@ class Newton {
 
   // Force over length: what resists a displacement of the scene's size with the scene's force.
   void start_shift() {
-    const double extent = at_.q.maxCoeff() - at_.q.minCoeff();
+    const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force() / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
     for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
@@ -183,7 +183,8 @@ class Newton {
 
   bool search() {
     if (!search_line(monitor_, at_, direction_, first_step(), next_)) return false;
-    const double promised = -at_.slope * next_.step * (1 - 0.5 * next_.step);
+    const double step = std::min(next_.step, 1.0);  // the model promises nothing more beyond its minimum
+    const double promised = -at_.slope * step * (1 - 0.5 * step);
     const double kept = (at_.energy - next_.energy) / promised;
     if (next_.step >= 0.9 && kept > kKept)
       shift_ *= std::abs(kept - 1) < kExact ? kFall * kFall : kFall;
@@ -210,7 +211,9 @@ class Newton {
   // The shift takes the place of the radius (Levenberg, Marquardt; More 1978).
   bool try_whole_step() {
     next_.step = 1;
-    direction_ *= monitor_.step_limit(at_.q, direction_, 1);
+    const double limit = monitor_.step_limit(at_.q, direction_, 1);
+    if (!(limit > 0)) return false;
+    direction_ *= limit;
     at_.slope = at_.g.dot(direction_);
     next_.q = at_.q + direction_;
     next_.energy = monitor_.gradient(next_.q, next_.g);

@@ -139,10 +139,11 @@ Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Mon
   Outcome outcome;
   double moved = 0;  // of the prescribed motion
   bool is_blocked = false;
+  bool has_arrived = true;
   int step = 1;
   for (; step <= steps; ++step) {
     const double t = static_cast<double>(step) / steps;
-    bool has_arrived = !problem.motion.positions;
+    has_arrived = !problem.motion.positions;
     do {
       if (!has_arrived) {
         const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);
@@ -162,12 +163,14 @@ Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Mon
   }
   // A run that was cut short is judged, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
-  outcome.is_on_the_way = step < steps || is_blocked;
+  outcome.is_on_the_way = step < steps || is_blocked || !has_arrived;
   if (is_blocked) {
     outcome.status = Status::Stalled;
     outcome.note =
         "the prescribed motion presses facets against each other, at " + number(100 * moved) + " % of it";
-  } else if (outcome.is_on_the_way)
+  } else if (!has_arrived)
+    outcome.note = "after " + number(100 * moved) + " % of the prescribed motion";
+  else if (outcome.is_on_the_way)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
                    " of the prescribed motion or of the continuation";
   return outcome;
@@ -222,12 +225,12 @@ void judge(const Outcome& outcome, const Problem& problem, const StopRule& stop,
 
 // Goes down from a saddle along its negative mode. What descends from there never comes back to it, as its
 // energy is lower. Returns false where there is no saddle or no way down was found.
-bool leave_saddle(Monitor& monitor, Result& result) {
+bool leave_saddle(const Objective& objective, Monitor& monitor, Result& result) {
   const Vector& mode = result.certificate.stability.descent;
   if (result.status != Status::Converged || !result.certificate.is_conservative || mode.size() == 0)
     return false;
   const double energy = monitor.value(result.q), wanted = energy - monitor.energy_noise(energy);
-  const double extent = result.q.maxCoeff() - result.q.minCoeff();
+  const double extent = objective.extent(result.q);
   double length = kFirstKick * extent / mode.lpNorm<Eigen::Infinity>();
   for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25)
     for (const double sign : {1.0, -1.0}) {
@@ -291,7 +294,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
                              std::to_string(result.rounds) + " rounds";
   judge(outcome, problem, stop, monitor, result);
-  for (int saddle = 0; saddle < kMostSaddles && leave_saddle(monitor, result); ++saddle) {
+  for (int saddle = 0; saddle < kMostSaddles && leave_saddle(problem.objective, monitor, result); ++saddle) {
     monitor.begin_round(monitor.round() + 1, stop.tolerance);
     const Status status = solver.minimize(objective, result.q, monitor);
     judge({status, "a saddle was left on the way"}, problem, stop, monitor, result);

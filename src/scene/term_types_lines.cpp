@@ -167,9 +167,9 @@ Defects check_ogden(const Parameters& p) {
             " entries; give as many of each, at most " + std::to_string(OgdenLine::kTerms)};
   Defects defects;
   for (size_t k = 0; k < mu.size(); ++k)
-    if (mu[k] * alpha[k] <= 0)
+    if (!(mu[k] > 0) || alpha[k] == 0)
       defects.push_back("mu[" + std::to_string(k) + "] and alpha[" + std::to_string(k) +
-                        "]: must be of one sign and not zero, or the cable would push");
+                        "]: mu must be positive, or the cable would push, and alpha not zero");
   return defects;
 }
 

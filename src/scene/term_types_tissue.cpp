@@ -32,7 +32,7 @@ BilinearLaw bilinear_law(const At& at) {
 NeoHookeanLaw neo_hookean_law(const At& at) { return {{at("shear_modulus")}, at("bulk", 0)}; }
 ExponentialLaw exponential_law(const At& at) { return {{at("c0"), at("c1"), at("c2")}, at("bulk", 0)}; }
 
-// Without a shear modulus of its own the law is isotropic where its two curves are the same.
+// Without a shear modulus of its own the law is isotropic at small strain where its two curves are the same.
 OrthotropicLaw orthotropic_law(const At& at) {
   OrthotropicLaw law;
   law.fibre_young = at("fibre_young_pre");

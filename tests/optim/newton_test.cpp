@@ -1,6 +1,7 @@
 // Newton's method and what it stands on: the exact, unsymmetric tangent of follower pressure, GMRES, shifts.
 #include "optim/newton.hpp"
 
+#include "energy/load_dead.hpp"
 #include "optim/carry_along.hpp"
 #include "optim/gmres.hpp"
 #include "optim/lbfgs.hpp"
@@ -159,6 +160,24 @@ struct TightValve {
     return result;
   }
 };
+
+// The shift starts at force over length, far above what a soft scene resists with, and has to come down.
+TEST(Newton, FindsSoftEquilibriaAsFastAsStiffOnes) {
+  Points X(3, 2);
+  X << 0, 1, 0, 0, 0, 0;
+  for (const double stiffness : {1e-3, 1e-2, 1.0, 1e3}) {
+    Points force = Points::Zero(3, 2);
+    force(0, 1) = 1;
+    const Equilibrium found = find_equilibrium(
+        X, fixed_nodes(2, {0}),
+        terms_of(cable_term(Segments(Eigen::Vector2i(0, 1)), stiffness, Vector::Constant(1, 1.0)),
+                 std::make_unique<LoadDead>("pull", "load_field", force, X)),
+        1e-10, "newton");
+    EXPECT_EQ(found.result.status, Status::Converged) << stiffness << ": " << found.result.message;
+    EXPECT_NEAR(found.x(0, 1), 1 + 1 / stiffness, 1e-8 / stiffness);
+    EXPECT_LE(found.result.iterations, 15) << stiffness;
+  }
+}
 
 TEST(RoundedKinks, LeadToTheSharpEquilibrium) {
   const TightValve valve;

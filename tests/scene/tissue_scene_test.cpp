@@ -190,7 +190,7 @@ TEST_F(TissueScene, RefusesLawsThatMakeNoSense) {
       "mu": ["1 MPa", "2 MPa"], "alpha": [9]})",
                       "mu and alpha: have 2 and 1 entries"));
   EXPECT_TRUE(refuses(sheet + R"({"type": "cable_ogden", "edges": "boundary", "area": "1 mm^2",
-      "mu": ["1 MPa"], "alpha": [-9]})",
+      "mu": ["-1 MPa"], "alpha": [-9]})",
                       "the cable would push"));
   EXPECT_TRUE(refuses(sheet + R"({"type": "cable_bilinear", "edges": "boundary", "area": "1 mm^2",
       "young_pre": "1 MPa", "young_post": "2 MPa", "transition_strain": 0.001})",

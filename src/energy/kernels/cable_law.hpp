@@ -4,9 +4,9 @@
 // elongation. The onset of tension is rounded over an elongation of s0 r by what the law is asked for:
 //   rho = s0 u^(3/2) (15 - 10 u + 3 u^2)/8,  u = e/s0,  below s0,   rho = e beyond
 // so that the force leaves zero with slope zero and meets the law at s0 with its slope. Slack cables feel
-// nothing, beyond s0 the law is exact. Twice continuously differentiable for s0 > 0. Rounding the elongation
-// and not the stress keeps a steep law (Ogden exponents of a hundred) soft at small elongations however wide
-// the rounding is, as the continuation of a solver needs it. Never throws.
+// nothing, beyond s0 the law is exact. Twice continuously differentiable for s0 > 0 where the law is.
+// Rounding the elongation and not the stress keeps a steep law (Ogden exponents of a hundred) soft at small
+// elongations however wide the rounding is, as the continuation of a solver needs it. Never throws.
 #pragma once
 
 #include "energy/kernels/axial.hpp"
@@ -69,18 +69,19 @@ struct CableLaw {
   }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
-                         Eigen::Matrix<double, 6, 6>* H) {
+                         Eigen::Matrix<double, 6, 6>* H, bool projects = false) {
     const Vec3 difference = x.tail<3>() - x.head<3>();
     const double l = difference.norm();
-    const AxialLaw law = elastic(rest, l / rest.length - 1);
+    AxialLaw law = elastic(rest, l / rest.length - 1);
+    if (projects) law.stiffness = std::max(law.stiffness, 0.0);
     expand_axial(law, difference, l, g, H);
     return law.energy;
   }
 
-  // Force and stiffness are never negative, so neither is the exact Hessian.
+  // The force is never negative; the stiffness of a law that softens can be.
   static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 6>& x,
                                    Eigen::Vector<double, 6>* g, Eigen::Matrix<double, 6, 6>* H) {
-    return evaluate(rest, x, g, H);
+    return evaluate(rest, x, g, H, true);
   }
 
  private:

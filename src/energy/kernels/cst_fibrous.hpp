@@ -157,17 +157,28 @@ struct CstFibrous {
     Eigen::Vector2d a = std::sqrt(std::max(missing, 1e-16)) * narrow.direction;
     PlaneEnergy w = at(law, c.widened(a));
     constexpr int kMost = 60;
+    constexpr double kLast = 1e-9;  // of a: the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
       const Eigen::Vector2d g = traction(w, a);
       Eigen::Matrix2d h = stiffness(w, widening(a));
-      // Made positive where it is not, so that the step descends.
       const LeastDirection least = least_direction(h(0, 0), h(1, 1), h(0, 1));
       const double greatest = h.trace() - least.value;
-      if (least.value <= 1e-12 * greatest) h.diagonal().array() += 1e-6 * greatest - least.value;
+      const bool is_convex = least.value > 1e-12 * greatest;
+      if (!is_convex) {
+        // Its absolute value, so that the step descends and has the length of the curvature met.
+        const double floor = 1e-6 * std::max(std::abs(least.value), std::abs(greatest));
+        const double low = std::max(std::abs(least.value), floor), high = std::max(std::abs(greatest), floor);
+        h = high * Eigen::Matrix2d::Identity() + (low - high) * least.direction * least.direction.transpose();
+      }
       const Eigen::Vector2d step = -h.inverse() * g;
-      if (!(step.norm() > 1e-15 * a.norm())) break;
-      double length = 1;
       PlaneEnergy next = at(law, c.widened(a + step));
+      if (!(step.norm() > (is_convex ? kLast : 1e-15) * a.norm())) {
+        if (!std::isfinite(next.energy)) break;
+        a += step;
+        w = next;
+        break;
+      }
+      double length = 1;
       // Within round-off of the energy the stress decides.
       const auto is_worse = [&](const PlaneEnergy& trial, const Eigen::Vector2d& there) {
         return !(trial.energy < w.energy) && !(traction(trial, there).norm() < g.norm());

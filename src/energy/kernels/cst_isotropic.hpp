@@ -101,13 +101,16 @@ struct CstIsotropic {
   // The width at which a strip stretched by l1 > 1 is free, by Newton.
   static double free_width(const Law& law, double l1) {
     double l2 = std::max(law.free_width(l1), kThinnest);
+    // Beyond the rest width only where a negative Poisson's ratio takes it.
+    const double widest = std::max(1.0, 2 * l2);
     constexpr int kMost = 50;
+    constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
       const StretchEnergy w = law.evaluate(l1, l2);
       const double next = l2 - w.w2 / w.w22;
-      // Not beyond the rest width, nor to less than half: dw/dl2 is positive at 1 and convex below.
-      const double kept = std::clamp(next, 0.5 * l2, 1.0);
-      const bool is_there = std::abs(kept - l2) <= 1e-15 * l2;
+      // Nor to less than half: dw/dl2 is positive at the widest and convex below.
+      const double kept = std::clamp(next, 0.5 * l2, widest);
+      const bool is_there = std::abs(kept - l2) <= kLast * l2;
       l2 = kept;
       if (is_there) break;
     }

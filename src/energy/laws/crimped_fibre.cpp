@@ -21,8 +21,14 @@ CrimpedFibre::CrimpedFibre(double young, double crimp, double slenderness, doubl
   limit_ = L0 / H0;
   const double excess = 1 + 37 / (6 * pi * pi) + 2 * squared(L0 * slenderness / pi);
   secant_ = young * H0 * H0 / (L0 * (H0 + excess * (L0 - H0)));
+  double from = 0, left = limit_ - 1, energy = 0;
+  for (int k = 0; k < kPieces; ++k, left *= 0.5) {
+    const double to = k + 1 < kPieces ? limit_ - 1 - 0.5 * left : limit_ - 1;
+    energy_[k] = energy += work(from, to);
+    from = to;
+  }
   at_limit_ = crimped(limit_ - 1);
-  at_limit_.energy = crimped_energy(limit_ - 1);
+  at_limit_.energy = energy;
   knee_ = {young / limit_ - at_limit_.stiffness, limit_ - 1, std::min(window, limit_ - 1)};
 }
 
@@ -40,19 +46,30 @@ CurveValue CrimpedFibre::crimped(double elongation) const {
   return {0, secant_ * eta * elongation, secant_ * (eta + slope * elongation)};
 }
 
-// Gauss's rule; the stress is analytic on the way.
-double CrimpedFibre::crimped_energy(double elongation) const {
-  static constexpr double kAt[] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
-                                   0.6178762444026438, 0.7554044083550030, 0.8656312023878318,
-                                   0.9445750230732326, 0.9894009349916499};
-  static constexpr double kWeight[] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
-                                       0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
-                                       0.0622535239386479, 0.0271524594117541};
+// Gauss's rule with eight points.
+double CrimpedFibre::work(double from, double to) const {
+  static constexpr double kAt[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                   0.9602898564975363};
+  static constexpr double kWeight[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                       0.1012285362903763};
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   double sum = 0;
-  for (int k = 0; k < 8; ++k)
-    for (const double side : {-1.0, 1.0})
-      sum += kWeight[k] * crimped(0.5 * elongation * (1 + side * kAt[k])).stress;
-  return 0.5 * elongation * sum;
+  for (int k = 0; k < 4; ++k)
+    for (const double side : {-1.0, 1.0}) sum += kWeight[k] * crimped(middle + half * side * kAt[k]).stress;
+  return half * sum;
+}
+
+double CrimpedFibre::crimped_energy(double elongation) const {
+  const double end = limit_ - 1;
+  double energy = 0, from = 0, left = end;  // of the way to the limit
+  for (int k = 0; k + 1 < kPieces; ++k) {
+    const double to = end - 0.5 * left;
+    if (elongation <= to) break;
+    energy = energy_[k];
+    from = to;
+    left *= 0.5;
+  }
+  return energy + work(from, elongation);
 }
 
 CurveValue CrimpedFibre::at(double elongation) const {

@@ -1,9 +1,12 @@
 // Stress of a crimped collagen fibre, a helix that is pulled straight.
-//   H0 wavelength, R0 amplitude, r0 radius of the fibre at rest; L0^2 = (2 pi R0)^2 + H0^2 length of one
-//   turn, stretch of the straight fibre: limit = L0/H0;   with H = l H0, R^2 = (L0^2 - H^2)/(2 pi)^2: l <=
-//   limit   s = E_s eta (l - 1) beyond       s = E_s (limit - 1) + E_f (l/limit - 1) E_s = E_f H0^2 / (L0 (H0
-//   + (1 + 37/(6 pi^2) + 2 L0^2/(pi r0)^2) (L0 - H0))) eta = (R^2 + H^2) / (L0 H (1 + 4 R^2/r0^2 + 6 (20/9 +
-//   R^2/r0^2) R^2/H^2))
+// H0 wavelength, R0 amplitude, r0 radius of the fibre at rest; L0^2 = (2 pi R0)^2 + H0^2 length of one turn,
+// stretch of the straight fibre: limit = L0/H0; with H = l H0, R^2 = (L0^2 - H^2)/(2 pi)^2:
+// clang-format off
+//   l <= limit   s = E_s eta (l - 1)
+//   beyond       s = E_s (limit - 1) + E_f (l/limit - 1)
+//   E_s = E_f H0^2 / (L0 (H0 + (1 + 37/(6 pi^2) + 2 L0^2/(pi r0)^2) (L0 - H0)))
+//   eta = (R^2 + H^2) / (L0 H (1 + 4 R^2/r0^2 + 6 (20/9 + R^2/r0^2) R^2/H^2))
+// clang-format on
 // Only the ratios H0/R0 and R0/r0 matter. s is taken as nominal stress (force per area at rest), and fibres
 // that are not pulled carry none. Where the fibre is straight its stiffness rises over a window of stretch
 // around the limit, so that the energy is twice continuously differentiable (our own). Source: Freed &
@@ -11,6 +14,8 @@
 #pragma once
 
 #include "energy/laws/bilinear_curve.hpp"
+
+#include <array>
 
 namespace coapt {
 
@@ -30,11 +35,17 @@ class CrimpedFibre {
  private:
   CurveValue crimped(double elongation) const;
   double crimped_energy(double elongation) const;
+  double work(double from, double to) const;
+
+  // The stress of a slender crimp has a pole just beyond the limit. Pieces that halve towards the limit keep
+  // it as far from each as the piece is long.
+  static constexpr int kPieces = 20;
 
   double secant_ = 0;
   double crimp_ = 0;        // H0/R0
   double slenderness_ = 0;  // R0/r0
   double limit_ = 1;
+  std::array<double, kPieces> energy_{};  // of the crimped branch at the pieces' ends
   CurveValue at_limit_;
   BilinearKnee knee_;
 };

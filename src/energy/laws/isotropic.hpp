@@ -110,7 +110,7 @@ struct InvariantLaw {
     double i, di, ddi;  // the isochoric invariant and its derivatives by J
   };
   Volume volume(double plane, double thin2, double j) const {
-    const double a = std::pow(j, -2.0 / 3), i = a * (plane + j * j * thin2);
+    const double root = std::cbrt(j), a = 1 / (root * root), i = a * (plane + j * j * thin2);
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
     const InvariantEnergy psi = invariant.at(i);
@@ -130,6 +130,7 @@ struct InvariantLaw {
     double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion), j = 1;
     Volume v = volume(plane, thin2, j);
     constexpr int kMost = 100;
+    constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
       (v.first > 0 ? high : low) = j;
       double next = j - v.first / v.second;
@@ -137,10 +138,10 @@ struct InvariantLaw {
       const double moved = std::abs(next - j);
       j = next;
       v = volume(plane, thin2, j);
-      if (moved <= 1e-15 * j) break;
+      if (moved <= kLast * j) break;
     }
     // At fixed J the derivatives by the stretches; then those through J, which the minimum fixes.
-    const double a = std::pow(j, -2.0 / 3), b = j * j * a * thin2;  // I = a plane + b
+    const double root = std::cbrt(j), a = 1 / (root * root), b = j * j * a * thin2;  // I = a plane + b
     const double i1 = 2 * (a * l1 - b / l1), i2 = 2 * (a * l2 - b / l2);
     const double da = -2.0 / 3 * a / j, db = 4.0 / 3 * b / j;
     const double i1j = 2 * (da * l1 - db / l1), i2j = 2 * (da * l2 - db / l2);

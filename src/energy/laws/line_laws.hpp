@@ -67,10 +67,16 @@ struct ToeLine {
   double young = 0, intercept = 0, recruited = 0, exponent = 1;
 
   CurveValue at(double e) const {
-    const double end = young * (recruited - intercept), scale = end / std::expm1(exponent * recruited);
-    const auto toe_energy = [&](double at) { return scale * (std::expm1(exponent * at) / exponent - at); };
+    // Relative to the end of the toe, where no exponent overflows.
+    const double end = young * (recruited - intercept), all = -std::expm1(-exponent * recruited);
+    const auto share = [&](double at) {
+      return std::exp(exponent * (at - recruited)) * -std::expm1(-exponent * at) / all;
+    };
+    const auto toe_energy = [&](double at) {
+      return end * (share(at) / exponent - at / std::expm1(exponent * recruited));
+    };
     if (e < recruited)
-      return {toe_energy(e), scale * std::expm1(exponent * e), scale * exponent * std::exp(exponent * e)};
+      return {toe_energy(e), end * share(e), end * exponent * std::exp(exponent * (e - recruited)) / all};
     const double past = e - recruited;
     return {toe_energy(recruited) + end * past + 0.5 * young * past * past, end + young * past, young};
   }

@@ -100,7 +100,7 @@ std::optional<Material> ogden_truss(const AbaqusMaterial& material, Defects& def
   constexpr size_t kMostTerms = 3;  // of the scene's law, none of which may push
   if (count > kMostTerms) return std::nullopt;
   for (size_t k = 0; k < count; ++k)
-    if ((*values)[2 * k] * (*values)[2 * k + 1] <= 0) return std::nullopt;
+    if (!((*values)[2 * k] > 0) || (*values)[2 * k + 1] == 0) return std::nullopt;
   std::string mu, alpha;
   for (size_t k = 0; k < count; ++k) {
     mu += (k == 0 ? "" : ", ") + pressure_text((*values)[2 * k]);
