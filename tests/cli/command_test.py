@@ -200,6 +200,17 @@ class CommandTest(unittest.TestCase):
             mesh.write("f 1 2 99999\n")
         self.assert_bad_input(coapt("check", scene), "yuong", "mesh.obj", "99999")
 
+    def test_imports_linear_leaflets_and_chords_where_asked(self):
+        self.generate("mitral", "--triangles", 300)
+        out = self.folder / "linear"
+        run = coapt("import", self.folder / "valve.json", "--young", "2 MPa", "--chord-young", "30 MPa", "-o", out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        text = (out / "scene.json").read_text()
+        self.assertIn('"young": "2 MPa"', text)
+        self.assertIn('"young": "30 MPa"', text)
+        run = coapt("import", self.folder / "valve.json", "--young", "2 mm", "--chord-young", "-1 MPa", "-o", out)
+        self.assert_bad_input(run, "young", "mm", "chord_young: must be positive")
+
     def test_makes_chords_where_there_are_none(self):
         self.generate("mitral", "--triangles", 625)
         network = self.folder / "made" / "valve.json"
