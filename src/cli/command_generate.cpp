@@ -1,13 +1,18 @@
 #include "cli/commands.hpp"
 #include "cli/scene_arguments.hpp"
 #include "cli/shape_scenes.hpp"
+#include "core/error.hpp"
 #include "mesh/generators/mitral.hpp"
+#include "scene/closed_curve.hpp"
 #include "scene/import.hpp"
+#include "scene/markups.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 namespace {
@@ -16,14 +21,40 @@ struct Arguments : SceneArguments {
   std::string what;
   int triangles = 2500;
   unsigned seed = 0;
+  std::string annulus, papillary;
+  std::vector<double> anterior, ventricle;  // three numbers, or none
 };
 
+std::optional<Vec3> position_of(const std::vector<double>& numbers) {
+  if (numbers.empty()) return std::nullopt;
+  return Vec3(numbers.data());
+}
+
+Valve generated_mitral(const Arguments& arguments) {
+  const MitralOptions options{.triangles = arguments.triangles, .seed = arguments.seed};
+  if (arguments.annulus.empty()) return mitral_valve(options);
+  MeasuredMitral measured;
+  measured.name = arguments.annulus;
+  measured.annulus = read_closed_curve(arguments.annulus);
+  measured.sides = {position_of(arguments.anterior), position_of(arguments.ventricle)};
+  if (!arguments.papillary.empty()) measured.papillary = papillary_points(arguments.papillary);
+  return mitral_valve(options, measured);
+}
+
+// Options that say more of a measured annulus than there is.
+void check_measured(const Arguments& arguments) {
+  const bool has_sides =
+      !arguments.anterior.empty() || !arguments.ventricle.empty() || !arguments.papillary.empty();
+  if (arguments.what != "mitral" && (has_sides || !arguments.annulus.empty()))
+    throw InputError("--annulus, --papillary, --anterior and --ventricle belong to the shape mitral");
+  if (arguments.annulus.empty() && has_sides)
+    throw InputError("--papillary, --anterior and --ventricle need --annulus FILE");
+}
+
 void generate(const Arguments& arguments) {
+  check_measured(arguments);
   if (arguments.what == "mitral") {
-    MitralOptions options;
-    options.triangles = arguments.triangles;
-    options.seed = arguments.seed;
-    write_valve_scene(mitral_valve(options), arguments.folder, import_options(arguments));
+    write_valve_scene(generated_mitral(arguments), arguments.folder, import_options(arguments));
   } else {
     write_shape_scene(arguments.what, {arguments.triangles, arguments.contact, arguments.pressure},
                       arguments.folder);
@@ -46,6 +77,19 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   command
       ->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
       ->capture_default_str();
+  command->add_option(
+      "--annulus", arguments->annulus,
+      "Mitral: closed curve (.mrk.json, or three numbers a line, mm) that the annulus follows");
+  command->add_option("--papillary", arguments->papillary,
+                      "With --annulus: papillary tips, the lists of points of a .mrk.json");
+  command
+      ->add_option("--anterior", arguments->anterior,
+                   "With --annulus: X Y Z on its anterior side (default: the flattened side)")
+      ->expected(3);
+  command
+      ->add_option("--ventricle", arguments->ventricle,
+                   "With --annulus: X Y Z on the side of the ventricle (default: by tips or saddle)")
+      ->expected(3);
   add_scene_options(*command, *arguments);
   command->callback([arguments] { generate(*arguments); });
 }

@@ -12,13 +12,15 @@ namespace coapt::cli {
 namespace {
 
 struct Arguments : SceneArguments {
-  std::string file, annulus_closed, papillary, papillary_closed;
+  std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
   bool incompressible = false;
 };
 
 void import_file(const Arguments& arguments) {
   ImportOptions options = import_options(arguments);
   options.incompressible = arguments.incompressible;
+  options.young = arguments.young;
+  options.chord_young = arguments.chord_young;
   options.annulus_closed = arguments.annulus_closed;
   options.papillary = arguments.papillary;
   options.papillary_closed = arguments.papillary_closed;
@@ -41,6 +43,10 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
   add_scene_options(*command, *arguments);
   command->add_flag("--incompressible", arguments->incompressible,
                     "Leave the bulk modulus of membrane laws out: incompressible leaflets");
+  command->add_option("--young", arguments->young,
+                      "Linear leaflets of this modulus (\"1 MPa\") in the place of the laws of the file");
+  command->add_option("--chord-young", arguments->chord_young,
+                      "Linear chords of this modulus (\"40 MPa\") in the place of the laws of the file");
   command->add_option("--annulus-closed", arguments->annulus_closed,
                       "Closed curve (.mrk.json) to which the annulus moves, matched by its length");
   command->add_option("--papillary", arguments->papillary,

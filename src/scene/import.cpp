@@ -31,8 +31,8 @@ void check_options(const ImportOptions& options) {
       defects.push_back(std::string(option) + ": " + error.what());
     }
   };
-  check("young", options.young);
-  check("chord_young", options.chord_young);
+  if (!options.young.empty()) check("young", options.young);
+  if (!options.chord_young.empty()) check("chord_young", options.chord_young);
   if (!options.pressure.empty()) check("pressure", options.pressure);
   const std::string& model = options.pressure_model;
   if (!model.empty() && model != "follower" && model != "frozen" && model != "field")
@@ -141,13 +141,54 @@ Valve valve_of_mesh(const std::filesystem::path& file, std::vector<std::string>&
   return valve;
 }
 
-// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist.
-void take_membrane_option(const ImportOptions& options, Material& law) {
+const std::string* key_of(const Material& law, const std::string& key) {
+  const auto found =
+      std::find_if(law.keys.begin(), law.keys.end(), [&](const auto& entry) { return entry.first == key; });
+  return found == law.keys.end() ? nullptr : &found->second;
+}
+
+// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist. A
+// law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
+void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
   const bool resists = options.membrane == "stvk";
-  if (law.type == "cst_stvk")
-    law.type = "cst_" + options.membrane;
-  else if (resists)
+  if (law.type == "cst_stvk" || (resists && law.type == "cst_tension_field")) {
+    if (!is_own || resists) law.type = "cst_" + options.membrane;
+  } else if (resists && law.type.starts_with("cst_") && key_of(law, "compression") == nullptr) {
     law.keys.emplace_back("compression", "\"resisted\"");
+  }
+}
+
+// The moduli of the options in the place of the valve's laws. A law of another thickness than the valve's
+// becomes a linear law of its own.
+void take_moduli(const ImportOptions& options, Valve& valve) {
+  if (!options.young.empty()) {
+    const std::string usual = quoted(digits(valve.thickness) + " mm");
+    std::erase_if(valve.membranes, [&](const auto& entry) {
+      const std::string* thickness = key_of(entry.second, "thickness");
+      return thickness == nullptr || *thickness == usual;
+    });
+    for (auto& [region, law] : valve.membranes)
+      law = {"cst_" + options.membrane,
+             {{"young", quoted(options.young)},
+              {"poisson", digits(options.poisson)},
+              {"thickness", *key_of(law, "thickness")}}};
+  }
+  if (!options.chord_young.empty()) valve.cables.clear();
+}
+
+// Gives laws of membranes the thickness that the file does not state. True where there was one to give, also
+// to leaflets without a law.
+bool complete_thickness(const ImportOptions& options, Valve& valve) {
+  if (valve.thickness > 0) return false;
+  bool is_missing = valve.leaflets.region_names.empty();
+  for (const std::string& region : valve.leaflets.region_names)
+    is_missing |= !valve.membranes.contains(region);
+  for (auto& [region, law] : valve.membranes)
+    if (law.type.starts_with("cst_") && key_of(law, "thickness") == nullptr) {
+      law.keys.emplace_back("thickness", quoted(digits(options.default_thickness) + " mm"));
+      is_missing = true;
+    }
+  return is_missing;
 }
 
 Valve read_any(const std::filesystem::path& file, ImportOptions& options,
@@ -165,12 +206,13 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
       options.contact = "none";
       warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
     }
-    for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, law);
+    for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, false, law);
     return std::move(model.valve);
   }
   if (file.extension() != ".json") return valve_of_mesh(file, warnings);
   ValveFile read = read_valve(file);
   append(warnings, read.warnings);
+  for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
   return std::move(read.valve);
 }
 
@@ -198,11 +240,8 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   if (options.incompressible)
     for (auto& [region, law] : valve.membranes)
       std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; });
-  const std::vector<std::string>& regions = valve.leaflets.region_names;
-  const bool has_laws =
-      !regions.empty() && std::all_of(regions.begin(), regions.end(),
-                                      [&](const auto& region) { return valve.membranes.contains(region); });
-  if (valve.thickness == 0 && !has_laws)
+  take_moduli(options, valve);
+  if (complete_thickness(options, valve))
     warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
                        digits(options.default_thickness) + " mm.");
   if (valve.pressure == 0 && options.pressure.empty())

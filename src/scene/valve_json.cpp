@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/read_json.hpp"
+#include "scene/detail/stated_laws.hpp"
 #include "scene/units.hpp"
 
 #include <algorithm>
@@ -32,7 +33,10 @@ class ValveReader {
     file_.valve.cables = materials("cables");
     read_supports();
     keep_other_sets();
-    if (meshes == ValveMeshes::Read) read_meshes();
+    if (meshes == ValveMeshes::Read) {
+      read_meshes();
+      read_tissue();
+    }
     if (!defects_.empty()) throw InputError(defects_);
     return std::move(file_);
   }
@@ -249,6 +253,14 @@ class ValveReader {
         if (entry != "type") material.keys.emplace_back(entry, value.dump());
     }
     return result;
+  }
+
+  void read_tissue() {
+    detail::Remarks remarks;
+    detail::read_stated_laws(json_, file_.valve, remarks);
+    for (const std::string& warning : remarks.warnings)
+      file_.warnings.push_back(path_.string() + ": " + warning);
+    for (const std::string& defect : remarks.defects) defects_.push_back(path_.string() + ": " + defect);
   }
 
   // Its vertices are a set of its name, and where they go are positions of its name with "_closed".

@@ -3,10 +3,10 @@
 // Keys that are read: name, units, leaflets, closed_reference, pressure {value, unit}, leaflet_thickness
 // (or leaflet_thickness_mm), annulus, annulus_closed, free_edge (or free_edges, a list of lists),
 // commissures, papillary, papillary_closed, junctions, chords [{from, to, rest_length, area, material,
-// level}], membranes {region: {type, keys of that term}}, cables {material: {type, keys of that term}},
-// supports
-// [{name, fix: ["x", ...]}], whose vertices and closed positions stand as NAME and NAME_closed in sets. Every
-// other key is passed over, but a list of whole numbers is kept as a named node set and a list
+// level}], membranes {region: {type, keys of that term}}, cables {material: {type, keys of that term}}, or in
+// their place materials and chord_materials (a formula under "model" and its numbers, see docs/formats.md),
+// supports [{name, fix: ["x", ...]}], whose vertices and closed positions stand as NAME and NAME_closed in
+// sets. Every other key is passed over, but a list of whole numbers is kept as a named node set and a list
 // of positions as named points, and so are the members of an object "sets".
 #pragma once
 
@@ -30,7 +30,8 @@ struct ValveFile {
 enum class ValveMeshes { Read, Skip };
 
 // Reads a valve JSON in any unit of length ("units", default mm) and with it the meshes that it names.
-// With Skip the meshes are left out and vertex numbers are not compared with their size.
+// With Skip the meshes are left out, vertex numbers are not compared with their size, and materials and
+// chord_materials, which belong to regions of the mesh, are passed over.
 // Throws InputError with all defects, each naming file and entry.
 ValveFile read_valve(const std::filesystem::path& path, ValveMeshes meshes = ValveMeshes::Read);
 

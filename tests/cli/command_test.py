@@ -200,6 +200,44 @@ class CommandTest(unittest.TestCase):
             mesh.write("f 1 2 99999\n")
         self.assert_bad_input(coapt("check", scene), "yuong", "mesh.obj", "99999")
 
+    def test_generates_a_valve_on_a_measured_annulus(self):
+        scene = self.generate("mitral", "--triangles", 2500)
+        ring, tips = self.folder / "ring.mrk.json", self.folder / "tips.mrk.json"
+        for name, path in [("annulus", ring), ("papillary", tips)]:
+            self.assertEqual(coapt("export", scene, "--points", name, "-o", path).returncode, 0)
+        scene = self.generate("mitral", "--triangles", 625, "--annulus", ring, "--papillary", tips)
+        run = coapt("solve", scene)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        result = self.result()
+        self.assertTrue(result["converged"])
+        self.assertEqual(result["metrics"]["intersections"], 0)
+        self.assertIn("contact_barrier", scene.read_text())
+
+        points = [point["position"] for point in json.loads(ring.read_text())["markups"][0]["controlPoints"]]
+        table = self.folder / "ring.csv"
+        table.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in points))
+        self.generate("mitral", "--triangles", 300, "--annulus", table, "--anterior", 0, 50, 0, "--ventricle", 0, 0, -9)
+        mitral = lambda *options: coapt("generate", "mitral", "-o", self.folder / "x", *options)
+        table.write_text("".join(f"{x} {y} {z}\n" for x, y, z in points[:len(points) // 2]))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "the curve is open")
+        table.write_text("".join(f"{x / 10} {y / 10} {z / 10}\n" for x, y, z in points))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "positions in mm?")
+        table.write_text("".join(f"{x} {y} {z}\n" for x, y, z in points[::len(points) // 6]))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "at least 8")
+        self.assert_bad_input(mitral("--anterior", 0, 1, 0), "--annulus FILE")
+        self.assert_bad_input(coapt("generate", "disc", "--annulus", ring, "-o", self.folder / "x"), "mitral")
+
+    def test_imports_linear_leaflets_and_chords_where_asked(self):
+        self.generate("mitral", "--triangles", 300)
+        out = self.folder / "linear"
+        run = coapt("import", self.folder / "valve.json", "--young", "2 MPa", "--chord-young", "30 MPa", "-o", out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        text = (out / "scene.json").read_text()
+        self.assertIn('"young": "2 MPa"', text)
+        self.assertIn('"young": "30 MPa"', text)
+        run = coapt("import", self.folder / "valve.json", "--young", "2 mm", "--chord-young", "-1 MPa", "-o", out)
+        self.assert_bad_input(run, "young", "mm", "chord_young: must be positive")
+
     def test_makes_chords_where_there_are_none(self):
         self.generate("mitral", "--triangles", 625)
         network = self.folder / "made" / "valve.json"

@@ -19,14 +19,10 @@ CHORDS = {"valve_coarse.json": 507, "valve.json": 1836}
 
 def closed(coapt: str, valve: pathlib.Path, contact: str, scratch: pathlib.Path) -> dict:
     subprocess.run([coapt, "import", str(valve), "-o", str(scratch), "--pressure", "follower", "--contact",
-                    contact], check=True, stdout=subprocess.DEVNULL)
-    scene = scratch / "scene.json"
-    text = scene.read_text()
-    softer = text.replace('"young": "1 MPa"', '"young": "0.05 MPa"')
-    if softer == text:
-        raise SystemExit('the imported scene has no "young": "1 MPa" to edit')
-    scene.write_text(softer)
-    subprocess.run([coapt, "solve", str(scene), "--tolerance", "1e-8"], check=False, stdout=subprocess.DEVNULL)
+                    contact, "--young", "0.05 MPa", "--chord-young", "40 MPa"], check=True,
+                   stdout=subprocess.DEVNULL)
+    subprocess.run([coapt, "solve", str(scratch / "scene.json"), "--tolerance", "1e-8"], check=False,
+                   stdout=subprocess.DEVNULL)
     return json.loads((scratch / "result" / "result.json").read_text())
 
 

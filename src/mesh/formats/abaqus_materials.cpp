@@ -1,17 +1,12 @@
 #include "mesh/formats/abaqus_materials.hpp"
 
 #include "mesh/formats/text.hpp"
+#include "mesh/formats/tissue_laws.hpp"
 
 namespace coapt::formats {
 namespace {
 
 constexpr double kGreatestPoisson = 0.4999;  // of the scene's linear membranes
-
-std::string number_text(double value) {
-  std::string text;
-  append_number(text, value);
-  return text;
-}
 
 // All numbers of the data lines, one after the other; fewer than `least` are a defect.
 std::optional<std::vector<double>> numbers(const AbaqusMaterial& material, size_t least, Defects& defects) {
@@ -72,17 +67,11 @@ std::optional<Material> neo_hookean_shell(const AbaqusMaterial& material, Defect
 
 std::optional<Material> exponential_shell(const AbaqusMaterial& material, Defects& defects) {
   const auto values = numbers(material, 4, defects);
-  if (!values || !is_positive((*values)[0], "C0", material, defects)) return std::nullopt;
+  if (!values) return std::nullopt;
   const auto [c0, d, c1, c2] = std::array{(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
-  if (c1 < 0 || c2 < 0 || d < 0) {
-    defects.add("line", material.law->line,
-                "material " + formats::quoted(material.name) + ": C1, C2 and D must not be negative");
-    return std::nullopt;
-  }
-  Material law{"cst_exponential",
-               {{"c0", pressure_text(c0)}, {"c1", pressure_text(c1)}, {"c2", number_text(c2)}}};
-  if (d > 0) law.keys.emplace_back("bulk", pressure_text(2 / d));
-  return law;
+  return exponential_law(c0, c1, c2, d, [&](const std::string& reason) {
+    defects.add("line", material.law->line, "material " + formats::quoted(material.name) + ": " + reason);
+  });
 }
 
 std::optional<Material> ogden_truss(const AbaqusMaterial& material, Defects& defects) {
@@ -97,22 +86,10 @@ std::optional<Material> ogden_truss(const AbaqusMaterial& material, Defects& def
   const size_t count = static_cast<size_t>(terms);
   const auto values = numbers(material, 2 * count, defects);
   if (!values) return std::nullopt;
-  constexpr size_t kMostTerms = 3;  // of the scene's law, none of which may push
-  if (count > kMostTerms) return std::nullopt;
-  for (size_t k = 0; k < count; ++k)
-    if (!((*values)[2 * k] > 0) || (*values)[2 * k + 1] == 0) return std::nullopt;
-  std::string mu, alpha;
-  for (size_t k = 0; k < count; ++k) {
-    mu += (k == 0 ? "" : ", ") + pressure_text((*values)[2 * k]);
-    alpha += (k == 0 ? "" : ", ") + number_text((*values)[2 * k + 1]);
-  }
-  return Material{"cable_ogden", {{"mu", "[" + mu + "]"}, {"alpha", "[" + alpha + "]"}}};
+  return ogden_law({values->begin(), values->begin() + static_cast<long>(2 * count)});
 }
 
 }  // namespace
-
-std::string pressure_text(double value) { return "\"" + number_text(value) + " MPa\""; }
-std::string length_text(double value) { return "\"" + number_text(value) + " mm\""; }
 
 std::optional<Material> shell_law(const AbaqusMaterial& material, double thickness, Defects& defects) {
   if (!material.law) return std::nullopt;
@@ -141,7 +118,7 @@ std::optional<Material> truss_law(const AbaqusMaterial& material, Defects& defec
   if (is_hyperelastic(*material.law, "NEO HOOKE")) {  // one term of Ogden's law with the exponent 2
     const auto values = numbers(material, 1, defects);
     if (!values || !is_positive((*values)[0], "C10", material, defects)) return std::nullopt;
-    return Material{"cable_ogden", {{"mu", "[" + pressure_text(2 * (*values)[0]) + "]"}, {"alpha", "[2]"}}};
+    return ogden_law({2 * (*values)[0], 2});
   }
   return std::nullopt;
 }

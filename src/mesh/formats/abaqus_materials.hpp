@@ -18,17 +18,13 @@ struct AbaqusMaterial {
 using AbaqusMaterials = std::map<std::string, AbaqusMaterial>;  // by name in upper case
 
 // The law of a shell: *Elastic as cst_stvk; *Hyperelastic, NEO HOOKE as cst_neo_hookean; and as
-// cst_exponential the user law of materials named VUANISO_ISO_* with the properties C0, D, C1, C2:
-//   U = C0/2 (I1 - 3) + C1/2 (exp(C2 (I1 - 3)^2) - 1) + (J - 1)^2 / D,   so that bulk = 2 / D.
+// cst_exponential (mesh/formats/tissue_laws.hpp) the user law of materials named VUANISO_ISO_* with the
+// properties C0, D, C1, C2.
 // Nothing where the scene has no such law. Defects are added for numbers that cannot be.
 std::optional<Material> shell_law(const AbaqusMaterial& material, double thickness, Defects& defects);
 
 // The law of a truss: *Elastic as cable; *Hyperelastic, OGDEN or NEO HOOKE as cable_ogden, whose volume is
 // constant whatever D says.
 std::optional<Material> truss_law(const AbaqusMaterial& material, Defects& defects);
-
-// "0.001 MPa" in quotes, the number in the shortest form that reads back to the same bits.
-std::string pressure_text(double value);
-std::string length_text(double value);
 
 }  // namespace coapt::formats

@@ -1,7 +1,7 @@
 #include "mesh/formats/detail/febio_materials.hpp"
 
-#include "mesh/formats/abaqus_materials.hpp"
 #include "mesh/formats/text.hpp"
+#include "mesh/formats/tissue_laws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,6 @@ double rounded(double value) {
   double result = 0;
   read_number(text, result);
   return result;
-}
-
-std::string plain(double value) {
-  std::string text;
-  append_number(text, value);
-  return text;
 }
 
 // One point of a force curve: elongation from the distance of the nodes, and the force.
@@ -84,7 +78,7 @@ std::optional<FebioSpring> nonlinear(const pugi::xml_node& material, double dist
     spring.law = {"cable_bilinear",
                   {{"young_pre", modulus(1)},
                    {"young_post", modulus(2)},
-                   {"transition_strain", plain(rounded(strain))}}};
+                   {"transition_strain", number_text(rounded(strain))}}};
   }
   return spring;
 }
@@ -140,7 +134,7 @@ std::optional<Material> febio_shell_law(const pugi::xml_node& material, double t
   const auto value = [&](const char* name) { return places.required(material, name); };
   Material law;
   if (type == "isotropic elastic") {
-    law = {"cst_stvk", {{"young", pressure_text(value("E"))}, {"poisson", plain(value("v"))}}};
+    law = {"cst_stvk", {{"young", pressure_text(value("E"))}, {"poisson", number_text(value("v"))}}};
   } else if (type == "neo-Hookean") {
     const double young = value("E"), poisson = value("v");
     if (poisson <= -1 || poisson >= 0.5) {
@@ -155,9 +149,10 @@ std::optional<Material> febio_shell_law(const pugi::xml_node& material, double t
   } else if (type == "Mooney-Rivlin" && places.number_or(material, "c2", 0) == 0) {
     law = {"cst_neo_hookean", {{"shear_modulus", pressure_text(2 * value("c1"))}}};
   } else if (type == "isotropic Lee-Sacks" || type == "uncoupled isotropic Lee-Sacks") {
-    law = {
-        "cst_exponential",
-        {{"c0", pressure_text(value("c0"))}, {"c1", pressure_text(value("c1"))}, {"c2", plain(value("c2"))}}};
+    law = {"cst_exponential",
+           {{"c0", pressure_text(value("c0"))},
+            {"c1", pressure_text(value("c1"))},
+            {"c2", number_text(value("c2"))}}};
     if (type == "isotropic Lee-Sacks") law.keys.emplace_back("bulk", pressure_text(value("k")));
   } else {
     places.add(material, "no law of a scene is like " + formats::quoted(type));

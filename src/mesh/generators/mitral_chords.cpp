@@ -80,6 +80,22 @@ Points papillary_tips(const MitralDimensions& d) {
   return tips;
 }
 
+// Tips muscle by muscle, and how many the first one has.
+struct MuscleTips {
+  Points tips;
+  int first_count;
+};
+
+MuscleTips by_muscle(const Points& tips) {
+  std::vector<int> order;
+  for (int i = 0; i < tips.cols(); ++i)
+    if (tips(0, i) > 0) order.push_back(i);
+  const int first_count = static_cast<int>(order.size());
+  for (int i = 0; i < tips.cols(); ++i)
+    if (!(tips(0, i) > 0)) order.push_back(i);
+  return {tips(Eigen::all, order), first_count};
+}
+
 // Vertices at which primary chords (the free edge) and the others (the inside) may end.
 struct Sites {
   std::vector<int> free_edge, inside;
@@ -106,6 +122,7 @@ int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::
 struct Builder {
   const MitralShape& shape;
   const MitralMesh& mesh;
+  const int first_count;  // tips of the anterolateral muscle
   const Sites sites = insertion_sites(mesh);
   ChordNetwork network = {};
   std::vector<Vec3> junctions = {};
@@ -119,7 +136,9 @@ struct Builder {
 
   void add(const Fan& fan, int muscle) {
     const Vec3 closed_middle = middle(fan, true), open_middle = middle(fan, false);
-    const int tip = nearest_tip(network.papillary, muscle * kTips, (muscle + 1) * kTips, open_middle);
+    const int tip =
+        nearest_tip(network.papillary, muscle == 0 ? 0 : first_count,
+                    muscle == 0 ? first_count : static_cast<int>(network.papillary.cols()), open_middle);
     const Vec3 closed_tip = network.papillary_closed.col(tip), open_tip = network.papillary.col(tip);
     const Vec3 closed_junction = closed_tip + kJunctionPlace * (closed_middle - closed_tip);
 
@@ -163,10 +182,12 @@ struct Builder {
 
 }  // namespace
 
-ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches) {
-  Builder builder{shape, mesh};
+ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches,
+                           const Points& tips) {
+  const MuscleTips muscles = by_muscle(tips.cols() > 0 ? tips : papillary_tips(shape.dimensions));
+  Builder builder{shape, mesh, muscles.first_count};
   ChordNetwork& network = builder.network;
-  network.papillary = papillary_tips(shape.dimensions);
+  network.papillary = muscles.tips;
   const Vec3 target = mitral_closed_point(shape, mitral_coordinate(shape, MitralLeaflet::Anterior, 0.5), 0);
   network.papillary_closed = network.papillary;
   for (int i = 0; i < network.papillary.cols(); ++i)

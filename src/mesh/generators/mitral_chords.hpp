@@ -16,8 +16,12 @@ namespace coapt {
 // of a branch is its length in the closed shape, with the vertex at mitral_closed_point, but at least its
 // length at the start, so that no chord is stretched in the open valve; trunks do not depend on the mesh
 // unless this last rule applies. Materials "primary", "secondary", "strut". Papillary points 0-3 and
-// junctions 0-11 belong to the anterolateral muscle, the others to the posteromedial one. Pre: 2 <= branches
-// <= 5.
-ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches);
+// junctions 0-11 belong to the anterolateral muscle, the others to the posteromedial one.
+//
+// Given `tips` (3 x n, in the frame of the shape) take the place of those eight: the anterolateral muscle has
+// those of positive x. They are numbered muscle by muscle, else in their order.
+// Pre: 2 <= branches <= 5; no tips, or some on both sides.
+ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches,
+                           const Points& tips = Points(3, 0));
 
 }  // namespace coapt

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -75,6 +76,16 @@ AnnulusPosition position_at(const MitralShape& shape, double u) {
 
 MitralLeaflet leaflet_at(const MitralShape& shape, double u) {
   return u - std::floor(u) < shape.anterior_share ? MitralLeaflet::Anterior : MitralLeaflet::Posterior;
+}
+
+// The annulus at a place of the shape: the measured one, or that of the dimensions.
+Vec3 annulus_at(const MitralShape& shape, double u, const AnnulusPosition& at, bool is_closed) {
+  const MitralDimensions& d = shape.dimensions;
+  if (!shape.annulus) return annulus_point(d, at.angle, is_closed);
+  const Vec3 x = shape.annulus->point(leaflet_at(shape, u) == MitralLeaflet::Anterior, at.fraction);
+  if (!is_closed) return x;
+  const double shrink = std::sqrt(1 - d.annulus_contraction);
+  return x.cwiseProduct(Vec3(shrink, shrink, shrink * d.saddle_ratio_closed / d.saddle_ratio_open));
 }
 
 // Parameter of the coaptation line that belongs to a meridian: opposite fractions of the two leaflets meet.
@@ -169,19 +180,20 @@ MitralDimensions mitral_dimensions(unsigned seed) {
   return d;
 }
 
-MitralShape mitral_shape(const MitralDimensions& dimensions) {
+MitralShape mitral_shape(const MitralDimensions& dimensions, std::optional<MitralAnnulus> annulus) {
   MitralShape shape;
   shape.dimensions = dimensions;
+  shape.annulus = std::move(annulus);
   fill_annulus_tables(shape);
   shape.coaptation.resize(3, kCoaptationSteps + 1);
   for (int i = 0; i <= kCoaptationSteps; ++i) {
     const double w = double(i) / kCoaptationSteps;
-    const AnnulusPosition anterior = position_at(shape, mitral_coordinate(shape, MitralLeaflet::Anterior, w));
-    const AnnulusPosition posterior =
-        position_at(shape, mitral_coordinate(shape, MitralLeaflet::Posterior, 1 - w));
-    shape.coaptation.col(i) = meeting_point(
-        annulus_point(dimensions, anterior.angle, true), annulus_point(dimensions, posterior.angle, true),
-        dimensions.tenting_height * std::sin(kPi * w), anterior.height, posterior.height);
+    const double front = mitral_coordinate(shape, MitralLeaflet::Anterior, w);
+    const double back = mitral_coordinate(shape, MitralLeaflet::Posterior, 1 - w);
+    const AnnulusPosition anterior = position_at(shape, front), posterior = position_at(shape, back);
+    shape.coaptation.col(i) =
+        meeting_point(annulus_at(shape, front, anterior, true), annulus_at(shape, back, posterior, true),
+                      dimensions.tenting_height * std::sin(kPi * w), anterior.height, posterior.height);
   }
   return shape;
 }
@@ -209,7 +221,7 @@ Vec3 mitral_open_point(const MitralShape& shape, double u, double t) {
   const double slope = from + t * (to - from);
   const double inward = at.height * (std::sin(slope) - std::sin(from)) / (to - from);
   const double down = at.height * (std::cos(from) - std::cos(slope)) / (to - from);
-  return annulus_point(d, at.angle, false) +
+  return annulus_at(shape, u, at, false) +
          inward * inward_direction(d, at.angle, leaflet_at(shape, u), at.fraction) - down * Vec3::UnitZ();
 }
 
@@ -222,7 +234,7 @@ Vec3 mitral_open_normal(const MitralShape& shape, double u, double t) {
 
 Vec3 mitral_closed_point(const MitralShape& shape, double u, double t) {
   const AnnulusPosition at = position_at(shape, u);
-  const Vec3 start = annulus_point(shape.dimensions, at.angle, true);
+  const Vec3 start = annulus_at(shape, u, at, true);
   const double w = line_parameter(shape, u, at.fraction);
   const Vec3 meeting = coaptation_point(shape, w), line = meeting - start;
   const double reach = domed_length(start, meeting), length = t * at.height;
@@ -233,7 +245,7 @@ Vec3 mitral_closed_point(const MitralShape& shape, double u, double t) {
 
 double mitral_coaptation_height(const MitralShape& shape, double u) {
   const AnnulusPosition at = position_at(shape, u);
-  const Vec3 start = annulus_point(shape.dimensions, at.angle, true);
+  const Vec3 start = annulus_at(shape, u, at, true);
   return at.height - domed_length(start, coaptation_point(shape, line_parameter(shape, u, at.fraction)));
 }
 

@@ -5,8 +5,9 @@
 // (the aortic side), +x the side of the anterolateral papillary muscle. Lengths in mm.
 #pragma once
 
-#include "core/types.hpp"
+#include "mesh/generators/mitral_annulus.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace coapt {
@@ -54,10 +55,15 @@ struct MitralShape {
   // Tables at equal steps of the annulus angle, anterior part then posterior; neighbours are interpolated.
   std::vector<double> u, angle, fraction, height;  // fraction: of the leaflet's annulus length, 0 to 1
   Points coaptation = Points(3, 0);  // closed coaptation line from the anterolateral commissure, equal steps
+  std::optional<MitralAnnulus> annulus = std::nullopt;  // measured; without it that of the dimensions
 };
 
+// With a measured annulus the leaflets hang from that curve: a fraction of a leaflet's annulus length is one
+// of the curve's part, and the meridians have the directions that they have on the annulus of the dimensions.
+// Closed, the curve is contracted and its height grows as that of the dimensions does.
 // Pre: dimensions as mitral_dimensions gives them or near (heights positive, leaflets that reach each other).
-MitralShape mitral_shape(const MitralDimensions& dimensions);
+MitralShape mitral_shape(const MitralDimensions& dimensions,
+                         std::optional<MitralAnnulus> annulus = std::nullopt);
 
 // u of the point at a fraction of a leaflet's annulus length, both counted along growing u.
 double mitral_coordinate(const MitralShape& shape, MitralLeaflet leaflet, double fraction);

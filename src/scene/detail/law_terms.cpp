@@ -9,6 +9,9 @@
 namespace coapt::detail {
 namespace {
 
+constexpr const char* kUsualYoung = "1 MPa";
+constexpr const char* kUsualChordYoung = "40 MPa";
+
 // Names of terms, each once.
 class Names {
  public:
@@ -34,7 +37,8 @@ std::string usual_membrane(const Valve& valve, const ImportOptions& options, con
                            const std::vector<std::string>& regions) {
   const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
   return "    { \"type\": " + quoted("cst_" + options.membrane) + ", \"name\": " + quoted(name) +
-         ", \"young\": " + quoted(options.young) + ", \"poisson\": " + digits(options.poisson) +
+         ", \"young\": " + quoted(options.young.empty() ? kUsualYoung : options.young) +
+         ", \"poisson\": " + digits(options.poisson) +
          ",\n      \"thickness\": " + quoted(digits(thickness) + " mm") +
          (regions.empty() ? "" : ", \"region\": " + list_text(regions)) + " }";
 }
@@ -68,20 +72,23 @@ void add_cables(const Valve& valve, const ImportOptions& options, Names& names,
   for (const Chord& chord : valve.chords.chords)
     (valve.cables.contains(chord.material) ? lawful : lawless).insert(chord.material);
   const std::string remark = "    // Tension only; rest lengths and cross-sections come from the network.\n";
+  const std::vector<std::string>& regions = valve.leaflets.region_names;
   bool is_first = true;
   for (const std::string& material : lawful) {
     const Material& law = valve.cables.at(material);
+    const bool is_region = std::find(regions.begin(), regions.end(), material) != regions.end();
+    const std::string name = is_region ? "chords_" + material : material;
     terms.push_back((is_first ? remark : "") + "    { \"type\": " + quoted(law.type) +
-                    ", \"name\": " + quoted(names.unique(material)) +
+                    ", \"name\": " + quoted(names.unique(name)) +
                     ", \"network\": \"valve.json\", \"materials\": " + list_text({material}) +
                     keys_text(law) + " }");
     is_first = false;
   }
   if (lawless.empty()) return;
   const std::vector<std::string> rest(lawless.begin(), lawless.end());
-  terms.push_back((is_first ? remark : "") +
-                  "    { \"type\": \"cable\", \"name\": " + quoted(names.unique("chords")) +
-                  ", \"network\": \"valve.json\", \"young\": " + quoted(options.chord_young) +
+  terms.push_back((is_first ? remark : "") + "    { \"type\": \"cable\", \"name\": " +
+                  quoted(names.unique("chords")) + ", \"network\": \"valve.json\", \"young\": " +
+                  quoted(options.chord_young.empty() ? kUsualChordYoung : options.chord_young) +
                   (lawful.empty() ? "" : ", \"materials\": " + list_text(rest)) + " }");
 }
 
