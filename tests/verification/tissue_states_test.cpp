@@ -250,11 +250,11 @@ TYPED_TEST(OnABorder, S11ConvergesOnTheVergeOfSlackness) {
                      this->solved(law, this->kTaut[0], this->kTaut[1]), 0.05, 10);
 }
 
-// Taut, wrinkled and slack meet at rest.
+// Taut, wrinkled and slack meet at rest, where May-Newman and Yin's law has no stiffness.
 TYPED_TEST(OnABorder, S11ConvergesAtRest) {
   const auto law = TypeParam::law(1);
-  this->expect_there("rest", this->solved(law, 1, 1), this->solved(law, this->kTaut[0], this->kTaut[1]),
-                     1e-3);
+  this->expect_there("rest", this->solved(law, 1, 1), this->solved(law, this->kTaut[0], this->kTaut[1]), 1e-3,
+                     5);
 }
 
 }  // namespace
