@@ -9,8 +9,8 @@
 
 namespace coapt {
 
-// The four triangles that each becomes follow each other, the one in the middle last but one; orientation is
-// kept. add_middle: makes the vertex between two others and returns its number; called once for each edge.
+// The four triangles that each becomes follow each other, the one in the middle last; orientation is kept.
+// add_middle: makes the vertex between two others and returns its number; called once for each edge.
 Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle);
 
 // A mesh whose new vertices follow those it had, each in the middle of an edge.

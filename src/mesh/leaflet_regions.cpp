@@ -151,7 +151,8 @@ LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>&
       leaflets.erase(leaflets.begin() + static_cast<long>(k));
       names.erase(names.begin() + static_cast<long>(k));
     }
-  if (zones < 1 || wanted % zones != 0 || wanted / zones < static_cast<int>(leaflets.size()))
+  if (zones < 1) throw InputError("a leaflet has one zone at least, not " + std::to_string(zones));
+  if (wanted % zones != 0 || wanted / zones < static_cast<int>(leaflets.size()))
     throw InputError(std::to_string(wanted) + " regions cannot be made of " +
                      std::to_string(leaflets.size()) + " leaflets with " + std::to_string(zones) +
                      " zones each; take a multiple of " + std::to_string(zones) + ", at least " +

@@ -85,13 +85,19 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   last_ = q;
   objective_.advance(q);
   extent_ = q.size() == 0 ? 0 : q.maxCoeff() - q.minCoeff();
-  if (first_extent_ == 0) first_extent_ = extent_;
+  if (first_extent_ == 0 && q.size() > 0) {
+    const Points x = objective_.positions(q);
+    first_extent_ = x.maxCoeff() - x.minCoeff();
+  }
   trace_.push_back(now);
 
   if (observer_ && !observer_(now, q)) {
     cancelled_ = true;
     return Status::Cancelled;
   }
+  // Before the residual is asked: what is out of balance on a shape that has run away may be nothing beside
+  // the reactions there.
+  if (extent_ > kRunaway * first_extent_) return Status::NoEquilibrium;
   if (now.residual <= tolerance_) return Status::Converged;
   if (is_out_of_time()) return Status::TimeLimit;
   if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;
@@ -101,9 +107,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
     best_energy_ = std::min(best_energy_, energy);
     best_residual_ = std::min(best_residual_, now.residual);
   }
-  if (extent_ > kRunaway * first_extent_ ||
-      (watch_ != nullptr && watch_->is_lost(objective_, q, now.residual)))
-    return Status::NoEquilibrium;
+  if (watch_ != nullptr && watch_->is_lost(objective_, q, now.residual)) return Status::NoEquilibrium;
   if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
   return std::nullopt;
 }

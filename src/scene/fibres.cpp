@@ -102,6 +102,31 @@ FibreField field_of_scene(const SceneFibres& fibres, const Groundwork& ground) {
   }
 }
 
+// Each triangle's four parts have its fibre.
+FibreField cut_in_four(const FibreField& coarse) {
+  FibreField fine;
+  fine.directions.resize(3, 4 * coarse.directions.cols());
+  for (Eigen::Index t = 0; t < coarse.directions.cols(); ++t)
+    fine.directions.middleCols<4>(4 * t).colwise() = coarse.directions.col(t);
+  fine.anisotropy = coarse.anisotropy.transpose().replicate(4, 1).reshaped();
+  return fine;
+}
+
+// Solved for on the scene's own mesh alone, so that all meshes are of one material; kept where it was asked
+// for.
+const FibreField& field_here(const SceneFibres& fibres, const Groundwork& ground) {
+  std::optional<FibreField>& here = *ground.fibres;
+  if (here) return *here;
+  if (ground.finest == nullptr)
+    here = field_of_scene(fibres, ground);
+  else if (ground.is_refined)
+    here = cut_in_four(field_here(fibres, *ground.coarser));
+  else
+    here = coarsened(field_here(fibres, *ground.finest), ground.finest->model.mesh, ground.model.mesh,
+                     kept_vertices(ground));
+  return *here;
+}
+
 void warn_of_isotropic(const FibreField& field, const SceneFibres& fibres, Model& model) {
   constexpr double kIsotropic = 0.01;
   const auto count = (field.anisotropy.array() < kIsotropic).count();
@@ -118,23 +143,10 @@ void find_fibres(const Scene& scene, const Groundwork& ground, Model& model) {
   if (model.fibres.cols() > 0) return;
   SceneFibres fibres = scene.fibres.value_or(SceneFibres());
   if (!scene.fibres) fibres.where = scene.file.string() + ": fibres";
-  const bool is_coarser = ground.finest != nullptr && !ground.is_refined;
-  const Groundwork& finest = is_coarser ? *ground.finest : ground;
-  std::optional<FibreField>& found = *finest.fibres;
-  if (!found) found = field_of_scene(fibres, finest);
-  const FibreField* field = &*found;
-  FibreField coarse;
-  if (is_coarser) {
-    std::vector<int> kept(static_cast<size_t>(model.mesh.vertex_count()));
-    for (int v = 0; v < finest.model.mesh.vertex_count(); ++v)
-      if (const int here = ground.number[static_cast<size_t>(v)]; here >= 0)
-        kept[static_cast<size_t>(here)] = v;
-    coarse = coarsened(*found, finest.model.mesh, model.mesh, kept);
-    field = &coarse;
-  }
-  model.fibres = field->directions;
-  model.fibre_anisotropy = field->anisotropy;
-  warn_of_isotropic(*field, fibres, model);
+  const FibreField& field = field_here(fibres, ground);
+  model.fibres = field.directions;
+  model.fibre_anisotropy = field.anisotropy;
+  warn_of_isotropic(field, fibres, model);
 }
 
 }  // namespace coapt

@@ -245,29 +245,40 @@ Groundwork lay_groundwork(const Scene& scene) {
   return std::move(static_cast<Groundwork&>(assembly));
 }
 
+const Groundwork& scene_ground(const Groundwork& ground) {
+  return ground.finest == nullptr ? ground : scene_ground(*ground.finest);
+}
+
 std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
                                 const std::string& where) {
   const bool is_listed = selection.kind == NodeSelection::Kind::Indices;
   if (ground.finest == nullptr || (ground.is_refined && !is_listed))
     return selected_nodes(selection, ground.model, where);
   std::vector<int> nodes;
-  for (const int node : selected_nodes(selection, ground.finest->model, where))
+  for (const int node : selected_nodes(selection, *ground.finest, where))
     if (const int here = ground.number[static_cast<size_t>(node)]; here >= 0) nodes.push_back(here);
   return nodes;
 }
 
+std::vector<int> kept_vertices(const Groundwork& ground) {
+  std::vector<int> kept(static_cast<size_t>(ground.model.mesh.vertex_count()));
+  for (int v = 0; v < ground.finest->model.mesh.vertex_count(); ++v)
+    if (const int here = ground.number[static_cast<size_t>(v)]; here >= 0)
+      kept[static_cast<size_t>(here)] = v;
+  return kept;
+}
+
 double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where) {
   if (ground.finest == nullptr) return 1;
+  const Model& own = scene_ground(ground).model;
   if (selection == nullptr)
-    return static_cast<double>(ground.finest->model.mesh.vertex_count()) / ground.model.mesh.vertex_count();
+    return static_cast<double>(own.mesh.vertex_count()) / ground.model.mesh.vertex_count();
   const size_t left = selected_nodes(*selection, ground, where).size();
-  const size_t all = selected_nodes(*selection, ground.finest->model, where).size();
+  const size_t all = selected_nodes(*selection, own, where).size();
   return left > 0 ? static_cast<double>(all) / static_cast<double>(left) : 1;
 }
 
-const TriangleMesh& scene_mesh(const Groundwork& ground) {
-  return ground.finest == nullptr ? ground.model.mesh : ground.finest->model.mesh;
-}
+const TriangleMesh& scene_mesh(const Groundwork& ground) { return scene_ground(ground).model.mesh; }
 
 Vector at_vertices(const Vector& values, const Groundwork& ground) {
   if (ground.finest == nullptr) return values;
@@ -280,8 +291,9 @@ Vector at_vertices(const Vector& values, const Groundwork& ground) {
           0.5 * (coarse[ground.parents[k][0]] + coarse[ground.parents[k][1]]);
     return here;
   }
-  for (Eigen::Index v = 0; v < values.size(); ++v)
-    if (const int kept = ground.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = values[v];
+  const Vector fine = at_vertices(values, *ground.finest);
+  for (Eigen::Index v = 0; v < fine.size(); ++v)
+    if (const int kept = ground.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = fine[v];
   return here;
 }
 
@@ -289,18 +301,18 @@ Vector on_triangles(const Vector& values, const Groundwork& ground) {
   if (ground.finest == nullptr) return values;
   if (ground.is_refined) return on_triangles(values, *ground.coarser).transpose().replicate(4, 1).reshaped();
   const TriangleMesh& fine = ground.finest->model.mesh;
+  const Vector there = on_triangles(values, *ground.finest);
   Vector sum = Vector::Zero(fine.vertex_count()), count = sum;
   for (int t = 0; t < fine.triangle_count(); ++t)
     for (const int v : fine.triangles.col(t)) {
-      sum[v] += values[t];
+      sum[v] += there[t];
       ++count[v];
     }
-  const Vector kept = at_vertices(sum.cwiseQuotient(count.cwiseMax(1)), ground);
-  Vector here(ground.model.mesh.triangle_count());
-  for (int t = 0; t < here.size(); ++t) {
-    const Eigen::Vector3i c = ground.model.mesh.triangles.col(t);
-    here[t] = (kept[c[0]] + kept[c[1]] + kept[c[2]]) / 3;
-  }
+  const Vector mean = sum.cwiseQuotient(count.cwiseMax(1));
+  Vector here = Vector::Zero(ground.model.mesh.triangle_count());
+  const std::vector<int> kept = kept_vertices(ground);
+  for (int t = 0; t < here.size(); ++t)
+    for (const int v : ground.model.mesh.triangles.col(t)) here[t] += mean[kept[static_cast<size_t>(v)]] / 3;
   return here;
 }
 

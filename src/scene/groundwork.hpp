@@ -20,12 +20,13 @@ struct Groundwork {
   Prescribed prescribed;
   std::vector<std::string> defects;  // of sets and supports: to be said together with those of the terms
 
-  // Where the mesh is a coarser one of a cascade: the groundwork of the scene's own mesh, and the node here
-  // of each node there (-1: it is gone).
+  // Where the mesh is a coarser one of a cascade: the groundwork of the mesh that it was made from, the
+  // scene's own or a finer one, and the node here of each node there (-1: it is gone). On a finer mesh: that
+  // of the scene's own.
   const Groundwork* finest = nullptr;
   std::vector<int> number = {};
 
-  // The fibres of the scene's own mesh once they were asked for, for the coarser meshes too.
+  // The fibres of this mesh once they were asked for, for those made from it too.
   std::shared_ptr<std::optional<FibreField>> fibres = std::make_shared<std::optional<FibreField>>();
 
   // On a mesh that is finer than the scene's own, on which nodes are selected anew: the next coarser one,
@@ -48,9 +49,16 @@ std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork
 // vertices.
 double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where);
 
-// The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here: a
+// The groundwork of the scene's own mesh.
+const Groundwork& scene_ground(const Groundwork& ground);
+
+// On a coarser mesh: the vertex of the mesh that it was made from, of each vertex here.
+std::vector<int> kept_vertices(const Groundwork& ground);
+
+// The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here. A
 // coarser mesh keeps the values of its vertices, and its triangles take the mean over their corners of the
-// mean over the triangles that met there.
+// mean over the triangles that met there. On a finer mesh triangles have the value of the one that they are
+// part of, new vertices the mean of the ends of their edge.
 const TriangleMesh& scene_mesh(const Groundwork& ground);
 Vector at_vertices(const Vector& values, const Groundwork& ground);
 Vector on_triangles(const Vector& values, const Groundwork& ground);

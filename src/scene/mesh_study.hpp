@@ -2,8 +2,8 @@
 // finer.
 //
 // Every triangle is cut into four flat ones, so that all meshes are discretisations of one and the same
-// problem: shape at rest, supports and chord insertions are those of the scene. Where contact takes its range
-// from the edges of the mesh, that shrinks with them.
+// problem: shape at rest, supports, chord insertions, fibres and numbers given by triangle are those of the
+// scene. Where contact takes its range from the edges of the mesh, that shrinks with them.
 #pragma once
 
 #include "scene/reference_distance.hpp"
@@ -41,8 +41,7 @@ struct MeshStudy {
 
 // levels: how often the mesh is cut into four, at least once. report: called after each level; may be empty.
 // A level that does not converge stays in the study and says so; distances to its shape are left out.
-// options: as for run(); its time limit is that of each level. Throws InputError for bad input, and where a
-// term names triangles of the mesh one by one.
+// options: as for run(); its time limit is that of each level. Throws InputError for bad input.
 MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels, const RunOptions& options,
                      const std::function<void(const MeshLevel&)>& report = {});
 

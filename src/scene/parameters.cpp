@@ -52,4 +52,14 @@ void Parameters::set(const std::string& key, ParameterValue value) {
   values_.insert_or_assign(key, std::move(value));
 }
 
+void Parameters::scale(const std::string& key, double factor) {
+  set(key, number(key) * factor);
+  factors_.try_emplace(key, 1).first->second *= factor;
+}
+
+double Parameters::factor(const std::string& key) const {
+  const auto found = factors_.find(key);
+  return found == factors_.end() ? 1 : found->second;
+}
+
 }  // namespace coapt

@@ -80,12 +80,18 @@ class Parameters {
 
   void set(const std::string& key, ParameterValue value);
 
+  // Multiplies the number of a key, and whatever a file gives in its place: the product of all factors so
+  // far is factor(key), 1 where there were none.
+  void scale(const std::string& key, double factor);
+  double factor(const std::string& key) const;
+
  private:
   template <typename T>
   const T& get(const std::string& key) const;
 
   std::string where_;
   std::map<std::string, ParameterValue> values_;
+  std::map<std::string, double> factors_;
 };
 
 }  // namespace coapt

@@ -90,13 +90,14 @@ std::vector<SceneParameter> elastic_parameters(const Scene& scene, const Objecti
 
 Scene scaled(Scene scene, const SceneParameter& parameter, double factor) {
   TermSpec& term = scene.terms.at(parameter.term);
-  const double value = term.parameters.number(parameter.key) * std::pow(factor, parameter.power);
+  const double change = std::pow(factor, parameter.power),
+               value = term.parameters.number(parameter.key) * change;
   const KeySpec& key = *find_key(term, parameter.key);
   if (!std::isfinite(value) || value < key.min || value > key.max || (key.excludes_min && value == key.min))
     throw InputError(term.parameters.where(parameter.key) + ": " + text_of(factor) + " times " +
                      parameter.name + " is beyond the limits of this key (" + text_of(key.min) + " to " +
                      text_of(key.max) + "); perturb it by less, or leave it out");
-  term.parameters.set(parameter.key, value);
+  term.parameters.scale(parameter.key, change);
   if (const TermType& type = *find_term_type(term.type); type.check)
     if (const std::vector<std::string> defects = type.check(term.parameters); !defects.empty())
       throw InputError(term.parameters.where() + ": with " + parameter.name + " times " + text_of(factor) +

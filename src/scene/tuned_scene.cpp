@@ -14,10 +14,11 @@ namespace {
 // Keys of a membrane law with the dimension of a modulus that have a value; none for other terms.
 std::vector<std::string> moduli_of(const TermSpec& term) {
   std::vector<std::string> keys;
-  const std::vector<TermType> membranes = membrane_term_types();
-  const bool is_membrane = std::any_of(membranes.begin(), membranes.end(),
-                                       [&](const TermType& type) { return type.name == term.type; });
-  if (!is_membrane) return keys;
+  const auto is_of = [&](const std::vector<TermType>& family) {
+    return std::any_of(family.begin(), family.end(),
+                       [&](const TermType& type) { return type.name == term.type; });
+  };
+  if (!is_of(membrane_term_types()) && !is_of(tissue_term_types())) return keys;
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
     if (key.kind == KeyKind::Quantity && key.dimension == kPressure && term.parameters.has(key.name))
       keys.push_back(key.name);
@@ -94,15 +95,12 @@ TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOpt
 
 Scene TunedScene::scene(const Vector& factors) const {
   Scene scene = split_;
-  const auto scale = [](Parameters& p, const std::string& key, double factor) {
-    p.set(key, p.number(key) * factor);
-  };
   for (const Part& part : parts_)
     for (const std::string& key : moduli_of(scene.terms[part.term]))
-      scale(scene.terms[part.term].parameters, key, factors[static_cast<Eigen::Index>(part.region)]);
+      scene.terms[part.term].parameters.scale(key, factors[static_cast<Eigen::Index>(part.region)]);
   for (size_t k = 0; k < cables_.size(); ++k)
-    scale(scene.terms[cables_[k]].parameters, "area_scale",
-          factors[static_cast<Eigen::Index>(region_count_ + k)]);
+    scene.terms[cables_[k]].parameters.scale("area_scale",
+                                             factors[static_cast<Eigen::Index>(region_count_ + k)]);
   return scene;
 }
 

@@ -1,10 +1,8 @@
 // Nonlinear and fibrous membranes: every law in every regime through the term suite, against the laws written
 // anew, and in states of uniform strain against closed forms.
-#include "energy/element_term.hpp"
-#include "energy/kernels/cst_fibrous.hpp"
-#include "energy/kernels/cst_isotropic.hpp"
 #include "membrane_patch.hpp"
 #include "support/term_suite.hpp"
+#include "support/tissue_laws.hpp"
 #include "support/tissue_oracles.hpp"
 
 #include <gtest/gtest.h>
@@ -17,40 +15,17 @@ namespace {
 constexpr double kThickness = 0.4;
 const Vec3 kFibre = Vec3(std::cos(0.4), std::sin(0.4), 0);
 
-// Each law in units of `stress`.
-BilinearLaw bilinear(double stress) { return {0.1 * stress, 0.4, {5.9 * stress, 0.25, 0.05}}; }
-NeoHookeanLaw neo_hookean(double stress) { return {{0.3 * stress}, 0}; }
-NeoHookeanLaw soft_neo_hookean(double stress) { return {{0.3 * stress}, 2 * stress}; }
-ExponentialLaw exponential(double stress) { return {{0.05 * stress, 0.02 * stress, 3.0}, 0}; }
-ExponentialLaw soft_exponential(double stress) { return {{0.05 * stress, 0.02 * stress, 3.0}, 0.6 * stress}; }
-OrthotropicLaw orthotropic(double stress) {
-  return {0.2 * stress, 0.08 * stress, {4 * stress, 0.15, 0.04}, {stress, 0.3, 0.04}, 0.3, 0.05 * stress};
-}
-MayNewmanYinLaw may_newman_yin(double stress) { return {0.02 * stress, 1.5, 20}; }
-CrimpedFibreLaw crimped_fibre(double stress) {
-  return {0.05 * stress, CrimpedFibre(8 * stress, 9, 1.6, 0.02), 0.3};
-}
+constexpr auto bilinear = laws::Bilinear::law;
+constexpr auto neo_hookean = laws::NeoHookean::law;
+constexpr auto exponential = laws::Exponential::law;
+constexpr auto soft_exponential = laws::SoftExponential::law;
+constexpr auto orthotropic = laws::Orthotropic::law;
+constexpr auto may_newman_yin = laws::MayNewmanYin::law;
+constexpr auto crimped_fibre = laws::Crimped::law;
 
-template <typename Law>
-struct KernelOf;
-template <typename Law>
-requires requires { IsotropicName<Law>::kType; }
-struct KernelOf<Law> {
-  using Type = CstIsotropic<Law>;
-  static typename Type::Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3&, const Law& law,
-                                  double thickness, bool relaxes) {
-    return Type::rest(X0, X1, X2, law, thickness, relaxes);
-  }
-};
-template <typename Law>
-requires requires { FibrousName<Law>::kType; }
-struct KernelOf<Law> {
-  using Type = CstFibrous<Law>;
-  static typename Type::Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& fibre,
-                                  const Law& law, double thickness, bool relaxes) {
-    return Type::rest(X0, X1, X2, fibre, law, thickness, relaxes);
-  }
-};
+template <typename Entry>
+class TissueLaw : public testing::Test {};
+TYPED_TEST_SUITE(TissueLaw, MembraneLaws, LawNames);
 
 template <typename Law>
 TermCase patch_case(const std::string& label, Law (*law_of)(double), const Eigen::Matrix3d& f,
@@ -109,15 +84,8 @@ void expect_passes_everywhere(const std::string& label, Law (*law_of)(double)) {
   EXPECT_EQ(examine_term(pressed), "");
 }
 
-TEST(Tissue, PassesTheSuiteInEveryRegime) {
-  expect_passes_everywhere("bilinear", bilinear);
-  expect_passes_everywhere("neo-Hookean", neo_hookean);
-  expect_passes_everywhere("compressible neo-Hookean", soft_neo_hookean);
-  expect_passes_everywhere("exponential", exponential);
-  expect_passes_everywhere("compressible exponential", soft_exponential);
-  expect_passes_everywhere("orthotropic", orthotropic);
-  expect_passes_everywhere("May-Newman-Yin", may_newman_yin);
-  expect_passes_everywhere("crimped fibre", crimped_fibre);
+TYPED_TEST(TissueLaw, PassesTheSuiteInEveryRegime) {
+  expect_passes_everywhere(TypeParam::kName, TypeParam::law);
 }
 
 template <typename Law, typename Density>
@@ -316,12 +284,8 @@ void expect_least(const std::string& label, const Law& law) {
     }
 }
 
-TEST(Tissue, RelaxedEnergyIsTheLeastThatWrinklesLeave) {
-  expect_least("bilinear", bilinear(1));
-  expect_least("compressible exponential", soft_exponential(1));
-  expect_least("orthotropic", orthotropic(1));
-  expect_least("May-Newman-Yin", may_newman_yin(1));
-  expect_least("crimped fibre", crimped_fibre(1));
+TYPED_TEST(TissueLaw, RelaxedEnergyIsTheLeastThatWrinklesLeave) {
+  expect_least(TypeParam::kName, TypeParam::law(1));
 }
 
 // Across each border energy and force go on without a jump.
@@ -349,13 +313,8 @@ void expect_smooth_borders(const std::string& label, const Law& law) {
   }
 }
 
-TEST(Tissue, IsContinuouslyDifferentiableAtBothBorders) {
-  expect_smooth_borders("bilinear", bilinear(1));
-  expect_smooth_borders("exponential", exponential(1));
-  expect_smooth_borders("compressible neo-Hookean", soft_neo_hookean(1));
-  expect_smooth_borders("orthotropic", orthotropic(1));
-  expect_smooth_borders("May-Newman-Yin", may_newman_yin(1));
-  expect_smooth_borders("crimped fibre", crimped_fibre(1));
+TYPED_TEST(TissueLaw, IsContinuouslyDifferentiableAtBothBorders) {
+  expect_smooth_borders(TypeParam::kName, TypeParam::law(1));
 }
 
 // A facet that all but collapses across its tension: exponentials of its compression overflow, and must not
@@ -391,13 +350,8 @@ void expect_positive_projection(const std::string& label, const Law& law) {
     }
 }
 
-TEST(Tissue, ProjectedHessiansArePositive) {
-  expect_positive_projection("bilinear", bilinear(1));
-  expect_positive_projection("exponential", exponential(1));
-  expect_positive_projection("compressible exponential", soft_exponential(1));
-  expect_positive_projection("orthotropic", orthotropic(1));
-  expect_positive_projection("May-Newman-Yin", may_newman_yin(1));
-  expect_positive_projection("crimped fibre", crimped_fibre(1));
+TYPED_TEST(TissueLaw, ProjectedHessiansArePositive) {
+  expect_positive_projection(TypeParam::kName, TypeParam::law(1));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 #include "core/error.hpp"
 #include "mesh/mesh_samples.hpp"
 #include "mesh/valve_import.hpp"
-
-#include <random>
+#include "support/damaged.hpp"
 
 namespace coapt {
 namespace {
@@ -370,15 +369,9 @@ TEST(Abaqus, SurvivesTruncationAndChangedBytes) {
       ++refused;
     }
   };
-  for (size_t size = 0; size < kModel.size(); size += 13) attempt(kModel.substr(0, size));
+  for_each_truncation(kModel, 13, attempt);
   EXPECT_GT(refused, 50);
-  std::mt19937 random(7);
-  const std::string bytes = "0123456789,.*=-\n \"eE\xff";
-  for (int k = 0; k < 400; ++k) {
-    std::string text = kModel;
-    for (int change = 0; change < 3; ++change) text[random() % text.size()] = bytes[random() % bytes.size()];
-    attempt(text);
-  }
+  for_each_damage(kModel, 3, "0123456789,.*=-\n \"eE\xff", 7, attempt);
   EXPECT_GT(accepted, 10);
 }
 

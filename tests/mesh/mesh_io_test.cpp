@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh_samples.hpp"
+#include "support/damaged.hpp"
 
 #include <gtest/gtest.h>
 
@@ -212,8 +213,9 @@ TEST(MeshFiles, EveryFormatSurvivesTruncationAtAnyByte) {
     write_mesh(scratch.path("whole." + extension), regional_sheet(),
                extension == "stl" ? MeshCoding::Ascii : MeshCoding::Binary);
     const std::string bytes = scratch.bytes("whole." + extension);
-    for (size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97)
-      refused += !defects_of(scratch.file("cut." + extension, bytes.substr(0, size))).empty();
+    for_each_truncation(bytes, 1 + bytes.size() / 97, [&](const std::string& cut) {
+      refused += !defects_of(scratch.file("cut." + extension, cut)).empty();
+    });
   }
   EXPECT_GT(refused, 250);  // a cut behind the last face that is needed may still read
 }

@@ -7,12 +7,12 @@
 #include "scene/import.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/valve_json.hpp"
+#include "support/damaged.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
-#include <random>
 #include <set>
 #include <sstream>
 
@@ -465,15 +465,9 @@ TEST(FebioModel, SurvivesTruncationAndChangedBytes) {
       ++refused;
     }
   };
-  for (size_t size = 0; size < kSmall.size(); size += 11) attempt(kSmall.substr(0, size));
+  for_each_truncation(kSmall, 11, attempt);
   EXPECT_GT(refused, 100);
-  std::mt19937 random(11);
-  const std::string bytes = "0123456789,.<>/=\" -xyz\xff";
-  for (int k = 0; k < 400; ++k) {
-    std::string text = kSmall;
-    for (int change = 0; change < 2; ++change) text[random() % text.size()] = bytes[random() % bytes.size()];
-    attempt(text);
-  }
+  for_each_damage(kSmall, 2, "0123456789,.<>/=\" -xyz\xff", 11, attempt);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace coapt {
 
@@ -69,22 +70,29 @@ struct CableLaw {
   }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
-                         Eigen::Matrix<double, 6, 6>* H, bool projects = false) {
+                         Eigen::Matrix<double, 6, 6>* H) {
+    return evaluate(rest, x, g, H, -std::numeric_limits<double>::infinity());
+  }
+
+  // The force is never negative. The stiffness is where a law softens: Ogden's with exponents below 1, far
+  // out.
+  static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 6>& x,
+                                   Eigen::Vector<double, 6>* g, Eigen::Matrix<double, 6, 6>* H) {
+    return evaluate(rest, x, g, H, 0);
+  }
+
+ private:
+  // With a stiffness of at least `least` in the Hessian.
+  static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
+                         Eigen::Matrix<double, 6, 6>* H, double least) {
     const Vec3 difference = x.tail<3>() - x.head<3>();
     const double l = difference.norm();
     AxialLaw law = elastic(rest, l / rest.length - 1);
-    if (projects) law.stiffness = std::max(law.stiffness, 0.0);
+    law.stiffness = std::max(law.stiffness, least);
     expand_axial(law, difference, l, g, H);
     return law.energy;
   }
 
-  // The force is never negative; the stiffness of a law that softens can be.
-  static double evaluate_projected(const Rest& rest, const Eigen::Vector<double, 6>& x,
-                                   Eigen::Vector<double, 6>* g, Eigen::Matrix<double, 6, 6>* H) {
-    return evaluate(rest, x, g, H, true);
-  }
-
- private:
   struct Elongation {
     double value = 0, slope = 1, curvature = 0;
   };

@@ -119,9 +119,17 @@ ElementValues::ElementValues(const TermSpec& spec, const BuildContext& context)
   const TriangleMesh& scene_mesh = context.scene_mesh;
   const auto keep = [&](const std::string& file_key, int rows, const std::string& what, const auto& carried) {
     if (!parameters_.has(file_key)) return;
-    for (const Column& column : read_columns(parameters_.text(file_key), type, rows, what))
-      columns_[column.key->name] = carried(
-          Eigen::Map<const Vector>(column.numbers.data(), static_cast<Eigen::Index>(column.numbers.size())));
+    for (const Column& column : read_columns(parameters_.text(file_key), type, rows, what)) {
+      const Vector numbers =
+          parameters_.factor(column.key->name) *
+          Eigen::Map<const Vector>(column.numbers.data(), static_cast<Eigen::Index>(column.numbers.size()));
+      for (const double number : {numbers.minCoeff(), numbers.maxCoeff()})
+        if (!is_allowed(number, *column.key))
+          throw InputError(parameters_.text(file_key) + ": " + column.key->name + ": with the factor " +
+                           std::to_string(parameters_.factor(column.key->name)) +
+                           " that is tried a number is outside its limits");
+      columns_[column.key->name] = carried(numbers);
+    }
   };
   const Triangles& here = context.model.mesh.triangles;
   keep("vertex_values", scene_mesh.vertex_count(), "vertices",
