@@ -36,7 +36,7 @@ ROWS = {
     "as imported, incompressible": (["--incompressible"], lambda scene: None),
     "bulk modulus as printed": ([], lambda scene: None),
     "membrane resists compression": (["--incompressible"], change("cst_", compression="resisted")),
-    "linear membrane 0.05 MPa, linear chords 40 MPa": (["--young", "0.05", "--chord-young", "40"], lambda scene: None),
+    "linear membrane 0.05 MPa, linear chords 40 MPa": (["--young", "0.05 MPa", "--chord-young", "40 MPa"], lambda scene: None),
     "linear chords 40 MPa, tissue as above": (["--incompressible"], take_linear_chords),
     "bending D = 3e-4 N mm": (["--incompressible"], change("bending", stiffness="3e-4 N*mm")),
     "bending D = 1e-3 N mm": (["--incompressible"], change("bending", stiffness="1e-3 N*mm")),

@@ -6,7 +6,8 @@
 // p is a pressure, A the rest area that belongs to the pair, r its range: the gap that the user names or,
 // where two features lie closer than twice that at rest, half their distance at rest, so that a mesh at rest
 // feels nothing. Weighted by areas the contact pressure does not depend on the mesh; it reaches p at about
-// two thirds of the gap. Features that share a vertex are left out; no other pair is.
+// two thirds of the gap. Features that share a vertex, pairs that the user excludes and
+// those of obstacles among themselves are left out; no other pair is.
 #pragma once
 
 #include "energy/term.hpp"

@@ -4,8 +4,9 @@
 // vertex, or are joined by an edge, are excluded by topology.
 //
 // It is a finite barrier. Two parallel sheets feel the pressure 2 pi C delta s (1-s)^n, s = gap/delta:
-// greatest at s = 1/(n+1), zero at contact. Pressed harder, they pass through each other; so C is
-// bounded from below by the applied pressure (contact_strength) and intersections are counted at the end.
+// greatest at s = 1/(n+1), zero at contact. Pressed harder, they pass through each other: the
+// caller chooses C by the applied pressure (contact_facet_strength), and intersections are counted at the
+// end.
 #pragma once
 
 #include "energy/term.hpp"

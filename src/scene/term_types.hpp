@@ -74,7 +74,7 @@ std::vector<TermType> tissue_term_types();    // cst_bilinear ... cst_crimped_fi
 std::vector<TermType> bending_term_types();   // bending
 std::vector<TermType> line_term_types();      // cable, cable_bilinear ..., tether_cubic
 std::vector<TermType> load_term_types();      // load_field, load_pressure
-std::vector<TermType> contact_term_types();   // contact_facet
+std::vector<TermType> contact_term_types();   // contact_facet, contact_barrier
 
 // For the entries: the key `region`, and the triangles that it names (all where it is absent).
 KeySpec region_key();

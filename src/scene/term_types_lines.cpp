@@ -154,10 +154,31 @@ TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& contex
 
 using Defects = std::vector<std::string>;
 
-Defects check_area(const Parameters& p) {
-  if (p.has("edges") && !p.has("area"))
-    return {"area: missing; mesh edges have no cross-section of their own"};
+Defects check_materials(const Parameters& p) {
+  if (p.has("edges") && p.has("materials"))
+    return {"materials: chooses chords of a network; mesh edges have none, leave it out"};
   return {};
+}
+
+Defects check_area(const Parameters& p) {
+  Defects defects = check_materials(p);
+  if (p.has("edges") && !p.has("area"))
+    defects.push_back("area: missing; mesh edges have no cross-section of their own");
+  return defects;
+}
+
+// What says nothing of a cable of constant tension must not look as if it did.
+Defects check_constant(const Parameters& p) {
+  Defects defects = check_materials(p);
+  const auto refuse = [&](bool is_given, const char* key) {
+    if (is_given)
+      defects.push_back(std::string(key) +
+                        ": says nothing of a cable of constant tension; leave it out, or give young");
+  };
+  refuse(p.has("area"), "area");
+  refuse(p.number("area_scale") != 1, "area_scale");
+  refuse(p.number("length_scale") != 1, "length_scale");
+  return defects;
 }
 
 Defects check_ogden(const Parameters& p) {
@@ -273,7 +294,7 @@ std::vector<TermType> line_term_types() {
                               smoothing_key()},
                              line_keys()),
                 .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
-       .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : Defects{}; },
+       .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : check_constant(p); },
        .build = build_cable},
       {.name = "cable_bilinear",
        .summary = "Cables of two moduli: soft up to a transition strain, stiff beyond it; tension only.",

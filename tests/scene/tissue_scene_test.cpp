@@ -186,6 +186,11 @@ TEST_F(TissueScene, RefusesLawsThatMakeNoSense) {
   EXPECT_TRUE(
       refuses(sheet + R"({"type": "cable_ogden", "edges": "boundary", "mu": ["1 MPa"], "alpha": [9]})",
               "area: missing"));
+  EXPECT_TRUE(refuses(sheet + R"({"type": "cable", "edges": "boundary", "tension": "1 N", "area": "1 mm^2"})",
+                      "area: says nothing of a cable of constant tension"));
+  EXPECT_TRUE(
+      refuses(sheet + R"({"type": "cable", "edges": "boundary", "tension": "1 N", "materials": ["a"]})",
+              "materials: chooses chords of a network"));
   EXPECT_TRUE(refuses(sheet + R"({"type": "cable_ogden", "edges": "boundary", "area": "1 mm^2",
       "mu": ["1 MPa", "2 MPa"], "alpha": [9]})",
                       "mu and alpha: have 2 and 1 entries"));

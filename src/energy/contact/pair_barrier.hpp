@@ -1,17 +1,17 @@
 // The barrier of one pair of mesh features, point-triangle or edge-edge, with exact derivatives wherever
 // their closest points lie.
 //
-//   W = k phi(d / r),  phi(s) = -(1 - s)^2 ln s for s < 1, else 0        (Li et al. 2020, eq. 6, in d, not
-//   d^2)
+//   W = k phi(d / r),  phi(s) = -(1 - s)^2 ln s for s < 1, else 0
 //
+// Source: Li et al. 2020, eq. 6, here in d instead of d^2.
 // d is the distance, r the range. phi is C2 at s = 1 and grows without bound as s goes to 0.
 //
 // All cases are one: the closest points are differences of the four nodes, r = sum_a w_a(t) x_a, linear in
 // the parameters t along which they can slide (two inside a triangle or two edges, one along an edge against
 // a point, none between two points). With tangents made orthonormal, n = r/d, W the weights, E_j = dw/dt_j,
 //   grad d    = W (x) n
-//   d Hess d  = W W^T (x) P - sum_j d [ (W (x) tau_j) (E_j (x) n)^T + its transpose + d (E_j (x) n)(E_j (x)
-//   n)^T ]
+//   d Hess d  = W W^T (x) P
+//               - sum_j d [ (W (x) tau_j) (E_j (x) n)^T + its transpose + d (E_j (x) n) (E_j (x) n)^T ]
 // where P projects on what is left besides n and the tangents. Of k (phi'' grad grad^T / r^2 + phi'/r Hess),
 // phi' <= 0, the positive semidefinite part is known in closed form: the first summand, and of each bracket,
 // which lives in the plane of two orthogonal vectors, the positive eigenvalue.
