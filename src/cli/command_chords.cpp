@@ -1,5 +1,7 @@
 #include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
 #include "core/error.hpp"
+#include "mesh/formats/lower_extension.hpp"
 #include "mesh/generators/leaflet_chords.hpp"
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
@@ -38,7 +40,7 @@ Points points_of(const std::vector<std::array<double, 3>>& list) {
 Valve read_input(const Arguments& arguments) {
   Valve valve;
   std::vector<std::string> warnings;
-  if (fs::path(arguments.input).extension() == ".json") {
+  if (formats::lower_extension(arguments.input) == ".json") {
     ValveFile file = read_valve(arguments.input);
     valve = std::move(file.valve);
     warnings = std::move(file.warnings);
@@ -71,13 +73,15 @@ Valve read_input(const Arguments& arguments) {
   return valve;
 }
 
-// The meshes are written beside the JSON: they must not take the place of those that were read.
+// The meshes are written beside the JSON: neither may take the place of the other or of what was read.
 void check_output(const Arguments& arguments) {
-  std::error_code error;
+  if (formats::lower_extension(arguments.output) != ".json")
+    throw InputError(arguments.output +
+                     ": is to be a valve JSON, beside which the mesh is written as "
+                     "leaflets.obj; give it a name that ends in .json");
   const fs::path folder = fs::absolute(arguments.output).parent_path();
-  if (fs::equivalent(folder, fs::absolute(arguments.input).parent_path(), error))
-    throw InputError(arguments.output + ": lies beside " + arguments.input +
-                     ", whose meshes could be overwritten; choose another folder");
+  refuse_folder_of(arguments.input, folder);
+  std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }

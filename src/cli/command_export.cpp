@@ -1,5 +1,7 @@
 #include "cli/commands.hpp"
+#include "core/error.hpp"
 #include "scene/export.hpp"
+#include "scene/markups.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -22,12 +24,16 @@ void add_export_command(CLI::App& app, int& /*exit_code*/) {
       ->add_option("-o,--output", arguments->out,
                    "File to write; its extension says what: .feb, .obj, .ply, .stl, .off, .vtp or .mrk.json")
       ->required();
-  command
-      ->add_option(
-          "--points", arguments->what,
-          "Which points go into a .mrk.json: a set of nodes, or with _closed behind it where they go")
-      ->capture_default_str();
-  command->callback([arguments] {
+  CLI::Option* points =
+      command
+          ->add_option(
+              "--points", arguments->what,
+              "Which points go into a .mrk.json: a set of nodes, or with _closed behind it where they go")
+          ->capture_default_str();
+  command->callback([arguments, points] {
+    if (points->count() > 0 && !is_markup_file(arguments->out))
+      throw InputError("--points: chooses the points of a .mrk.json, which " + arguments->out +
+                       " is not; leave it out");
     for (const std::string& warning : export_file(arguments->from, arguments->out, arguments->what))
       std::printf("warning: %s\n", warning.c_str());
     std::printf("written: %s\n", arguments->out.c_str());

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct Arguments : SceneArguments {
   unsigned seed = 0;
   std::string annulus, papillary;
   std::vector<double> anterior, ventricle;  // three numbers, or none
+  std::vector<std::string> given;           // options on the command line
 };
 
 std::optional<Vec3> position_of(const std::vector<double>& numbers) {
@@ -51,13 +53,30 @@ void check_measured(const Arguments& arguments) {
     throw InputError("--papillary, --anterior and --ventricle need --annulus FILE");
 }
 
+bool is_given(const Arguments& arguments, const char* option) {
+  return std::find(arguments.given.begin(), arguments.given.end(), option) != arguments.given.end();
+}
+
+void write_shape(const Arguments& arguments) {
+  std::vector<std::string> defects;
+  const std::vector<std::string> shapes = shape_names();
+  const bool is_known = std::find(shapes.begin(), shapes.end(), arguments.what) != shapes.end();
+  for (const char* option : {"--seed", "--membrane"})
+    if (is_known && is_given(arguments, option))
+      defects.push_back(std::string(option) + ": belongs to the shape mitral; a " + arguments.what +
+                        " has no such choice");
+  if (!defects.empty()) throw InputError(defects);
+  ShapeOptions options{.contact = arguments.contact, .pressure = arguments.pressure};
+  if (is_given(arguments, "--triangles")) options.triangles = arguments.triangles;
+  write_shape_scene(arguments.what, options, arguments.folder);
+}
+
 void generate(const Arguments& arguments) {
   check_measured(arguments);
   if (arguments.what == "mitral") {
     write_valve_scene(generated_mitral(arguments), arguments.folder, import_options(arguments));
   } else {
-    write_shape_scene(arguments.what, {arguments.triangles, arguments.contact, arguments.pressure},
-                      arguments.folder);
+    write_shape(arguments);
   }
   announce_scene(arguments.folder);
 }
@@ -71,7 +90,9 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   std::string shapes = "mitral";
   for (const std::string& name : shape_names()) shapes += ", " + name;
   command->add_option("SHAPE", arguments->what, shapes)->required();
-  command->add_option("--triangles", arguments->triangles, "Wanted number of triangles")
+  command
+      ->add_option("--triangles", arguments->triangles,
+                   "Wanted number of triangles; not of the catenary, which has none")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
   command
@@ -90,8 +111,12 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
       ->add_option("--ventricle", arguments->ventricle,
                    "With --annulus: X Y Z on the side of the ventricle (default: by tips or saddle)")
       ->expected(3);
-  add_scene_options(*command, *arguments);
-  command->callback([arguments] { generate(*arguments); });
+  add_scene_options(*command, *arguments, {"follower", "frozen", "volume", "field"});
+  command->callback([arguments, command] {
+    for (const CLI::Option* option : command->get_options())
+      if (option->count() > 0) arguments->given.push_back(option->get_name());
+    generate(*arguments);
+  });
 }
 
 }  // namespace coapt::cli

@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
 #include "scene/import.hpp"
 
@@ -17,6 +18,7 @@ struct Arguments : SceneArguments {
 };
 
 void import_file(const Arguments& arguments) {
+  refuse_folder_of(arguments.file, arguments.folder);
   ImportOptions options = import_options(arguments);
   options.incompressible = arguments.incompressible;
   options.young = arguments.young;
@@ -40,7 +42,7 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
       ->add_option("FILE", arguments->file,
                    "Valve JSON with its meshes beside it, .inp, .feb, or a mesh (.obj .ply .stl .off .vtp)")
       ->required();
-  add_scene_options(*command, *arguments);
+  add_scene_options(*command, *arguments, {"follower", "frozen", "field"});
   command->add_flag("--incompressible", arguments->incompressible,
                     "Leave the bulk modulus of membrane laws out: incompressible leaflets");
   command->add_option("--young", arguments->young,

@@ -77,12 +77,15 @@ void study(const Arguments& arguments, int& exit_code) {
   const std::filesystem::path folder = arguments.prepared_folder(scene);
   const SensitivityStudy found = study_sensitivity(scene, all_solvers(), options, arguments.options());
   end_progress();
+  for (const std::string& reason : found.left_out) std::printf("left out: %s\n", reason.c_str());
   const SensitivityRun& base = found.base;
   std::printf("first solve: %s, residual %.1e, %d iterations, %.2f s",
               std::string(status_name(base.status)).c_str(), base.residual, base.iterations, base.wall_s);
   if (base.to_reference) std::printf(", mean distance to the reference %.3f mm", base.to_reference->mean);
   std::printf("\n");
   if (base.status != Status::Converged) std::printf("without it there is nothing to compare with\n");
+  if (found.is_cancelled)
+    std::printf("cancelled: only %zu parameters were studied to the end\n", found.parameters.size());
   write_sensitivity(folder, found);
   std::printf("written to %s (sensitivity.json, sensitivity.csv)\n", folder.string().c_str());
   exit_code = found.has_converged() ? kConverged : kNotConverged;
@@ -98,7 +101,7 @@ void add_sensitivity_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--parameters", arguments->parameters,
       "TERM.KEY ..., such as chords.length_scale or chords.diameter (default: all numbers of all "
-      "elastic terms)");
+      "elastic terms that may be changed so far)");
   command->add_option("--perturb", arguments->perturbation, "Share by which each is changed (default: 5%)");
   command->add_flag("--from-start", arguments->starts_anew,
                     "Solve each from the scene's own start instead of the first solution");

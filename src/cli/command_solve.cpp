@@ -2,6 +2,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
 #include "scene/run.hpp"
 
 #include <CLI/CLI.hpp>
@@ -87,11 +88,11 @@ void add_solve_command(CLI::App& app, int& exit_code) {
   command->add_option("--solver", arguments->solver, "Solver (default: the scene's)");
   const auto* tolerance =
       command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
-          ->check(CLI::PositiveNumber);
+          ->check(positive_defect);
   const auto* seconds =
       command
           ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")
-          ->check(CLI::PositiveNumber);
+          ->check(positive_defect);
   const auto* modes = command
                           ->add_option("--modes", arguments->modes,
                                        "Smallest eigenvalues in the certificate (default: the scene's)")

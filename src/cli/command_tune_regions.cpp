@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "core/error.hpp"
 #include "scene/region_tuning.hpp"
 
 #include <CLI/CLI.hpp>
@@ -46,9 +47,13 @@ void tune(const Arguments& arguments, int& exit_code) {
   if (found.orifice_limit_mm2) std::printf("  %-22s %.2f mm2\n", "orifice at most", *found.orifice_limit_mm2);
   std::printf("  %-22s %d (%d not converged) in %d rounds, %.2f s\n", "solves", found.solves,
               found.failed_solves, found.rounds, found.wall_s);
-  for (const TunedFactor& region : found.regions)
-    std::printf("  %-32s %5d triangles, stiffness times %.4f\n", region.name.c_str(), region.triangles,
-                region.factor);
+  for (const TunedFactor& region : found.regions) {
+    std::printf("  %-32s %5d triangles, ", region.name.c_str(), region.triangles);
+    if (region.is_tuned)
+      std::printf("stiffness times %.4f\n", region.factor);
+    else
+      std::printf("not tuned: no term with a modulus\n");
+  }
   for (const TunedFactor& chord : found.chords)
     std::printf("  %-32s cross-sections times %.4f\n", chord.name.c_str(), chord.factor);
   write_region_tuning(folder, found);
@@ -74,23 +79,28 @@ void add_tune_regions_command(CLI::App& app, int& exit_code) {
   RegionTuningOptions& tuning = arguments->tuning;
   command->add_option("--yield-strain", tuning.yield_strain, "That no chord may exceed")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(positive_defect);
   command
       ->add_option("--regions", arguments->regions,
                    "How many to split the leaflets into, or \"mesh\" for those of the mesh (default: 14)")
       ->check(regions_defect);
-  command->add_option("--zones", tuning.zones, "From annulus to free edge (default: 2)")
-      ->check(CLI::Range(1, 10));
+  CLI::Option* zones = command->add_option("--zones", tuning.zones, "From annulus to free edge (default: 2)")
+                           ->check(CLI::Range(1, 10));
   command
       ->add_option("--orifice", arguments->orifice,
                    "Greatest orifice [mm2] (default: 2 % of the annulus area)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_defect);
   command->add_flag("--chord-sections", tuning.tunes_chords, "Tune the cross-sections of the chords too");
   command
       ->add_option("--greatest-factor", tuning.greatest_factor,
                    "On a stiffness; its inverse is the least (default: 10)")
+      ->check(positive_defect)
       ->check(CLI::Range(1.001, 1e6));
-  command->callback([arguments, &exit_code] { tune(*arguments, exit_code); });
+  command->callback([arguments, zones, &exit_code] {
+    if (zones->count() > 0 && arguments->regions == "mesh")
+      throw InputError("--zones: --regions mesh takes the regions of the mesh as they are; leave one out");
+    tune(*arguments, exit_code);
+  });
 }
 
 }  // namespace coapt::cli

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdio>
 #include <iostream>
 #include <string>
 
@@ -47,11 +48,17 @@ int run_command(int argc, char** argv) {
   return exit_code;
 }
 
+// Whether all that was printed has arrived: a full disk shows only when the buffers are emptied.
+bool is_printed() { return std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    return run_command(argc, argv);
+    const int exit_code = run_command(argc, argv);
+    if (is_printed()) return exit_code;
+    std::cerr << "coapt: error: the standard output cannot be written; is the disk full?\n";
+    return coapt::cli::kBadInput;
   } catch (const coapt::InputError& error) {
     for (const std::string& defect : error.defects()) std::cerr << "coapt: error: " << defect << "\n";
     return coapt::cli::kBadInput;

@@ -6,7 +6,8 @@
 
 namespace coapt::cli {
 
-void add_scene_options(CLI::App& command, SceneArguments& arguments) {
+void add_scene_options(CLI::App& command, SceneArguments& arguments,
+                       const std::vector<std::string>& pressures) {
   command.add_option("-o,--output", arguments.folder, "Folder to write into")->required();
   command
       .add_option("--contact", arguments.contact,
@@ -20,7 +21,7 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
       ->capture_default_str();
   command
       .add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")
-      ->check(CLI::IsMember({"follower", "frozen", "volume", "field"}));
+      ->check(CLI::IsMember(pressures));
 }
 
 ImportOptions import_options(const SceneArguments& arguments) {

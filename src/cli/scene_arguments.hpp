@@ -4,6 +4,7 @@
 #include "scene/import.hpp"
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -15,7 +16,9 @@ struct SceneArguments {
   std::string folder, contact, pressure, membrane = "tension_field";
 };
 
-void add_scene_options(CLI::App& command, SceneArguments& arguments);
+// pressures: the models that the command can write.
+void add_scene_options(CLI::App& command, SceneArguments& arguments,
+                       const std::vector<std::string>& pressures);
 ImportOptions import_options(const SceneArguments& arguments);
 
 // Says where the scene is and how to solve it.

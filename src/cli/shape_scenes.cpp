@@ -25,6 +25,7 @@ struct Shape {
 constexpr double kAirbagSide = 1200.0 / 2.8284271247461903;  // of a quarter of one sheet, diagonal 1.2 m
 constexpr double kTentSide = 10000;                          // [mm]
 constexpr int kChainLinks = 40;
+constexpr int kTriangles = 2500;
 
 std::vector<Shape> shapes() {
   return {
@@ -140,6 +141,9 @@ void check_options(const Shape& shape, const ShapeOptions& options) {
         "--pressure field: only a valve has a commissure line; choose follower, volume or frozen");
   if (has_contact(options) && shape.mesh == nullptr)
     defects.push_back("--contact " + options.contact + ": the " + shape.name + " has no facets");
+  if (options.triangles && shape.mesh == nullptr)
+    defects.push_back("--triangles: the " + shape.name + " has none; it is a chain of " +
+                      std::to_string(kChainLinks) + " links");
   if (!defects.empty()) throw InputError(defects);
 }
 
@@ -164,7 +168,7 @@ void write_shape_scene(const std::string& name, const ShapeOptions& options,
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
   if (shape->mesh != nullptr) {
-    write_mesh(folder / "mesh.obj", shape->mesh(options.triangles));
+    write_mesh(folder / "mesh.obj", shape->mesh(options.triangles.value_or(kTriangles)));
   } else {
     Valve valve;
     valve.name = name;

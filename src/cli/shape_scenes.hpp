@@ -2,15 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace coapt::cli {
 
 struct ShapeOptions {
-  int triangles = 2500;  // wanted; the catenary has none and always 40 links
-  std::string contact;   // none, barrier or facet; empty: none
-  std::string pressure;  // follower, volume or frozen; empty: what suits the shape
+  std::optional<int> triangles = {};  // wanted; empty: 2500. The catenary has none and always 40 links
+  std::string contact = "";           // none, barrier or facet; empty: none
+  std::string pressure = "";          // follower, volume or frozen; empty: what suits the shape
 };
 
 // "disc", "square", "sphere", "tent", "catenary", "airbag", "strip".

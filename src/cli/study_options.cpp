@@ -2,6 +2,7 @@
 
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
+#include "mesh/formats/text.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -24,15 +25,21 @@ std::filesystem::path StudyArguments::prepared_folder(const Scene& read) const {
   return path;
 }
 
+std::string positive_defect(const std::string& text) {
+  double number = 0;
+  if (const auto reason = formats::read_number(text, number)) return *reason;
+  return number > 0 ? "" : "expected a number above 0, read " + text;
+}
+
 void add_study_arguments(CLI::App& command, StudyArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
   command.add_option("-o,--output", arguments.folder,
                      "Folder of the files (default: the scene's result folder)");
   command.add_option("--solver", arguments.solver, "Solver (default: the scene's)");
   command.add_option("--tolerance", arguments.tolerance, "On the residual (default: the scene's)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_defect);
   command.add_option("--max-seconds", arguments.max_seconds, "Of each solve (default: the scene's)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_defect);
 }
 
 }  // namespace coapt::cli

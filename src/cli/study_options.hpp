@@ -20,6 +20,9 @@ struct StudyArguments {
   std::filesystem::path prepared_folder(const Scene& read) const;
 };
 
+// For a number given as an option: empty, or what is wrong with it. CLI11's own checks let NaN pass.
+std::string positive_defect(const std::string& text);
+
 // SCENE, -o, --solver, --tolerance, --max-seconds.
 void add_study_arguments(CLI::App& command, StudyArguments& arguments);
 

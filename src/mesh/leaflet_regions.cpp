@@ -157,6 +157,11 @@ LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>&
                      std::to_string(leaflets.size()) + " leaflets with " + std::to_string(zones) +
                      " zones each; take a multiple of " + std::to_string(zones) + ", at least " +
                      std::to_string(zones * static_cast<int>(leaflets.size())));
+  for (const int v : annulus)
+    if (v < 0 || v >= mesh.vertex_count())
+      throw InputError("the annulus names node " + std::to_string(v) + ", which is none of the " +
+                       std::to_string(mesh.vertex_count()) +
+                       " vertices of the leaflets; it must be a loop of their rim");
   std::vector<double> areas(leaflets.size(), 0);
   for (size_t k = 0; k < leaflets.size(); ++k)
     for (const int t : leaflets[k]) areas[k] += area_vector(mesh.vertices, mesh.triangles.col(t)).norm();
@@ -167,6 +172,10 @@ LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>&
   double farthest = 0;
   for (const double length : from_annulus)
     if (std::isfinite(length)) farthest = std::max(farthest, length);
+  if (farthest == 0)
+    throw InputError(
+        "the annulus holds every vertex of the leaflets that hang on it, so that nothing lies between it and "
+        "a free edge; name the loop of their rim alone");
   const Around around(annulus, mesh.vertices);
   LeafletRegions result;
   result.of_triangle.resize(static_cast<size_t>(mesh.triangle_count()));

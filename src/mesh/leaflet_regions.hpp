@@ -17,8 +17,8 @@ struct LeafletRegions {
 // over the sum of that and the distance from the free edge, and each zone into sectors of equal area, by the
 // angle around the annulus. wanted / zones sectors are shared out by leaflet area, one at least for each.
 // There are fewer regions than wanted where one would hold no triangle. annulus: an ordered loop of vertices.
-// Throws InputError where there are no zones, `wanted` is no multiple of them, or gives too few for the
-// leaflets.
+// Throws InputError where there are no zones, `wanted` is no multiple of them or gives too few for the
+// leaflets, and where the annulus names nodes that are no vertices, or leaves none beside it.
 LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>& annulus, int wanted,
                                int zones);
 

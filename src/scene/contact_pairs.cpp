@@ -1,6 +1,7 @@
 #include "scene/contact_pairs.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/whole_file.hpp"
 #include "scene/detail/read_json.hpp"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ void write_facet_pairs(const std::string& path, const FacetPairs& pairs) {
       "# pairs of facets that may pass through each other, numbered from 0, obstacles after the mesh\n";
   for (const auto& [s, t] : pairs)
     text.append(std::to_string(s)).append(",").append(std::to_string(t)).append("\n");
-  write_text(path, text);
+  formats::write_whole(path, text);
 }
 
 std::string listed(const FacetPairs& pairs) {

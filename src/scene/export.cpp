@@ -1,6 +1,8 @@
 #include "scene/export.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/febio_export.hpp"
@@ -38,7 +40,7 @@ Markup markup_of(const Scene& scene, const std::string& what) {
 
 std::vector<std::string> export_mesh(const std::filesystem::path& from, const std::filesystem::path& out) {
   MeshFile file;
-  if (from.extension() == ".json") {
+  if (formats::lower_extension(from) == ".json") {
     const Groundwork ground = lay_groundwork(load_scene(from));
     if (!ground.defects.empty()) throw InputError(ground.defects);
     file.mesh = ground.model.mesh;
@@ -63,9 +65,9 @@ std::vector<std::string> export_file(const std::filesystem::path& from, const st
     write_markups(out, {markup_of(load_scene(from), what)});
     return {};
   }
-  if (out.extension() != ".feb") return export_mesh(from, out);
+  if (formats::lower_extension(out) != ".feb") return export_mesh(from, out);
   const FebioText text = febio_text(load_scene(from));
-  write_text(out, text.xml);
+  formats::write_whole(out, text.xml);
   return text.warnings;
 }
 

@@ -1,6 +1,8 @@
 #include "scene/import.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/valve_import.hpp"
 #include "scene/detail/law_terms.hpp"
@@ -209,7 +211,7 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
     for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, false, law);
     return std::move(model.valve);
   }
-  if (file.extension() != ".json") return valve_of_mesh(file, warnings);
+  if (formats::lower_extension(file) != ".json") return valve_of_mesh(file, warnings);
   ValveFile read = read_valve(file);
   append(warnings, read.warnings);
   for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
@@ -226,7 +228,7 @@ void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
   std::filesystem::create_directories(out_dir, error);
   if (error) throw InputError(out_dir.string() + ": cannot be made: " + error.message());
   write_valve(out_dir / "valve.json", valve);
-  write_text(out_dir / "scene.json", scene_text(valve, options));
+  formats::write_whole(out_dir / "scene.json", scene_text(valve, options));
 }
 
 std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,

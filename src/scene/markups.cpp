@@ -1,6 +1,8 @@
 #include "scene/markups.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/whole_file.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/units.hpp"
 
@@ -111,7 +113,7 @@ class MarkupReader {
 }  // namespace
 
 bool is_markup_file(const std::filesystem::path& path) {
-  return path.filename().string().ends_with(".mrk.json");
+  return formats::lower_extension(path) == ".json" && formats::lower_extension(path.stem()) == ".mrk";
 }
 
 std::vector<Markup> read_markups(const std::filesystem::path& path) { return MarkupReader(path).read(); }
@@ -135,7 +137,7 @@ void write_markups(const std::filesystem::path& path, const std::vector<Markup>&
                     {"controlPoints", points}});
   }
   const OrderedJson json{{"@schema", kSchema}, {"markups", list}};
-  write_text(path, json.dump(1) + "\n");
+  formats::write_whole(path, json.dump(1) + "\n");
 }
 
 Points annulus_curve(const std::filesystem::path& path) {

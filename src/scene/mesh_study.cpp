@@ -72,10 +72,11 @@ MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels,
     throw InputError(scene.file.string() + ": mesh: missing; there is nothing to refine");
   MeshStudy study{
       scene.file.filename().string(), setup.solver, setup.stop.tolerance, grounds.front().model.origin, {}};
-  for (int k = 0; k <= levels; ++k) {
-    if (k > 0) grounds.push_back(refined(grounds.back()));
-    MeshLevel level = solved_level(scene, grounds.back(), setup, options.judge);
-    if (k > 0) compare(level, study.levels.back());
+  for (int k = 0; k < levels; ++k) grounds.push_back(refined(grounds.back()));
+  build(scene, *std::next(grounds.begin()));  // what a finer mesh cannot have is said before the first solve
+  for (const Groundwork& ground : grounds) {
+    MeshLevel level = solved_level(scene, ground, setup, options.judge);
+    if (!study.levels.empty()) compare(level, study.levels.back());
     study.levels.push_back(std::move(level));
     if (report) report(study.levels.back());
     if (study.levels.back().status == Status::Cancelled) break;

@@ -1,6 +1,7 @@
 #include "scene/prescribed_motion.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/lower_extension.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/read_points.hpp"
 #include "scene/node_selection.hpp"
@@ -30,7 +31,7 @@ Points station(const MoveTarget& target, const BoundaryEntry& entry, const std::
   Points read;
   if (target.kind == MoveTarget::Kind::Named) {
     read = named_points(target.text, points, entry.where);
-  } else if (std::filesystem::path(target.text).extension() == ".csv") {
+  } else if (formats::lower_extension(target.text) == ".csv") {
     read = entry.scale * read_csv(target.text);
   } else {
     read = entry.scale * read_mesh(target.text).mesh.vertices;

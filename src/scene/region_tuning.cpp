@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "scene/build.hpp"
+#include "scene/fields.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/solve_scene.hpp"
 #include "scene/tuned_scene.hpp"
@@ -76,15 +77,21 @@ class Tuning {
   // Change of the excess with each logarithm; zero where a solve did not converge.
   Eigen::MatrixXd derivative(const Vector& logarithms, const Solved& at) {
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(at.excess.size(), logarithms.size());
+    moved_ = 0;
     for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
       Vector there = logarithms;
       there[k] += kDifference;
       const Solved moved = solve(there, &at.x);
       if (is_cancelled) break;
-      if (moved.has_converged) J.col(k) = (moved.excess - at.excess) / kDifference;
+      if (!moved.has_converged) continue;
+      J.col(k) = (moved.excess - at.excess) / kDifference;
+      ++moved_;
     }
     return J;
   }
+
+  // Whether any solve of the last derivative converged.
+  bool has_moved_solves() const { return moved_ > 0; }
 
   std::optional<double> limit() const { return limit_; }
   int solves = 0, failed = 0;  // all, and those that did not converge
@@ -95,6 +102,7 @@ class Tuning {
   SolveSetup setup_;
   const RegionTuningOptions& options_;
   std::optional<double> limit_;
+  int moved_ = 0;
 };
 
 // The step that lowers the positive part of excess + J step most, damped, within the bounds. What becomes
@@ -149,7 +157,9 @@ std::string search(Tuning& tuning, const RegionTuningOptions& options, Vector& l
     ++rounds;
     const Eigen::MatrixXd J = tuning.derivative(logarithms, best);
     if (tuning.is_cancelled) return "cancelled";
-    if (J.isZero(0)) return "no solve with changed factors converged";
+    if (J.isZero(0))
+      return tuning.has_moved_solves() ? "no factor changes what is too much"
+                                       : "no solve with changed factors converged";
     const double merit = best.merit();
     bool has_moved = false;
     for (; !has_moved && damping < kMostDamping; damping *= has_moved ? 0.1 : 10) {
@@ -180,7 +190,10 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   check(options);
   const SolveSetup setup = solve_setup(scene, solvers, run);
   Groundwork ground = lay_groundwork(scene);
-  build(scene, ground);  // for its defects, in the scene's own words
+  const Model own = build(scene, ground);  // for its defects, in the scene's own words
+  if (options.orifice_limit_mm2 && annulus_of(own) == nullptr)
+    throw InputError("--orifice: " + scene.file.string() +
+                     ": has no node set \"annulus\", so that no orifice is measured; leave it out");
   const TunedScene tuned(scene, std::move(ground), options);
   Tuning tuning(tuned, setup, options);
 

@@ -24,9 +24,10 @@ struct TuningState {
 };
 
 struct TunedFactor {
-  std::string name;   // of the region or of the cable term
-  int triangles = 0;  // 0 for a cable term
-  double factor = 1;  // on the moduli, or on the cross-sections
+  std::string name;      // of the region or of the cable term
+  int triangles = 0;     // 0 for a cable term
+  double factor = 1;     // on the moduli, or on the cross-sections
+  bool is_tuned = true;  // false for a region that no term with a modulus covers; its factor is 1
 };
 
 struct RegionTuningOptions {

@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
+#include "scene/detail/csv_text.hpp"
 #include "scene/result_surfaces.hpp"
 
 #include <nlohmann/json.hpp>
@@ -159,7 +160,7 @@ std::string metrics_csv(const Report& report) {
   out << "metric,value,unit\n";
   const auto write = [&out](const std::string& prefix, const std::vector<MetricRow>& rows) {
     for (const MetricRow& row : rows) {
-      out << prefix << row.name << ',';
+      out << csv_text(prefix + row.name) << ',';
       if (row.value && std::isfinite(*row.value)) out << *row.value;
       out << ',' << row.unit << '\n';
     }

@@ -14,9 +14,13 @@ namespace {
 constexpr const char* kDiameter = "diameter";
 constexpr const char* kAreaScale = "area_scale";  // of which the diameter is the root
 
+bool is_numeric(const KeySpec& key) {
+  return key.kind == KeyKind::Quantity || key.kind == KeyKind::Quantities;
+}
+
 const KeySpec* find_key(const TermSpec& term, const std::string& name) {
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
-    if (key.name == name && key.kind == KeyKind::Quantity) return &key;
+    if (key.name == name && is_numeric(key)) return &key;
   return nullptr;
 }
 
@@ -24,8 +28,7 @@ const KeySpec* find_key(const TermSpec& term, const std::string& name) {
 std::vector<std::string> numbers_of(const TermSpec& term) {
   std::vector<std::string> names;
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
-    if (key.kind == KeyKind::Quantity && term.parameters.has(key.name) && key.name != kAreaScale)
-      names.push_back(key.name);
+    if (is_numeric(key) && term.parameters.has(key.name) && key.name != kAreaScale) names.push_back(key.name);
   if (is_elastic_cable(term)) names.emplace_back(kDiameter);
   return names;
 }
@@ -34,6 +37,8 @@ SceneParameter parameter_of(const Scene& scene, size_t index, const std::string&
   const TermSpec& term = scene.terms[index];
   if (key == kDiameter && is_elastic_cable(term))
     return {term.name + "." + key, index, kAreaScale, 2, 1, kDimensionless};
+  if (find_key(term, key)->kind == KeyKind::Quantities)
+    return {term.name + "." + key, index, key, 1, 1, kDimensionless};
   return {term.name + "." + key, index, key, 1, term.parameters.number(key), find_key(term, key)->dimension};
 }
 
@@ -41,6 +46,15 @@ std::string text_of(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+// The rules between the keys of a term that was changed.
+void check_term(const TermSpec& term, const SceneParameter& parameter, double factor) {
+  const TermType& type = *find_term_type(term.type);
+  if (!type.check) return;
+  if (const std::vector<std::string> defects = type.check(term.parameters); !defects.empty())
+    throw InputError(term.parameters.where() + ": with " + parameter.name + " times " + text_of(factor) +
+                     ": " + defects.front());
 }
 
 }  // namespace
@@ -90,18 +104,22 @@ std::vector<SceneParameter> elastic_parameters(const Scene& scene, const Objecti
 
 Scene scaled(Scene scene, const SceneParameter& parameter, double factor) {
   TermSpec& term = scene.terms.at(parameter.term);
+  const KeySpec& key = *find_key(term, parameter.key);
+  if (key.kind == KeyKind::Quantities) {
+    std::vector<double> numbers = term.parameters.numbers(key.name);
+    for (double& number : numbers) number *= factor;
+    term.parameters.set(key.name, std::move(numbers));
+    check_term(term, parameter, factor);
+    return scene;
+  }
   const double change = std::pow(factor, parameter.power),
                value = term.parameters.number(parameter.key) * change;
-  const KeySpec& key = *find_key(term, parameter.key);
   if (!std::isfinite(value) || value < key.min || value > key.max || (key.excludes_min && value == key.min))
     throw InputError(term.parameters.where(parameter.key) + ": " + text_of(factor) + " times " +
                      parameter.name + " is beyond the limits of this key (" + text_of(key.min) + " to " +
                      text_of(key.max) + "); perturb it by less, or leave it out");
   term.parameters.scale(parameter.key, change);
-  if (const TermType& type = *find_term_type(term.type); type.check)
-    if (const std::vector<std::string> defects = type.check(term.parameters); !defects.empty())
-      throw InputError(term.parameters.where() + ": with " + parameter.name + " times " + text_of(factor) +
-                       ": " + defects.front());
+  check_term(term, parameter, factor);
   return scene;
 }
 

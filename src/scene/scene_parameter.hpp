@@ -10,13 +10,14 @@
 
 namespace coapt {
 
-// A number of a term. `TERM.diameter`, of a cable, stands for its cross-sections, which go with the square.
+// A number of a term, or a list of numbers that are scaled together, such as the moduli of an Ogden cable.
+// `TERM.diameter`, of a cable, stands for its cross-sections, which go with the square.
 struct SceneParameter {
   std::string name;  // TERM.KEY
   size_t term = 0;   // index among the scene's terms
   std::string key;   // that is scaled
   double power = 1;  // of the factor, by which the key is scaled
-  double value = 0;  // before any change, in internal units; 1 for a diameter, whose value differs by chord
+  double value = 0;  // before any change, in internal units; 1 for a diameter or a list, which have several
   Dimension dimension = kDimensionless;
 };
 
@@ -27,8 +28,8 @@ bool is_elastic_cable(const TermSpec& term);
 // that is no number, and a number that is not given, or zero: a relative change means nothing there.
 SceneParameter find_parameter(const Scene& scene, const std::string& name);
 
-// Every number that is not zero of every term that is an internal energy (no load, no contact), and the
-// diameters of elastic cables. objective: built from the scene.
+// Every number that is not zero, and every list of numbers, of every term that is an internal energy (no
+// load, no contact), and the diameters of elastic cables. objective: built from the scene.
 std::vector<SceneParameter> elastic_parameters(const Scene& scene, const Objective& objective);
 
 // The scene with the parameter times `factor`. Throws InputError where that is beyond the limits of the key.

@@ -12,35 +12,46 @@
 namespace coapt {
 namespace {
 
-// The parameters, with the scenes that differ in them. All defects in one pass.
+// The parameters, with the scenes that differ in them.
 struct Variation {
   SceneParameter parameter;
   Scene smaller, larger;
 };
 
-std::vector<Variation> variations(const Scene& scene, const Objective& objective,
-                                  const SensitivityOptions& options) {
+// Both scenes are built once, for the defects that show only there. Throws InputError.
+Variation variation(const Scene& scene, const Groundwork& ground, const SceneParameter& parameter,
+                    double perturbation) {
+  Variation varied{parameter, scaled(scene, parameter, 1 - perturbation),
+                   scaled(scene, parameter, 1 + perturbation)};
+  build(varied.smaller, ground);
+  build(varied.larger, ground);
+  return varied;
+}
+
+// All defects in one pass. Parameters that nobody named and that cannot be varied go to `left_out`.
+std::vector<Variation> variations(const Scene& scene, const Groundwork& ground, const Objective& objective,
+                                  const SensitivityOptions& options, std::vector<std::string>& left_out) {
+  const bool is_share = options.perturbation > 0 && options.perturbation < 1;
   std::vector<Variation> all;
   std::vector<std::string> defects;
-  const auto add = [&](const auto& find) {
+  if (!is_share) defects.emplace_back("--perturb: must be a share above 0 and below 1, such as 5%");
+  const auto add = [&](const auto& find, std::vector<std::string>& reasons) {
     try {
       const SceneParameter parameter = find();
-      all.push_back({parameter, scaled(scene, parameter, 1 - options.perturbation),
-                     scaled(scene, parameter, 1 + options.perturbation)});
+      if (is_share) all.push_back(variation(scene, ground, parameter, options.perturbation));
     } catch (const InputError& error) {
-      defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+      reasons.insert(reasons.end(), error.defects().begin(), error.defects().end());
     }
   };
   if (options.parameters.empty())
     for (const SceneParameter& parameter : elastic_parameters(scene, objective))
-      add([&] { return parameter; });
-  for (const std::string& name : options.parameters) add([&] { return find_parameter(scene, name); });
-  if (!(options.perturbation > 0 && options.perturbation < 1))
-    defects.insert(defects.begin(), "--perturb: must be a share above 0 and below 1, such as 5%");
+      add([&] { return parameter; }, left_out);
+  for (const std::string& name : options.parameters)
+    add([&] { return find_parameter(scene, name); }, defects);
   if (!defects.empty()) throw InputError(defects);
-  if (all.empty())
-    throw InputError(scene.file.string() + ": terms: none is elastic, there is nothing to vary");
-  return all;
+  if (!all.empty()) return all;
+  if (!left_out.empty()) throw InputError(left_out);
+  throw InputError(scene.file.string() + ": terms: none is elastic, there is nothing to vary");
 }
 
 class Study {
@@ -86,7 +97,7 @@ void judge(ParameterSensitivity& found, double perturbation) {
 }  // namespace
 
 bool SensitivityStudy::has_converged() const {
-  return base.status == Status::Converged && !parameters.empty() &&
+  return !is_cancelled && base.status == Status::Converged && !parameters.empty() &&
          std::all_of(parameters.begin(), parameters.end(), [](const ParameterSensitivity& p) {
            return p.smaller.status == Status::Converged && p.larger.status == Status::Converged;
          });
@@ -100,18 +111,16 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
   const Model model = build(scene, ground);
   if (model.mesh.triangle_count() == 0)
     throw InputError(scene.file.string() + ": mesh: missing; the study compares surfaces");
-  const std::vector<Variation> varied = variations(scene, *model.objective, options);
-
-  SensitivityStudy study{scene.file.filename().string(),
-                         setup.solver,
-                         setup.stop.tolerance,
-                         options.perturbation,
-                         options.starts_anew,
-                         {},
-                         {},
-                         0};
+  SensitivityStudy study;
+  const std::vector<Variation> varied = variations(scene, ground, *model.objective, options, study.left_out);
+  study.scene_file = scene.file.filename().string();
+  study.solver = setup.solver;
+  study.tolerance = setup.stop.tolerance;
+  study.perturbation = options.perturbation;
+  study.starts_anew = options.starts_anew;
   Study solves(ground, setup, options.starts_anew);
   study.base = solves.solve(scene, 1);
+  study.is_cancelled = study.base.status == Status::Cancelled;
   if (study.base.status == Status::Converged) {
     for (const Variation& variation : varied) {
       ParameterSensitivity found;
@@ -120,9 +129,11 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
       if (variation.parameter.dimension != kDimensionless)
         found.unit = internal_unit(variation.parameter.dimension);
       found.smaller = solves.solve(variation.smaller, 1 - options.perturbation);
-      if (found.smaller.status == Status::Cancelled) break;
-      found.larger = solves.solve(variation.larger, 1 + options.perturbation);
-      if (found.larger.status == Status::Cancelled) break;
+      if (found.smaller.status != Status::Cancelled)
+        found.larger = solves.solve(variation.larger, 1 + options.perturbation);
+      study.is_cancelled =
+          found.smaller.status == Status::Cancelled || found.larger.status == Status::Cancelled;
+      if (study.is_cancelled) break;  // half a parameter says nothing
       judge(found, options.perturbation);
       study.parameters.push_back(found);
       if (options.report) options.report(found);

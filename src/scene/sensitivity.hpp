@@ -28,7 +28,7 @@ struct SensitivityRun {
 
 struct ParameterSensitivity {
   std::string name;  // TERM.KEY
-  double value = 0;  // before any change, in `unit`; 1 for a diameter
+  double value = 0;  // before any change, in `unit`; 1 for a diameter or a list of numbers
   std::string unit;  // internal; empty for pure numbers
   SensitivityRun smaller, larger;
 
@@ -53,14 +53,16 @@ struct SensitivityStudy {
   bool starts_anew = false;
   SensitivityRun base;
   std::vector<ParameterSensitivity> parameters;  // fewer than wanted where the study was cancelled
-  double wall_s = 0;                             // of everything
+  std::vector<std::string> left_out;  // parameters nobody named that cannot be varied so: why, by sentence
+  bool is_cancelled = false;
+  double wall_s = 0;  // of everything
 
-  bool has_converged() const;  // the first solve and all others
+  bool has_converged() const;  // the first solve and all others, and none was cancelled
 };
 
 // options.run: as for run(); its time limit is that of each solve. Throws InputError for bad input, all
 // defects of the parameters in one pass, before the first solve. A first solve that does not converge ends
-// the study.
+// the study. Where no parameters are named, those that the perturbation takes beyond a limit are left out.
 SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solvers,
                                    const SensitivityOptions& options, const RunOptions& run);
 

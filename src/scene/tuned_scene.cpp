@@ -25,6 +25,14 @@ std::vector<std::string> moduli_of(const TermSpec& term) {
   return keys;
 }
 
+// Whether a factor on its moduli changes the term: not where it is held by its prestress alone.
+bool is_tunable(const TermSpec& term) {
+  const std::vector<std::string> keys = moduli_of(term);
+  const bool has_values = term.parameters.has("triangle_values") || term.parameters.has("vertex_values");
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const std::string& key) { return has_values || term.parameters.number(key) != 0; });
+}
+
 void set_regions(TriangleMesh& mesh, const std::map<std::string, std::vector<int>>& sets,
                  const RegionTuningOptions& options, const Scene& scene) {
   if (options.regions == 0) {
@@ -43,7 +51,7 @@ void set_regions(TriangleMesh& mesh, const std::map<std::string, std::vector<int
     mesh.regions = std::move(regions.of_triangle);
     mesh.region_names = std::move(regions.names);
   } catch (const InputError& error) {
-    throw InputError("--regions: " + error.defects().front());
+    throw InputError(scene.file.string() + ": --regions: " + error.defects().front());
   }
 }
 
@@ -61,12 +69,11 @@ TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOpt
   const TriangleMesh own_mesh = ground.model.mesh;
   TriangleMesh& mesh = ground.model.mesh;
   set_regions(mesh, ground.model.sets, options, scene);
-  region_count_ = mesh.region_names.size();
   split_.terms.clear();
   bool has_chords = false;
   for (const TermSpec& term : scene.terms) {
     has_chords = has_chords || is_elastic_cable(term);
-    const bool is_membrane = !moduli_of(term).empty();
+    const bool is_membrane = is_tunable(term);
     if (!is_membrane && !term.parameters.has("region")) {
       if (options.tunes_chords && is_elastic_cable(term)) cables_.push_back(split_.terms.size());
       split_.terms.push_back(term);
@@ -85,12 +92,22 @@ TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOpt
     split_.terms.push_back(term);
     split_.terms.back().parameters.set("region", names);
   }
+  number_tuned_regions();
   std::vector<std::string> defects;
   if (!has_chords)
     defects.push_back(scene.file.string() + ": terms: no elastic cable; there are no chords to spare");
   if (parts_.empty())
     defects.push_back(scene.file.string() + ": terms: no membrane term gives a modulus that could be tuned");
   if (!defects.empty()) throw InputError(defects);
+}
+
+// Only regions that a tuned term covers have a factor, in the order of the mesh.
+void TunedScene::number_tuned_regions() {
+  factor_of_region_.assign(ground.model.mesh.region_names.size(), std::nullopt);
+  for (const Part& part : parts_) factor_of_region_[part.region] = 0;
+  for (std::optional<size_t>& factor : factor_of_region_)
+    if (factor) factor = region_count_++;
+  for (Part& part : parts_) part.region = *factor_of_region_[part.region];
 }
 
 Scene TunedScene::scene(const Vector& factors) const {
@@ -107,11 +124,13 @@ Scene TunedScene::scene(const Vector& factors) const {
 void TunedScene::name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                               std::vector<TunedFactor>& chords) const {
   const TriangleMesh& mesh = ground.model.mesh;
-  for (size_t r = 0; r < region_count_; ++r)
+  for (size_t r = 0; r < mesh.region_names.size(); ++r) {
+    const std::optional<size_t> factor = factor_of_region_[r];
     regions.push_back(
         {mesh.region_names[r],
          static_cast<int>(std::count(mesh.regions.begin(), mesh.regions.end(), static_cast<int>(r))),
-         factors[static_cast<Eigen::Index>(r)]});
+         factor ? factors[static_cast<Eigen::Index>(*factor)] : 1, factor.has_value()});
+  }
   for (size_t k = 0; k < cables_.size(); ++k)
     chords.push_back(
         {split_.terms[cables_[k]].name, 0, factors[static_cast<Eigen::Index>(region_count_ + k)]});

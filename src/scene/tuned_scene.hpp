@@ -22,12 +22,15 @@ class TunedScene {
 
  private:
   struct Part {
-    size_t term, region;
+    size_t term, region;  // the latter among the tuned ones
   };
-  Scene split_;                 // a membrane term for each of its regions
-  std::vector<Part> parts_;     // of the split membrane terms
-  std::vector<size_t> cables_;  // terms
-  size_t region_count_ = 0;
+  void number_tuned_regions();
+
+  Scene split_;                                          // a membrane term for each of its regions
+  std::vector<Part> parts_;                              // of the split membrane terms
+  std::vector<size_t> cables_;                           // terms
+  std::vector<std::optional<size_t>> factor_of_region_;  // of the mesh; none where no term can be tuned
+  size_t region_count_ = 0;                              // tuned ones
 };
 
 }  // namespace coapt

@@ -1,3 +1,4 @@
+#include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/valve_json.hpp"
@@ -112,7 +113,7 @@ void write_valve(const std::filesystem::path& path, const Valve& valve) {
     for (const Chord& chord : chords.chords) list.push_back(chord_of(chord));
     json["chords"] = list;
   }
-  write_text(path, laid_out(json));
+  formats::write_whole(path, laid_out(json));
 }
 
 }  // namespace coapt

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -107,6 +108,57 @@ class StudyTest(unittest.TestCase):
         self.assertIn("iteration_limit", {row["status"] for row in rows})
         self.assertFalse(found["converged"])
 
+    def test_an_interrupted_study_says_so(self):
+        scene = self.valve(2500)
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            process = subprocess.Popen([COAPT, "sensitivity", str(scene), "-o", str(self.out), "--from-start"],
+                                       stdout=subprocess.PIPE, text=True,
+                                       preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+            self.addCleanup(process.kill)
+            while "leaflets.young" not in process.stdout.readline():  # the first of eight parameters
+                self.assertIsNone(process.poll())
+            process.send_signal(number)
+            text, _ = process.communicate(timeout=100)
+            self.assertEqual(process.returncode, 1, text)
+            self.assertIn("cancelled", text)
+            found = json.loads((self.out / "sensitivity.json").read_text())
+            self.assertEqual((found["converged"], found["cancelled"]), (False, True))
+            self.assertLess(len(found["parameters"]), 8)
+            self.assertEqual(len((self.out / "sensitivity.csv").read_text().splitlines()),
+                             2 + 2 * len(found["parameters"]))
+
+    def test_leaves_out_what_may_not_be_changed_so_far(self):
+        scene = self.valve()
+        scene.write_text(scene.read_text().replace('"poisson": 0.45', '"poisson": 0.48'))
+        text, found, _ = self.study("sensitivity", scene)
+        self.assertTrue(found["converged"], text)
+        self.assertNotIn("leaflets.poisson", [p["name"] for p in found["parameters"]])
+        self.assertIn("leaflets.young", [p["name"] for p in found["parameters"]])
+        self.assertEqual(len(found["left_out"]), 1)
+        self.assertIn("0.4999", found["left_out"][0])
+        self.assertIn("left out: ", text)
+        # Who names it is told.
+        self.assert_bad_input(coapt("sensitivity", scene, "--parameters", "leaflets.poisson"), "0.4999")
+
+    def test_lists_of_numbers_are_parameters(self):
+        scene = self.valve()
+        text = scene.read_text()
+        scene.write_text(text.replace('"type": "cable"', '"type": "cable_ogden", "mu": ["3 MPa", "1 MPa"], "alpha": [8, 4]')
+                         .replace(', "young": "40 MPa"', ""))
+        self.assertNotEqual(scene.read_text(), text)
+        moved = self.movements(scene, "--perturb", "2%")
+        self.assertLessEqual({"chords.mu", "chords.alpha", "chords.length_scale"}, set(moved))
+        # All moduli together are as good as the cross-sections.
+        self.assertAlmostEqual(moved["chords.diameter"] / moved["chords.mu"], 2, delta=0.1)
+        self.assertGreater(moved["chords.alpha"], 0.01)
+
+    def test_names_with_commas_stay_in_their_columns(self):
+        scene = self.generate("disc", "--triangles", 100)
+        scene.write_text(scene.read_text().replace('"type": "cst_stvk",', '"type": "cst_stvk", "name": "a,\\"b",'))
+        _, _, rows = self.study("sensitivity", scene, "--parameters", 'a,"b.young')
+        self.assertEqual([row["parameter"] for row in rows], ["", 'a,"b.young', 'a,"b.young'])
+        self.assertEqual({row["status"] for row in rows}, {"converged"})
+
     def test_names_every_bad_parameter(self):
         run = coapt("sensitivity", self.valve(), "--parameters", "young", "leaflet.young", "leaflets.yuong",
                     "leaflets.prestress", "--perturb", "5")
@@ -136,6 +188,14 @@ class StudyTest(unittest.TestCase):
         self.assertAlmostEqual(fine["max_chord_force_n"] / coarse["max_chord_force_n"], 1, delta=0.2)
         self.assertAlmostEqual(fine["orifice_area_mm2"], coarse["orifice_area_mm2"], delta=5)
         self.assertIn("triangles", text)
+
+    def test_says_before_the_first_solve_what_finer_meshes_cannot_have(self):
+        scene = self.generate("mitral", "--triangles", 300, "--contact", "barrier")
+        (self.folder / "pairs.csv").write_text("0,1\n")
+        scene.write_text(scene.read_text().replace('"contact_barrier"', '"contact_barrier", "exclude": "pairs.csv"'))
+        run = coapt("mesh-study", scene, "-o", self.out)
+        self.assert_bad_input(run, "exclude", "scene's own mesh")
+        self.assertEqual(run.stdout, "")
 
     def test_refuses_levels_and_scenes_without_a_mesh(self):
         self.assertEqual(coapt("mesh-study", self.valve(), "--levels", 0).returncode, 2)
@@ -177,6 +237,72 @@ class StudyTest(unittest.TestCase):
         _, found, rows = self.study("tune-regions", self.valve(), "--yield-strain", 1)
         self.assertEqual((found["message"], found["solves"]), ("nothing to tune", 1))
         self.assertEqual({row["factor"] for row in rows}, {"1"})
+
+    def sheet(self, membranes, chord_to):
+        """A clamped sheet of two regions, a chord from a fixed point below, twice as long as at rest."""
+        lines = [f"v {i} {j} 0" for j in range(5) for i in range(5)]
+        for name, columns in [("left,one", (1, 2)), ("right", (3, 4))]:
+            lines.append(f"g {name}")
+            for k in (i + 5 * j for j in range(4) for i in columns):
+                lines += [f"f {k} {k + 1} {k + 6}", f"f {k} {k + 6} {k + 5}"]
+        (self.folder / "mesh.obj").write_text("\n".join(lines) + "\n")
+        (self.folder / "net.json").write_text(json.dumps({
+            "units": "mm", "papillary": [[2, 2, -2], [4, 2, -2]], "junctions": [],
+            "chords": [{"from": {"papillary": 0}, "to": chord_to, "rest_length": 1, "area": 0.1}]}))
+        scene = {"mesh": {"file": "mesh.obj"},
+                 "boundary": [{"nodes": "boundary", "fix": True}, {"nodes": "papillary", "fix": True}],
+                 "terms": [*membranes, {"type": "cable", "name": "chord", "network": "net.json", "young": "1 MPa"},
+                           {"type": "load_pressure", "value": "1 kPa"}]}
+        path = self.folder / "scene.json"
+        path.write_text(json.dumps(scene))
+        return path
+
+    FILM = {"type": "surface_tension", "name": "film", "tension": "1 N/m"}
+    TISSUE = {"type": "cst_stvk", "name": "tissue", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"}
+
+    def test_marks_regions_that_have_no_modulus(self):
+        scene = self.sheet([{**self.FILM, "region": "left,one"}, {**self.TISSUE, "region": "right"}], {"leaflet": 12})
+        text, found, rows = self.study("tune-regions", scene, "--yield-strain", 0.1, "--regions", "mesh", code=1)
+        self.assertEqual([(r["name"], r["tuned"]) for r in found["regions"]], [("left,one", False), ("right", True)])
+        self.assertEqual(found["regions"][0]["factor"], 1)
+        self.assertIn("not tuned", text)
+        self.assertEqual([row["name"] for row in rows], ["left,one", "right"])
+        per_triangle = list(csv.DictReader((self.out / "triangle_factors.csv").read_text().splitlines()))
+        self.assertEqual({row["region"] for row in per_triangle}, {"left,one", "right"})
+        self.assert_bad_input(coapt("tune-regions", self.sheet([self.FILM], {"leaflet": 12}), "--yield-strain", 0.1,
+                                    "--regions", "mesh"), "modulus")
+        held_by_prestress = {**self.TISSUE, "young": 0, "prestress": "1 N/m"}
+        self.assert_bad_input(coapt("tune-regions", self.sheet([held_by_prestress], {"leaflet": 12}), "--yield-strain",
+                                    0.1, "--regions", "mesh"), "modulus")
+
+    def test_says_when_no_factor_matters(self):
+        # A chord between two fixed points.
+        scene = self.sheet([self.TISSUE], {"papillary": 1})
+        text, found, _ = self.study("tune-regions", scene, "--yield-strain", 0.1, "--regions", "mesh", code=1)
+        self.assertIn("no factor changes", found["message"])
+        self.assertEqual(found["failed_solves"], 0)
+
+    def test_refuses_an_annulus_that_bounds_nothing(self):
+        scene = self.valve()
+        text = scene.read_text().replace('{ "nodes": "annulus", "move_to": "annulus_closed" }',
+                                         '{ "nodes": "boundary", "fix": true }')
+        vertices = sum(line.startswith("v ") for line in (self.folder / "leaflets.obj").read_text().splitlines())
+        for annulus, piece in [("all", f"node {vertices}"), (list(range(vertices)), "every vertex")]:
+            scene.write_text(text.replace('"mesh":', f'"sets": {{"annulus": {json.dumps(annulus)}}}, "mesh":', 1))
+            run = coapt("tune-regions", scene, "--yield-strain", 0.1, "-o", self.out)
+            self.assert_bad_input(run, "scene.json", "--regions", "annulus", piece)
+
+    def test_refuses_options_without_effect_and_numbers_that_are_none(self):
+        scene = self.valve()
+        strain = ["--yield-strain", 0.1]
+        self.assert_bad_input(coapt("tune-regions", scene, *strain, "--regions", "mesh", "--zones", 2), "--zones")
+        for command, options in [("tune-regions", strain), ("sensitivity", []), ("mesh-study", []), ("solve", [])]:
+            for option in ["--tolerance", "--max-seconds"] + ["--orifice"] * (command == "tune-regions"):
+                for number in ["nan", "inf", "-1", "0"]:
+                    self.assert_bad_input(coapt(command, scene, *options, option, number), option, number)
+        sheet = self.sheet([self.TISSUE], {"leaflet": 12})
+        self.assert_bad_input(coapt("tune-regions", sheet, *strain, "--regions", "mesh", "--orifice", 3), "--orifice",
+                              "annulus")
 
     def test_refuses_scenes_and_options_that_make_no_sense(self):
         scene = self.valve()

@@ -163,5 +163,24 @@ TEST(LeafletRegions, SayWhichNumbersAreOutOfTheQuestion) {
   EXPECT_FALSE(refuses(4, 2, ""));
 }
 
+TEST(LeafletRegions, NeedAnAnnulusOfVerticesThatLeavesSome) {
+  const TriangleMesh mesh = two_leaflets(40, 4);
+  const auto refusal = [&](const std::vector<int>& annulus) -> std::string {
+    try {
+      leaflet_regions(mesh, annulus, 4, 2);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  std::vector<int> beyond = first(40), before = beyond;
+  beyond.push_back(mesh.vertex_count());
+  before.push_back(-1);
+  EXPECT_NE(refusal(beyond).find("node " + std::to_string(mesh.vertex_count())), std::string::npos);
+  EXPECT_NE(refusal(before).find("node -1"), std::string::npos);
+  EXPECT_NE(refusal(first(mesh.vertex_count())).find("every vertex"), std::string::npos);
+  EXPECT_EQ(refusal(first(mesh.vertex_count() - 1)), "");
+}
+
 }  // namespace
 }  // namespace coapt

@@ -1,18 +1,23 @@
 // Files read and written as a whole.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <string_view>
 
 namespace coapt::formats {
 
-// Throws InputError when the path is not a file that can be read.
-std::string read_whole(const std::filesystem::path& path);
+// Throws InputError when the path is not a regular file that can be read, or is greater than `greatest`
+// [bytes].
+std::string read_whole(const std::filesystem::path& path,
+                       std::uintmax_t greatest = std::numeric_limits<std::uintmax_t>::max());
 
 // Writes the parts one after the other to a file beside the target and renames it: the target is whole or
-// untouched. Throws InputError when that fails.
+// untouched, and nothing else is left behind. Throws InputError when that fails, and where the target is
+// there and no regular file (a folder, a device): it would take its place.
 void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
 inline void write_whole(const std::filesystem::path& path, std::string_view bytes) {
   write_whole(path, std::initializer_list<std::string_view>{bytes});

@@ -1,11 +1,10 @@
 #include "scene/detail/read_json.hpp"
 
 #include "core/error.hpp"
+#include "mesh/formats/whole_file.hpp"
 
-#include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <vector>
 
 namespace coapt {
@@ -95,32 +94,8 @@ Json parse_json(const std::string& text, const std::string& file) {
   return json;
 }
 
-std::string read_text(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) throw InputError(path.string() + ": no such file");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kGreatestSize)
-    throw InputError(path.string() + ": " + std::to_string(size >> 20) + " MB; at most 64 MB are read");
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError(path.string() + ": cannot be read");
-  return text.str();
-}
+std::string read_text(const std::filesystem::path& path) { return formats::read_whole(path, kGreatestSize); }
 
 Json read_json(const std::filesystem::path& path) { return parse_json(read_text(path), path.string()); }
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path part = path.string() + ".part";
-  {
-    std::ofstream stream(part, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw InputError(path.string() + ": cannot be written");
-  }
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw InputError(path.string() + ": cannot be written: " + error.message());
-}
 
 }  // namespace coapt

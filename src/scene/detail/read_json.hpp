@@ -20,7 +20,4 @@ std::string read_text(const std::filesystem::path& path);
 // Both together.
 Json read_json(const std::filesystem::path& path);
 
-// Writes the file whole or not at all. Throws InputError.
-void write_text(const std::filesystem::path& path, const std::string& text);
-
 }  // namespace coapt

@@ -2,6 +2,7 @@
 #include "scene/detail/study_files.hpp"
 
 #include "mesh/formats/whole_file.hpp"
+#include "scene/detail/csv_text.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -30,7 +31,7 @@ Json run_json(const SensitivityRun& run) {
 }
 
 void add_row(std::ostream& out, const std::string& name, const SensitivityRun& run) {
-  out << name << ',' << run.factor << ',' << status_name(run.status) << ',' << run.residual << ','
+  out << csv_text(name) << ',' << run.factor << ',' << status_name(run.status) << ',' << run.residual << ','
       << run.iterations << ',' << run.wall_s << ',' << run.to_base.mean << ',' << run.to_base.p95 << ','
       << run.to_base.max << ',';
   if (run.to_reference) out << run.to_reference->mean;
@@ -59,6 +60,8 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                {"perturbation", study.perturbation},
                {"start", study.starts_anew ? "own" : "first solution"},
                {"converged", study.has_converged()},
+               {"cancelled", study.is_cancelled},
+               {"left_out", study.left_out},
                {"wall_s", number(study.wall_s)},
                {"first", run_json(study.base)},
                {"parameters", Json::array()}};
@@ -101,17 +104,19 @@ void write_region_tuning(const std::filesystem::path& folder, const RegionTuning
   std::ostringstream csv = csv_begun("name,triangles,factor"),
                      triangles = csv_begun("triangle,region,factor");
   for (const TunedFactor& region : tuning.regions) {
-    json["regions"].push_back(
-        {{"name", region.name}, {"triangles", region.triangles}, {"factor", region.factor}});
-    csv << region.name << ',' << region.triangles << ',' << region.factor << '\n';
+    json["regions"].push_back({{"name", region.name},
+                               {"triangles", region.triangles},
+                               {"tuned", region.is_tuned},
+                               {"factor", region.factor}});
+    csv << csv_text(region.name) << ',' << region.triangles << ',' << region.factor << '\n';
   }
   for (const TunedFactor& chord : tuning.chords) {
     json["chords"].push_back({{"name", chord.name}, {"area_scale", chord.factor}});
-    csv << chord.name << ",," << chord.factor << '\n';
+    csv << csv_text(chord.name) << ",," << chord.factor << '\n';
   }
   for (size_t t = 0; t < tuning.region_of_triangle.size(); ++t) {
     const TunedFactor& region = tuning.regions[static_cast<size_t>(tuning.region_of_triangle[t])];
-    triangles << t << ',' << region.name << ',' << region.factor << '\n';
+    triangles << t << ',' << csv_text(region.name) << ',' << region.factor << '\n';
   }
   write_study(folder, "region_tuning", json, csv.str());
   formats::write_whole(folder / "triangle_factors.csv", triangles.str());
