@@ -1,6 +1,8 @@
 #include "scene/markups.hpp"
 
 #include "core/error.hpp"
+#include "mesh/valve.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/units.hpp"
 
@@ -46,7 +48,7 @@ class MarkupReader {
     const auto found = json.find("coordinateSystem");
     if (found == json.end() || *found == "LPS" || *found == 1 || *found == "1") return 1;
     if (*found == "RAS" || *found == 0 || *found == "0") return -1;
-    refuse(place + ".coordinateSystem", "read " + found->dump() + "; expected \"LPS\" or \"RAS\"");
+    refuse(place + ".coordinateSystem", "read " + json_text(*found) + "; expected \"LPS\" or \"RAS\"");
     return 1;
   }
 
@@ -135,7 +137,7 @@ void write_markups(const std::filesystem::path& path, const std::vector<Markup>&
                     {"controlPoints", points}});
   }
   const OrderedJson json{{"@schema", kSchema}, {"markups", list}};
-  write_text(path, json.dump(1) + "\n");
+  write_text(path, json_text(json, 1) + "\n");
 }
 
 Points annulus_curve(const std::filesystem::path& path) {

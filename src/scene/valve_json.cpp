@@ -2,6 +2,8 @@
 
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
+#include "mesh/rim_order.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/stated_laws.hpp"
 #include "scene/units.hpp"
@@ -122,7 +124,7 @@ class ValveReader {
       const double number = value[k].get<double>();
       if (number < 0 || number > 2147483647) {
         refuse(key + "[" + std::to_string(k) + "]",
-               "read " + value[k].dump() + "; expected a number counted from 0");
+               "read " + json_text(value[k]) + "; expected a number counted from 0");
         return {};
       }
       numbers.push_back(static_cast<int>(number));
@@ -200,7 +202,7 @@ class ValveReader {
                          : kind == "junction" ? static_cast<double>(chords.junctions.cols())
                                               : 2147483647.0;
     if (index < 0 || index >= count) {
-      refuse(where, kind + " " + found->begin()->dump() + " does not exist; the file has " +
+      refuse(where, kind + " " + json_text(*found->begin()) + " does not exist; the file has " +
                         std::to_string(static_cast<long>(count)) + ", counted from 0");
       return end;
     }
@@ -250,7 +252,7 @@ class ValveReader {
       Material& material = result[name];
       material.type = law["type"].get<std::string>();
       for (const auto& [entry, value] : law.items())
-        if (entry != "type") material.keys.emplace_back(entry, value.dump());
+        if (entry != "type") material.keys.emplace_back(entry, json_text(value));
     }
     return result;
   }

@@ -1,5 +1,6 @@
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/read_json.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/valve_json.hpp"
 
 #include <fstream>
@@ -67,13 +68,13 @@ std::string laid_out(const OrderedJson& json) {
   std::string text = "{";
   bool is_first = true;
   for (const auto& [key, value] : json.items()) {
-    text += (is_first ? "\n  " : ",\n  ") + OrderedJson(key).dump() + ": ";
+    text += (is_first ? "\n  " : ",\n  ") + json_text(OrderedJson(key)) + ": ";
     is_first = false;
     if (!value.is_array() || value.empty() || !value[0].is_structured()) {
-      text += value.dump();
+      text += json_text(value);
       continue;
     }
-    for (size_t k = 0; k < value.size(); ++k) text += (k == 0 ? "[\n    " : ",\n    ") + value[k].dump();
+    for (size_t k = 0; k < value.size(); ++k) text += (k == 0 ? "[\n    " : ",\n    ") + json_text(value[k]);
     text += "\n  ]";
   }
   return text + "\n}\n";

@@ -176,6 +176,24 @@ TEST(Markups, AreExportedFromAScene) {
   const auto scene = folder.path() / "scene.json", out = folder.path() / "points.mrk.json";
   export_file(scene, out);
   EXPECT_EQ(annulus_curve(out), Points(valve.leaflets.vertices(Eigen::all, valve.annulus)));
+  const auto turned = folder.path() / "lps.obj";
+  EXPECT_EQ(export_file(folder.path() / "leaflets.obj", turned, "").size(), 1u) << "says that it was turned";
+  EXPECT_NE(text_of(turned).find("SPACE=LPS"), std::string::npos);
+  EXPECT_EQ(Vec3(read_mesh(turned).mesh.vertices.col(0)), Vec3(-15, 0, 0));
+}
+
+TEST(Markups, NamesThatAreNotUtf8ComeThroughAnImport) {
+  const TemporaryFolder folder;
+  const auto mesh = folder.path() / "R\xf6hre.obj";
+  TriangleMesh surface = tube();
+  surface.regions.assign(static_cast<size_t>(surface.triangle_count()), 0);
+  surface.regions[0] = 1;
+  surface.region_names = {"W\xe4nde", "rest"};
+  write_mesh(mesh, surface);
+  import_valve(mesh, folder.path() / "out", {});
+  const Scene scene = load_scene(folder.path() / "out" / "scene.json");
+  EXPECT_EQ(scene.name, "R\xc3\xb6hre");
+  EXPECT_EQ(build(scene).mesh.region_names[0], "W\xc3\xa4nde");
   EXPECT_EQ(read_markups(out)[0].type, "ClosedCurve");
   export_file(scene, out, "annulus_closed");
   EXPECT_EQ(annulus_curve(out), valve.annulus_closed);

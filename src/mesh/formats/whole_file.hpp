@@ -8,7 +8,8 @@
 
 namespace coapt::formats {
 
-// Throws InputError when the path is not a file that can be read.
+// The bytes of a file without the byte order mark of UTF-8. Throws InputError when the path is not a file
+// that can be read.
 std::string read_whole(const std::filesystem::path& path);
 
 // Writes the parts one after the other to a file beside the target and renames it: the target is whole or
