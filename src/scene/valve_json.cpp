@@ -114,6 +114,9 @@ class ValveReader {
       Points points(3, static_cast<Eigen::Index>(value.size()));
       for (size_t k = 0; k < value.size(); ++k)
         for (int c = 0; c < 3; ++c) points(c, static_cast<int>(k)) = scale_ * value[k][c].get<double>();
+      for (Eigen::Index k = 0; k < points.cols(); ++k)
+        if (!(points.col(k).array().abs() <= kGreatestCoordinate).all())
+          refuse(key + "[" + std::to_string(k) + "]", "a coordinate is greater than 1e9 mm");
       file_.points[key] = points;
     }
   }
@@ -229,6 +232,8 @@ class ValveReader {
     if (json.contains("area")) chord.area = scale_ * scale_ * finite_number(json["area"], place + ".area");
     if (chord.rest_length < 0) refuse(place + ".rest_length", "is negative");
     if (chord.area < 0) refuse(place + ".area", "is negative");
+    if (chord.rest_length > kGreatestCoordinate) refuse(place + ".rest_length", "is greater than 1e9 mm");
+    if (chord.area > kGreatestCoordinate) refuse(place + ".area", "is greater than 1e9 mm^2");
     if (const auto material = json.find("material"); material != json.end() && material->is_string())
       chord.material = material->get<std::string>();
     if (const auto level = json.find("level"); level != json.end() && level->is_number_integer())

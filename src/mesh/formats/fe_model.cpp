@@ -13,6 +13,20 @@ std::string plural(size_t count, const std::string& noun) {
 
 // Vertex of each node, -1 where no triangle has it.
 std::vector<int> number_vertices(const FeModel& model) {
+// Lengths, areas and their squares must stay finite.
+void refuse_far_nodes(const FeModel& model, Defects& defects) {
+  const auto is_near = [](const Vec3& x) { return (x.array().abs() <= kGreatestCoordinate).all(); };
+  for (Eigen::Index k = 0; k < model.nodes.cols(); ++k)
+    if (!is_near(model.nodes.col(k)))
+      defects.add("node", model.labels[static_cast<size_t>(k)],
+                  "a coordinate is not finite or greater than 1e9 mm");
+  for (const auto& [node, hold] : model.holds)
+    if (!is_near(hold.displacement))
+      defects.add("node", model.labels[static_cast<size_t>(node)],
+                  "a displacement is not finite or greater than 1e9 mm");
+  defects.throw_if_any();
+}
+
   std::vector<int> vertex(static_cast<size_t>(model.nodes.cols()), -1);
   for (const FeTriangle& triangle : model.triangles)
     for (const int node : triangle.corners) vertex[static_cast<size_t>(node)] = 0;
@@ -185,6 +199,7 @@ Valve valve_of(FeModel& model) {
     defects.fail("holds no shells, membranes or lines of tension");
   if (model.triangles.empty()) defects.fail("holds no shells or membranes; a valve has leaflets");
   const std::vector<int> vertex = number_vertices(model);
+  refuse_far_nodes(model, defects);
   Valve valve;
   valve.name = model.name;
   valve.thickness = model.thickness;
