@@ -323,6 +323,24 @@ class ValveReader {
     return std::move(read.mesh);
   }
 
+  // Each vertex keeps its closed position.
+  void order_annulus() {
+    Valve& valve = file_.valve;
+    const RimLoop loop = rim_loop(valve.annulus, valve.leaflets.triangles);
+    if (loop.spans_rims()) return refuse("annulus", spans_rims_text(loop.rims));
+    if (!loop.is_reordered) return;
+    if (valve.annulus_closed.cols() > 0) {
+      std::map<int, Vec3> closed;
+      for (size_t k = 0; k < valve.annulus.size(); ++k)
+        closed[valve.annulus[k]] = valve.annulus_closed.col(static_cast<Eigen::Index>(k));
+      for (size_t k = 0; k < loop.vertices.size(); ++k)
+        valve.annulus_closed.col(static_cast<Eigen::Index>(k)) = closed[loop.vertices[k]];
+      file_.points["annulus_closed"] = valve.annulus_closed;
+    }
+    valve.annulus = file_.sets["annulus"] = loop.vertices;
+    file_.warnings.push_back(path_.string() + ": annulus: " + reordered_text());
+  }
+
   void read_meshes() {
     try {
       if (find("leaflets") != nullptr) {
@@ -330,6 +348,7 @@ class ValveReader {
         for (const std::string& defect :
              vertex_defects(file_, path_.string(), file_.valve.leaflets.vertex_count()))
           defects_.push_back(defect);
+        if (defects_.empty()) order_annulus();
       }
       if (find("closed_reference") != nullptr) file_.valve.closed_reference = read_scaled("closed_reference");
     } catch (const InputError& error) {
