@@ -2,6 +2,7 @@
 #include "cli/output_folder.hpp"
 #include "core/error.hpp"
 #include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/utf8.hpp"
 #include "mesh/generators/leaflet_chords.hpp"
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
@@ -47,7 +48,7 @@ Valve read_input(const Arguments& arguments) {
   } else {
     MeshFile file = read_mesh(arguments.input);
     valve.leaflets = std::move(file.mesh);
-    valve.name = fs::path(arguments.input).stem().string();
+    valve.name = formats::as_utf8(fs::path(arguments.input).stem().string());
     warnings = std::move(file.warnings);
   }
   for (const std::string& warning : warnings) std::printf("warning: %s\n", warning.c_str());

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "mesh/formats/formats.hpp"
 #include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/utf8.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/vtp_writer.hpp"
 
@@ -15,6 +16,18 @@ namespace {
 [[noreturn]] void refuse_extension(const std::filesystem::path& path) {
   throw InputError(path.string() + ": the extension '" + formats::lower_extension(path) +
                    "' is not a mesh format; use .obj, .ply, .stl, .off or .vtp");
+}
+
+// The frame that a file states: where the reader has not found it, in the text of its header.
+void settle_space(std::string_view bytes, const std::string& file, MeshFile& read) {
+  constexpr size_t kHeader = 4096;
+  const std::string_view head = bytes.substr(0, kHeader);
+  if (read.space.empty() && head.find("SPACE=RAS") != std::string_view::npos) read.space = "RAS";
+  if (read.space.empty() && head.find("SPACE=LPS") != std::string_view::npos) read.space = "LPS";
+  if (read.space != "RAS") return;
+  read.mesh.vertices.topRows(2) *= -1;
+  read.space = "LPS";
+  read.warnings.push_back(file + ": its coordinates are in RAS; x and y were turned to LPS.");
 }
 
 VtpSurface vtp_surface(const TriangleMesh& mesh, const std::string& space) {
@@ -42,7 +55,11 @@ MeshFile read_mesh(const std::filesystem::path& path) {
                                                            : format == ".vtp" ? formats::read_vtp
                                                                               : nullptr;
   if (!read) refuse_extension(path);
-  return read(formats::read_whole(path), path.string());
+  const std::string bytes = formats::read_whole(path);
+  MeshFile file = read(bytes, path.string());
+  settle_space(bytes, path.string(), file);
+  for (std::string& name : file.mesh.region_names) name = formats::as_utf8(std::move(name));
+  return file;
 }
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, std::optional<MeshCoding> coding,

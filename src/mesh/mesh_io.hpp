@@ -13,14 +13,17 @@ namespace coapt {
 struct MeshFile {
   TriangleMesh mesh;
   std::vector<std::string> warnings;  // what was changed or left out while reading, each naming the file
+  std::string space = {};             // "LPS" where the file states its frame, as 3D Slicer does; else empty
 };
 
 // Reads a surface. Polygons are cut into a fan of triangles from their first corner and counted in a
 // warning. Regions come from OBJ groups (else objects, else materials), STL solids, and the integer face
-// array `region` of PLY and VTP. Coordinates are taken as they are: a file carries no unit.
-// Throws InputError with every defect found (at most 20 are listed), each naming file and line, when the
-// file cannot be read, is not of its format, holds a number that is not finite, an index out of range, a
-// face of less than three corners, or no face at all. Geometry and topology are judged by check_mesh.
+// array `region` of PLY and VTP; names that are not UTF-8 are taken as Latin-1. Coordinates are taken as they
+// are: a file carries no unit. But one that says SPACE=RAS in its header (VTP: in the string SPACE of its
+// field data) is turned to LPS: x and y get the other sign, and a warning says so. Throws InputError with
+// every defect found (at most 20 are listed), each naming file and line, when the file cannot be read, is not
+// of its format, holds a number that is not finite, an index out of range, a face of less than three corners,
+// no face at all, or not what its counts announce. Geometry and topology are judged by check_mesh.
 MeshFile read_mesh(const std::filesystem::path& path);
 
 enum class MeshCoding { Ascii, Binary };

@@ -12,6 +12,9 @@
 
 namespace coapt {
 
+// Of a position that is read or written: beyond it nothing is a valve, and squares soon overflow [mm].
+inline constexpr double kGreatestCoordinate = 1e9;
+
 // One end of a chord: an anchor (papillary tip), a junction (free branch point) or a leaflet vertex.
 struct ChordEnd {
   enum class Kind { Papillary, Junction, Leaflet };

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
+#include "mesh/rim_order.hpp"
 #include "scene/node_selection.hpp"
 #include "scene/supports.hpp"
 #include "scene/valve_json.hpp"
@@ -218,6 +219,19 @@ void name_sets(const Scene& scene, Assembly& assembly) {
   for (auto& [name, nodes] : named) model.sets[name] = std::move(nodes);
 }
 
+// The annulus as a closed loop, whatever order it was named in: its area and what it encloses depend on it.
+// Motion is told by then, and knows each node.
+void order_annulus(const Scene& scene, Assembly& assembly) {
+  const auto annulus = assembly.model.sets.find("annulus");
+  if (annulus == assembly.model.sets.end()) return;
+  RimLoop loop = rim_loop(annulus->second, assembly.model.mesh.triangles);
+  const std::string where = scene.file.string() + ": annulus: ";
+  if (loop.spans_rims()) assembly.defects.push_back(where + spans_rims_text(loop.rims));
+  if (!loop.is_reordered) return;
+  annulus->second = std::move(loop.vertices);
+  assembly.warn({where + reordered_text()});
+}
+
 }  // namespace
 
 Groundwork lay_groundwork(const Scene& scene) {
@@ -241,6 +255,7 @@ Groundwork lay_groundwork(const Scene& scene) {
     assembly.defects.push_back(
         scene.file.string() +
         ": boundary: sets nodes of an obstacle free; they have no stiffness of their own");
+  order_annulus(scene, assembly);
   hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
   return std::move(static_cast<Groundwork&>(assembly));
 }

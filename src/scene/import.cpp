@@ -2,9 +2,11 @@
 
 #include "core/error.hpp"
 #include "mesh/formats/lower_extension.hpp"
+#include "mesh/formats/utf8.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/valve_import.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/law_terms.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/valve_curves.hpp"
@@ -89,7 +91,7 @@ std::string support_text(const Support& support) {
   for (size_t c = 0; c < 3; ++c)
     if (support.axes[c]) axes.push_back(std::string(1, "xyz"[c]));
   std::string text = "    { \"nodes\": " + quoted(support.name) +
-                     ", \"fix\": " + (axes.size() == 3 ? "true" : Json(axes).dump());
+                     ", \"fix\": " + (axes.size() == 3 ? "true" : json_text(Json(axes)));
   if (support.closed.cols() > 0) text += ", \"move_to\": " + quoted(support.name + "_closed");
   return text + " }";
 }
@@ -136,9 +138,8 @@ Valve valve_of_mesh(const std::filesystem::path& file, std::vector<std::string>&
   MeshFile read = read_mesh(file);
   append(warnings, read.warnings);
   Valve valve;
-  valve.name = file.stem().string();
+  valve.name = formats::as_utf8(file.stem().string());
   valve.leaflets = std::move(read.mesh);
-  if (detail::states_ras(file)) valve.leaflets.vertices.topRows(2) *= -1;
   detail::choose_annulus(valve, {});
   return valve;
 }

@@ -1,7 +1,6 @@
+#include "scene/detail/json_text.hpp"
 #include "scene/schema.hpp"
 #include "scene/term_types.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -155,7 +154,7 @@ std::string json_schema() {
     definitions["term_" + type.name] = term_schema(type);
   }
   definitions["term"]["oneOf"] = terms;
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 }  // namespace coapt

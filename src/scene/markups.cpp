@@ -3,6 +3,8 @@
 #include "core/error.hpp"
 #include "mesh/formats/lower_extension.hpp"
 #include "mesh/formats/whole_file.hpp"
+#include "mesh/valve.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/units.hpp"
 
@@ -48,7 +50,7 @@ class MarkupReader {
     const auto found = json.find("coordinateSystem");
     if (found == json.end() || *found == "LPS" || *found == 1 || *found == "1") return 1;
     if (*found == "RAS" || *found == 0 || *found == "0") return -1;
-    refuse(place + ".coordinateSystem", "read " + found->dump() + "; expected \"LPS\" or \"RAS\"");
+    refuse(place + ".coordinateSystem", "read " + json_text(*found) + "; expected \"LPS\" or \"RAS\"");
     return 1;
   }
 
@@ -86,7 +88,7 @@ class MarkupReader {
     for (size_t k = 0; k < points->size(); ++k) {
       const Json& point = (*points)[k];
       const std::string status = point.is_object() ? text(point, "positionStatus") : "";
-      if (status == "undefined" || status == "preview") continue;
+      if (!status.empty() && status != "defined") continue;  // undefined, preview, missing
       const std::string where = place + ".controlPoints[" + std::to_string(k) + "].position";
       const bool fits = point.is_object() && point.contains("position") && point["position"].is_array() &&
                         point["position"].size() == 3 && point["position"][0].is_number() &&
@@ -96,8 +98,13 @@ class MarkupReader {
         continue;
       }
       const Json& x = point["position"];
-      positions.push_back(unit *
-                          Vec3(turn * x[0].get<double>(), turn * x[1].get<double>(), x[2].get<double>()));
+      const Vec3 position =
+          unit * Vec3(turn * x[0].get<double>(), turn * x[1].get<double>(), x[2].get<double>());
+      if (!(position.array().abs() <= kGreatestCoordinate).all()) {
+        refuse(where, "read " + json_text(x) + "; a coordinate is greater than 1e9 mm");
+        continue;
+      }
+      positions.push_back(position);
       result.labels.push_back(text(point, "label"));
     }
     result.points.resize(3, static_cast<Eigen::Index>(positions.size()));
@@ -137,25 +144,32 @@ void write_markups(const std::filesystem::path& path, const std::vector<Markup>&
                     {"controlPoints", points}});
   }
   const OrderedJson json{{"@schema", kSchema}, {"markups", list}};
-  formats::write_whole(path, json.dump(1) + "\n");
+  formats::write_whole(path, json_text(json, 1) + "\n");
 }
 
 Points annulus_curve(const std::filesystem::path& path) {
   const std::vector<Markup> markups = read_markups(path);
   for (const char* type : {"ClosedCurve", "Curve", "Fiducial"})
     for (const Markup& markup : markups)
-      if (markup.type == type && markup.points.cols() >= 3) return markup.points;
+      if (markup.type == type && markup.points.cols() >= 3) {
+        if ((markup.points.colwise() - Vec3(markup.points.col(0))).isZero(0))
+          throw InputError(path.string() + ": all points of the curve" +
+                           (markup.name.empty() ? "" : " \"" + markup.name + "\"") +
+                           " are the same; it has no length");
+        return markup.points;
+      }
   throw InputError(path.string() + ": holds no closed curve of at least three points");
 }
 
 Points papillary_points(const std::filesystem::path& path) {
   Points points(3, 0);
   for (const Markup& markup : read_markups(path)) {
-    if (markup.type.ends_with("Curve")) continue;
+    if (markup.type != "Fiducial" && markup.type != "PointList") continue;
     points.conservativeResize(3, points.cols() + markup.points.cols());
     points.rightCols(markup.points.cols()) = markup.points;
   }
-  if (points.cols() == 0) throw InputError(path.string() + ": holds no points; it must be a list of points");
+  if (points.cols() == 0)
+    throw InputError(path.string() + ": holds no points; it must be a list of points (of type Fiducial)");
   return points;
 }
 

@@ -1,8 +1,7 @@
 #include "scene/result_schema.hpp"
 
+#include "scene/detail/json_text.hpp"
 #include "scene/metrics.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <initializer_list>
 #include <string_view>
@@ -213,7 +212,7 @@ std::string result_schema() {
              "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Coapt result";
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 }  // namespace coapt

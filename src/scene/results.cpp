@@ -5,9 +5,8 @@
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/csv_text.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/result_surfaces.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <fstream>
@@ -240,7 +239,7 @@ std::string result_json(const Model& model, const Report& report) {
   json["files"] = result_files(model, report);
   json["warnings"] = report.warnings;
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::vector<std::string> result_files(const Model& model, const Report& report) {

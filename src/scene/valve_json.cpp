@@ -2,6 +2,8 @@
 
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
+#include "mesh/rim_order.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/stated_laws.hpp"
 #include "scene/units.hpp"
@@ -112,6 +114,9 @@ class ValveReader {
       Points points(3, static_cast<Eigen::Index>(value.size()));
       for (size_t k = 0; k < value.size(); ++k)
         for (int c = 0; c < 3; ++c) points(c, static_cast<int>(k)) = scale_ * value[k][c].get<double>();
+      for (Eigen::Index k = 0; k < points.cols(); ++k)
+        if (!(points.col(k).array().abs() <= kGreatestCoordinate).all())
+          refuse(key + "[" + std::to_string(k) + "]", "a coordinate is greater than 1e9 mm");
       file_.points[key] = points;
     }
   }
@@ -122,7 +127,7 @@ class ValveReader {
       const double number = value[k].get<double>();
       if (number < 0 || number > 2147483647) {
         refuse(key + "[" + std::to_string(k) + "]",
-               "read " + value[k].dump() + "; expected a number counted from 0");
+               "read " + json_text(value[k]) + "; expected a number counted from 0");
         return {};
       }
       numbers.push_back(static_cast<int>(number));
@@ -200,7 +205,7 @@ class ValveReader {
                          : kind == "junction" ? static_cast<double>(chords.junctions.cols())
                                               : 2147483647.0;
     if (index < 0 || index >= count) {
-      refuse(where, kind + " " + found->begin()->dump() + " does not exist; the file has " +
+      refuse(where, kind + " " + json_text(*found->begin()) + " does not exist; the file has " +
                         std::to_string(static_cast<long>(count)) + ", counted from 0");
       return end;
     }
@@ -227,6 +232,8 @@ class ValveReader {
     if (json.contains("area")) chord.area = scale_ * scale_ * finite_number(json["area"], place + ".area");
     if (chord.rest_length < 0) refuse(place + ".rest_length", "is negative");
     if (chord.area < 0) refuse(place + ".area", "is negative");
+    if (chord.rest_length > kGreatestCoordinate) refuse(place + ".rest_length", "is greater than 1e9 mm");
+    if (chord.area > kGreatestCoordinate) refuse(place + ".area", "is greater than 1e9 mm^2");
     if (const auto material = json.find("material"); material != json.end() && material->is_string())
       chord.material = material->get<std::string>();
     if (const auto level = json.find("level"); level != json.end() && level->is_number_integer())
@@ -250,7 +257,7 @@ class ValveReader {
       Material& material = result[name];
       material.type = law["type"].get<std::string>();
       for (const auto& [entry, value] : law.items())
-        if (entry != "type") material.keys.emplace_back(entry, value.dump());
+        if (entry != "type") material.keys.emplace_back(entry, json_text(value));
     }
     return result;
   }
@@ -316,6 +323,24 @@ class ValveReader {
     return std::move(read.mesh);
   }
 
+  // Each vertex keeps its closed position.
+  void order_annulus() {
+    Valve& valve = file_.valve;
+    const RimLoop loop = rim_loop(valve.annulus, valve.leaflets.triangles);
+    if (loop.spans_rims()) return refuse("annulus", spans_rims_text(loop.rims));
+    if (!loop.is_reordered) return;
+    if (valve.annulus_closed.cols() > 0) {
+      std::map<int, Vec3> closed;
+      for (size_t k = 0; k < valve.annulus.size(); ++k)
+        closed[valve.annulus[k]] = valve.annulus_closed.col(static_cast<Eigen::Index>(k));
+      for (size_t k = 0; k < loop.vertices.size(); ++k)
+        valve.annulus_closed.col(static_cast<Eigen::Index>(k)) = closed[loop.vertices[k]];
+      file_.points["annulus_closed"] = valve.annulus_closed;
+    }
+    valve.annulus = file_.sets["annulus"] = loop.vertices;
+    file_.warnings.push_back(path_.string() + ": annulus: " + reordered_text());
+  }
+
   void read_meshes() {
     try {
       if (find("leaflets") != nullptr) {
@@ -323,6 +348,7 @@ class ValveReader {
         for (const std::string& defect :
              vertex_defects(file_, path_.string(), file_.valve.leaflets.vertex_count()))
           defects_.push_back(defect);
+        if (defects_.empty()) order_annulus();
       }
       if (find("closed_reference") != nullptr) file_.valve.closed_reference = read_scaled("closed_reference");
     } catch (const InputError& error) {

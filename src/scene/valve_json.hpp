@@ -39,7 +39,8 @@ ValveFile read_valve(const std::filesystem::path& path, ValveMeshes meshes = Val
 std::vector<std::string> vertex_defects(const ValveFile& file, const std::string& name, int vertex_count);
 
 // Writes path (units mm, pressure in MPa) and beside it leaflets.obj and closed_reference.obj where the valve
-// has them; reading gives the same numbers bit by bit. Throws InputError.
+// has them; reading gives the same numbers bit by bit. Throws InputError, and then writes nothing where a
+// number is not finite or a coordinate greater than kGreatestCoordinate.
 void write_valve(const std::filesystem::path& path, const Valve& valve);
 
 }  // namespace coapt

@@ -1,9 +1,11 @@
+#include "core/error.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/valve_json.hpp"
 
-#include <fstream>
+#include <cmath>
 
 namespace coapt {
 namespace {
@@ -63,18 +65,49 @@ void add_supports(const Valve& valve, OrderedJson& json) {
   if (!supports.empty()) json["supports"] = supports;
 }
 
+// JSON has no word for a number that is not finite: it would be written as null.
+void refuse_bad_numbers(const std::filesystem::path& path, const Valve& valve) {
+  std::vector<std::string> defects;
+  const auto refuse = [&](const std::string& place, const std::string& reason) {
+    constexpr size_t kMost = 20;
+    if (defects.size() < kMost) defects.push_back(path.string() + ": not written: " + place + ": " + reason);
+  };
+  const auto check_points = [&](const std::string& name, const Points& points) {
+    for (int k = 0; k < points.cols(); ++k)
+      if (!(points.col(k).array().abs() <= kGreatestCoordinate).all())
+        refuse(name + "[" + std::to_string(k) + "]", "a coordinate is not finite or greater than 1e9 mm");
+  };
+  const auto check_number = [&](const std::string& name, double value) {
+    if (!std::isfinite(value)) refuse(name, "is not finite");
+  };
+  check_points("leaflets", valve.leaflets.vertices);
+  if (valve.closed_reference) check_points("closed_reference", valve.closed_reference->vertices);
+  check_points("annulus_closed", valve.annulus_closed);
+  for (const Support& support : valve.supports) check_points(support.name + "_closed", support.closed);
+  check_points("papillary", valve.chords.papillary);
+  check_points("papillary_closed", valve.chords.papillary_closed);
+  check_points("junctions", valve.chords.junctions);
+  for (size_t k = 0; k < valve.chords.chords.size(); ++k) {
+    check_number("chords[" + std::to_string(k) + "].rest_length", valve.chords.chords[k].rest_length);
+    check_number("chords[" + std::to_string(k) + "].area", valve.chords.chords[k].area);
+  }
+  check_number("pressure", valve.pressure);
+  check_number("leaflet_thickness", valve.thickness);
+  if (!defects.empty()) throw InputError(defects);
+}
+
 // One entry of a long list per line: people compare such files.
 std::string laid_out(const OrderedJson& json) {
   std::string text = "{";
   bool is_first = true;
   for (const auto& [key, value] : json.items()) {
-    text += (is_first ? "\n  " : ",\n  ") + OrderedJson(key).dump() + ": ";
+    text += (is_first ? "\n  " : ",\n  ") + json_text(OrderedJson(key)) + ": ";
     is_first = false;
     if (!value.is_array() || value.empty() || !value[0].is_structured()) {
-      text += value.dump();
+      text += json_text(value);
       continue;
     }
-    for (size_t k = 0; k < value.size(); ++k) text += (k == 0 ? "[\n    " : ",\n    ") + value[k].dump();
+    for (size_t k = 0; k < value.size(); ++k) text += (k == 0 ? "[\n    " : ",\n    ") + json_text(value[k]);
     text += "\n  ]";
   }
   return text + "\n}\n";
@@ -83,6 +116,7 @@ std::string laid_out(const OrderedJson& json) {
 }  // namespace
 
 void write_valve(const std::filesystem::path& path, const Valve& valve) {
+  refuse_bad_numbers(path, valve);
   OrderedJson json;
   if (!valve.name.empty()) json["name"] = valve.name;
   json["units"] = "mm";

@@ -324,6 +324,8 @@ class CommandTest(unittest.TestCase):
         self.assert_bad_input(coapt("chords", mesh, "-o", network), "leaflets.obj", "papillary", "--tip")
         self.assert_bad_input(coapt("chords", mesh, "-o", self.folder / "x.json", *tips), "another folder")
         self.assert_bad_input(coapt("chords", mesh, "-o", network, "--count", 999, *tips), "free vertices")
+        for bad in ("nan", "1e400", "1e200"):
+            self.assert_bad_input(coapt("chords", mesh, "-o", network, "--tip", bad, 0, 0), "not finite")
         self.assert_bad_input(coapt("chords", mesh, "-o", network, "--tip", 1, 2, 90, "--scale", -1), "scale")
 
     def test_check_prints_the_derivatives_of_every_term(self):

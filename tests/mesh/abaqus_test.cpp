@@ -288,6 +288,62 @@ TEST(Abaqus, SaysWhichLawItDoesNotKnow) {
   EXPECT_TRUE(warns);
 }
 
+// Sets that Abaqus/CAE writes are sorted by label, whatever the way around the rim.
+Valve held_square(const ScratchFolder& folder, const std::string& set, const std::string& labels) {
+  return read(folder, R"(*Node
+1, 0, 0, 0
+2, 1, 0, 0
+3, 2, 0, 0
+4, 0, 1, 0
+5, 1, 1, 0
+6, 2, 1, 0
+7, 0, 2, 0
+8, 1, 2, 0
+9, 2, 2, 0
+*Element, type=S4, elset=e
+1, 1, 2, 5, 4
+2, 2, 3, 6, 5
+3, 4, 5, 8, 7
+4, 5, 6, 9, 8
+*Shell Section, elset=e, material=m
+0.5
+*Material, name=m
+*Elastic
+1, 0.3
+*Nset, nset=)" + set + "\n" +
+                          labels + "\n*Boundary\n" + (set == "annulus" ? set : "5") + ", PINNED\n")
+      .valve;
+}
+
+TEST(Abaqus, KeepsTheOrderOfTheRimWhereASetIsSortedByLabel) {
+  const ScratchFolder folder;
+  const std::vector<int> around = {0, 1, 2, 5, 8, 7, 6, 3};
+  EXPECT_EQ(held_square(folder, "annulus", "1, 2, 3, 4, 6, 7, 8, 9").annulus, around);
+  EXPECT_EQ(held_square(folder, "free_edge", "1, 2, 3, 4, 6, 7, 8, 9").free_edge, around);
+}
+
+TEST(Abaqus, TakesTheOrderOfASetThatGoesAroundTheRim) {
+  const ScratchFolder folder;
+  EXPECT_EQ(held_square(folder, "annulus", "6, 9, 8, 7, 4, 1, 2, 3").annulus,
+            (std::vector<int>{5, 8, 7, 6, 3, 0, 1, 2}));
+  EXPECT_EQ(held_square(folder, "annulus", "6, 3, 2, 1, 4, 7, 8, 9").annulus,
+            (std::vector<int>{5, 2, 1, 0, 3, 6, 7, 8}));
+}
+
+TEST(Abaqus, GeneratesSetsFromTheLabelsThatThereAre) {
+  const ScratchFolder folder;
+  std::string text = "*Nset, nset=odd, generate\n1, 9, 2\n";
+  text += "*Nset, nset=third, generate\n3, 9223372036854775807, 9223372036854775800\n";
+  text += "*Nset, nset=none, generate\n9223372036854775800, 9223372036854775807, 5\n";
+  text += "*Nset, nset=many, generate\n";
+  for (int k = 0; k < 200; ++k) text += "1, 9999999, 1\n";
+  text += "*Elset, elset=some, generate\n2, 9223372036854775807, 2\n";
+  const Valve valve = read(folder, changed("*Nset, nset=Left", text + "*Nset, nset=Left")).valve;
+  EXPECT_EQ(valve.sets.at("odd"), (std::vector<int>{0, 2, 4, 6, 8}));
+  EXPECT_EQ(valve.sets.at("third"), std::vector<int>{2});
+  EXPECT_FALSE(valve.sets.contains("none"));
+}
+
 struct BadModel {
   const char* what;
   const char* by;
@@ -319,7 +375,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadModel{"3, 4, 5, 7", "3, 4, 5, 5", "element 3 has a corner more than once"},
         BadModel{"3, 6,\n9", "3, 66,\n9", "node or set '66' does not exist"},
         BadModel{"1, 7, 3", "7, 1, 3", "first, last and step"},
-        BadModel{"1, 7, 3", "1, 999999999999, 1", "first, last and step"},
+        BadModel{"1, 7, 3", "1, 7, 0", "first, last and step"},
+        BadModel{"1, 7, 3", "1, 7, -3", "first, last and step"},
+        BadModel{"1, 7, 3", "1, 99999999999999999999, 1", "is out of range"},
+        BadModel{"2, 1., 0., 0.", "2, 1e308, 0., 0.", "node 2: a coordinate is not finite or greater"},
+        BadModel{"21, 1., 1., -2.", "21, 1., 1., -2e200", "node 21: a coordinate is not finite or greater"},
+        BadModel{"Sheet-1.right, 3, 3, 0.4", "Sheet-1.right, 3, 3, 4e300", "a displacement is not finite"},
         BadModel{"material=Rubber", "material=Steel", "material 'Steel' does not stand in the file"},
         BadModel{"0.25\n", "0\n", "the thickness of a section must be positive"},
         BadModel{"*Solid Section, elset=chords", "*Solid Section, elset=QUADS", "has no *Solid Section"},

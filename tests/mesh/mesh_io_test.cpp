@@ -206,6 +206,75 @@ TEST(OffReader, RefusesAFileThatEndsEarly) {
                        "the file ends after 2 of 3 vertices"));
 }
 
+TEST(OffReader, RefusesLinesBehindItsCounts) {
+  const ScratchFolder scratch;
+  const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  EXPECT_TRUE(mentions(defects_of(scratch.file("a.off", "OFF\n4 1 0\n" + vertices + "3 0 1 2\n\n3 0 2 3\n")),
+                       "a.off: line 9: stands behind the 4 vertices and 1 faces announced"));
+  EXPECT_TRUE(defects_of(scratch.file("b.off", "OFF\n4 1 0\n" + vertices + "3 0 1 2\n\n# end\n")).empty());
+}
+
+TEST(PlyReader, RefusesCornersThatAreNoWholeNumbers) {
+  const ScratchFolder scratch;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 1\nproperty list uchar double vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  EXPECT_TRUE(mentions(defects_of(scratch.file("a.ply", head + "3 0 1.9 3\n")),
+                       "face 0: corner 1.9 is not a whole number"));
+  EXPECT_TRUE(mentions(defects_of(scratch.file("a.ply", head + "3.5 0 1 2 3\n")), "the length of a list"));
+  EXPECT_EQ(read_mesh(scratch.file("a.ply", head + "3 0 1 3.0\n")).mesh.triangles(2, 0), 3);
+}
+
+TEST(StlReader, RefusesAFacetWhoseLoopIsNotEnded) {
+  const ScratchFolder scratch;
+  const std::string loop = "outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
+  const std::string good = "facet normal 0 0 1\n" + loop + "endloop\nendfacet\n";
+  const std::string bad = "facet normal 0 0 1\n" + loop + "endfacet\n";
+  EXPECT_TRUE(defects_of(scratch.file("a.stl", "solid a\n" + good + good + "endsolid a\n")).empty());
+  EXPECT_TRUE(mentions(defects_of(scratch.file("a.stl", "solid a\n" + bad + good + "endsolid a\n")),
+                       "a.stl: line 7: the loop of 3 vertices before is not ended by 'endloop'"));
+  EXPECT_TRUE(mentions(
+      defects_of(scratch.file("a.stl", "solid a\nfacet normal 0 0 1\nendfacet\n" + good + "endsolid a\n")),
+      "line 3: a facet without a loop"));
+}
+
+TEST(MeshFiles, SkipTheByteOrderMark) {
+  const ScratchFolder scratch;
+  const MeshFile file =
+      read_mesh(scratch.file("a.obj", "\xEF\xBB\xBFv 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"));
+  ASSERT_EQ(file.mesh.vertex_count(), 4);
+  EXPECT_EQ(Vec3(file.mesh.vertices.col(0)), Vec3(9, 9, 9));
+  EXPECT_EQ(file.mesh.triangles(0, 0), 1);
+  EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(MeshFiles, InRasAreTurnedToLps) {
+  const TriangleMesh mesh = wavy_sheet(2);
+  for (const std::string extension : {"obj", "ply", "off", "stl", "vtp"}) {
+#ifndef COAPT_HAS_PUGIXML
+    if (extension == "vtp") continue;
+#endif
+    const ScratchFolder scratch;
+    const auto path = scratch.path("a." + extension);
+    for (const char* space : {"RAS", "LPS", ""}) {
+      write_mesh(path, mesh, MeshCoding::Binary, space);
+      const MeshFile file = read_mesh(path);
+      const double sign = std::string(space) == "RAS" ? -1 : 1;
+      const Vec3 corner = file.mesh.vertices.col(file.mesh.triangles(1, 0)), wanted = mesh.vertices.col(1);
+      EXPECT_LT((corner - Vec3(sign * wanted.x(), sign * wanted.y(), wanted.z())).norm(), 1e-6) << path;
+      EXPECT_EQ(file.space, *space == 0 ? "" : "LPS") << path;
+      EXPECT_EQ(mentions(file.warnings, "are in RAS"), sign < 0) << path;
+    }
+  }
+}
+
+TEST(MeshFiles, TurnLatin1NamesToUtf8) {
+  const ScratchFolder scratch;
+  const MeshFile file = read_mesh(scratch.file(
+      "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng r\xe4nd\nf 1 2 3\ng s\xc3\xa4ule\nf 1 2 4\n"));
+  EXPECT_EQ(file.mesh.region_names, (std::vector<std::string>{"r\xc3\xa4nd", "s\xc3\xa4ule"}));
+}
+
 TEST(MeshFiles, EveryFormatSurvivesTruncationAtAnyByte) {
   const ScratchFolder scratch;
   int refused = 0;

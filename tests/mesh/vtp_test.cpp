@@ -75,6 +75,29 @@ TEST(VtpReader, ReadsInlineBase64) {
   EXPECT_EQ(file.mesh.vertices, wanted);
 }
 
+TEST(VtpReader, ComparesItsCountsAndRefusesCornersThatAreNotWhole) {
+  const ScratchFolder scratch;
+  const auto refusal = [&](const std::string& points, const std::string& connectivity,
+                           const std::string& offsets) -> std::string {
+    try {
+      read_mesh(
+          scratch.file("a.vtp", square("", "format=\"ascii\">" + points, "format=\"ascii\">" + connectivity,
+                                       "format=\"ascii\">" + offsets)));
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string three = "0 0 0 1 0 0 0 1 0";
+  EXPECT_EQ(refusal(three, "0 1 2", "3"), "accepted");
+  EXPECT_NE(refusal(three + " 5 5 5", "0 1 2", "3").find("NumberOfPoints is '3', but the file holds 4"),
+            std::string::npos);
+  EXPECT_NE(refusal(three, "0 1 2 0 2 1", "3 6").find("NumberOfPolys is '1', but the file holds 2"),
+            std::string::npos);
+  EXPECT_NE(refusal(three, "0 1 2 0", "3").find("corners behind the last offset"), std::string::npos);
+  EXPECT_NE(refusal(three, "0 1.5 2", "3").find("not whole"), std::string::npos);
+}
+
 TEST(VtpReader, RefusesFalseSizesAndBadNumbers) {
   const ScratchFolder scratch;
   const auto path =

@@ -209,6 +209,46 @@ TEST_F(BuildTest, ListsTheKnownNamesForAnUnknownOne) {
   EXPECT_NE(points.find("no positions \"closed\""), std::string::npos) << points;
 }
 
+double annulus_area(const Model& model) {
+  const std::vector<int>& loop = model.sets.at("annulus");
+  Vec3 area = Vec3::Zero();
+  for (size_t k = 0; k < loop.size(); ++k)
+    area += 0.5 * Vec3(model.X.col(loop[k])).cross(Vec3(model.X.col(loop[(k + 1) % loop.size()])));
+  return area.norm();
+}
+
+TEST_F(BuildTest, PutsAnAnnulusInTheOrderOfItsRim) {
+  const std::vector<int> rim = boundary_loops(disc_.triangles)[0];
+  std::vector<int> shuffled = rim;
+  for (size_t k = 0; k < rim.size(); ++k) shuffled[k] = rim[k * 7 % rim.size()];
+  ASSERT_NE(rim.size() % 7, 0u);
+  std::string text = R"({"annulus": [)";
+  for (size_t k = 0; k < rim.size(); ++k) text += (k == 0 ? "" : ", ") + std::to_string(shuffled[k]);
+  text += R"(], "annulus_closed": [)";
+  for (size_t k = 0; k < rim.size(); ++k)
+    text += (k == 0 ? "[0, 0, " : ", [0, 0, ") + std::to_string(shuffled[k]) + "]";
+  folder_.write("sets.json", text + "]}");
+  const Model model =
+      build_disc(kDiscTerms, R"(, "boundary": [{"nodes": "annulus", "move_to": "annulus_closed"}])");
+  EXPECT_NEAR(annulus_area(model), 314, 5);
+  ASSERT_EQ(model.warnings.size(), 1u);
+  EXPECT_NE(model.warnings[0].find("scene.json: annulus: its vertices did not follow"), std::string::npos);
+  const Points moved = model.motion.positions(1);
+  for (const int v : rim) EXPECT_EQ(moved(2, v), v) << "each has its own closed position still";
+}
+
+TEST_F(BuildTest, RefusesAnAnnulusOfTwoRims) {
+  TriangleMesh two = disc_;
+  two.vertices.conservativeResize(3, 2 * disc_.vertex_count());
+  two.vertices.rightCols(disc_.vertex_count()) = disc_.vertices.colwise() + Vec3(0, 0, 5);
+  two.triangles.conservativeResize(3, 2 * disc_.triangle_count());
+  two.triangles.rightCols(disc_.triangle_count()) = disc_.triangles.array() + disc_.vertex_count();
+  write_mesh(folder_.path() / "disc.obj", two);
+  EXPECT_NE(refusal(kDiscTerms, std::string(R"(, "sets": {"annulus": "boundary"})") + kHeldRim)
+                .find("annulus: its vertices lie on 2 rims of the mesh"),
+            std::string::npos);
+}
+
 TEST_F(BuildTest, WarnsOfAPartThatNothingHolds) {
   const Model model = build_disc(kDiscTerms, "");
   ASSERT_EQ(model.warnings.size(), 1u);

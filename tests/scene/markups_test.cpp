@@ -80,8 +80,37 @@ TEST(Markups, NamesEveryBadEntry) {
               {"position": [1, 2]}, {"position": [1, 2, "3"]}, 7]}]})",
       {"markups[0]: expected", "markups[1].coordinateSystem", "markups[1].coordinateUnits",
        "markups[1].controlPoints[0].position", "markups[1].controlPoints[1].position", "controlPoints[2]"});
+  refused(R"({"markups": [{"controlPoints": [{"position": [1, null, 2]}, {"position": [1, 1e308, 2]}]}]})",
+          {"controlPoints[0].position: expected three numbers",
+           "controlPoints[1].position: read [1,1e+308,2]; a coordinate is greater"});
   EXPECT_THROW(annulus_curve(folder.write("no.mrk.json", R"({"markups": []})")), InputError);
   EXPECT_THROW(papillary_points(folder.write("no.mrk.json", R"({"markups": []})")), InputError);
+}
+
+TEST(Markups, TakesPlacedPointsOfListsOnly) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.mrk.json", R"({"markups": [
+    {"type": "Plane", "controlPoints": [{"position": [9, 9, 9]}]},
+    {"type": "Fiducial", "controlPoints": [{"position": [1, 2, 3]},
+      {"position": [0, 0, 0], "positionStatus": "missing"}, {"position": [0, 0, 0], "positionStatus": "preview"},
+      {"position": [4, 5, 6], "positionStatus": "defined"}]}]})");
+  const Points tips = papillary_points(path);
+  ASSERT_EQ(tips.cols(), 2);
+  EXPECT_EQ(Vec3(tips.col(0)), Vec3(1, 2, 3));
+  EXPECT_EQ(Vec3(tips.col(1)), Vec3(4, 5, 6));
+}
+
+TEST(Markups, RefusesACurveWithoutLength) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.mrk.json";
+  write_markups(path, {{"ring", "ClosedCurve", Points::Ones(3, 8), {}}});
+  try {
+    annulus_curve(path);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("all points of the curve \"ring\" are the same"),
+              std::string::npos);
+  }
 }
 
 // A tube of height 10 and radius 15, open at both ends.
@@ -147,6 +176,24 @@ TEST(Markups, AMeshInRasIsTurned) {
   EXPECT_EQ(Vec3(valve.leaflets.vertices.col(0)), Vec3(-15, 0, 0));
   EXPECT_EQ(valve.annulus.size(), 40u) << "the longer rim";
   EXPECT_EQ(valve.leaflets.vertices(2, valve.annulus[0]), 0);
+  const auto turned = folder.path() / "lps.obj";
+  EXPECT_EQ(export_file(folder.path() / "leaflets.obj", turned, "").size(), 1u) << "says that it was turned";
+  EXPECT_NE(text_of(turned).find("SPACE=LPS"), std::string::npos);
+  EXPECT_EQ(Vec3(read_mesh(turned).mesh.vertices.col(0)), Vec3(-15, 0, 0));
+}
+
+TEST(Markups, NamesThatAreNotUtf8ComeThroughAnImport) {
+  const TemporaryFolder folder;
+  const auto mesh = folder.path() / "R\xf6hre.obj";
+  TriangleMesh surface = tube();
+  surface.regions.assign(static_cast<size_t>(surface.triangle_count()), 0);
+  surface.regions[0] = 1;
+  surface.region_names = {"W\xe4nde", "rest"};
+  write_mesh(mesh, surface);
+  import_valve(mesh, folder.path() / "out", {});
+  const Scene scene = load_scene(folder.path() / "out" / "scene.json");
+  EXPECT_EQ(scene.name, "R\xc3\xb6hre");
+  EXPECT_EQ(build(scene).mesh.region_names[0], "W\xc3\xa4nde");
 }
 
 TEST(Markups, RefusesCurvesWhereTheyDoNotFit) {

@@ -97,6 +97,69 @@ TEST(ValveJson, NamesEveryBadEntry) {
   }
 }
 
+TEST(ValveJson, IsNotWrittenWithNumbersThatJsonHasNoWordFor) {
+  const TemporaryFolder folder;
+  Valve valve = small_valve();
+  valve.chords.papillary(1, 0) = kNaN;
+  valve.chords.chords[1].rest_length = kInfinity;
+  valve.leaflets.vertices(0, 2) = 1e200;
+  try {
+    write_valve(folder.path() / "valve.json", valve);
+    FAIL() << "written";
+  } catch (const InputError& error) {
+    for (const char* part :
+         {"papillary[0]: a coordinate", "chords[1].rest_length: is not finite", "leaflets[2]: a coordinate"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(ValveJson, RefusesNumbersThatOverflow) {
+  const TemporaryFolder folder;
+  try {
+    read_valve(folder.write("valve.json", R"({"units": "m", "papillary": [[1e308, 0, 0], [0, 0, 0]],
+      "chords": [{"from": {"papillary": 0}, "to": {"papillary": 1}, "rest_length": 1e308, "area": 1e200}]})"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    for (const char* part :
+         {"papillary[0]: a coordinate", "chords[0].rest_length: is greater", "chords[0].area: is greater"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+constexpr const char* kSquare = R"(v 0 0 0
+v 1 0 0
+v 2 0 0
+v 0 1 0
+v 1 1 0
+v 2 1 0
+v 0 2 0
+v 1 2 0
+v 2 2 0
+f 1 2 5 4
+f 2 3 6 5
+f 4 5 8 7
+f 5 6 9 8
+)";
+
+TEST(ValveJson, PutsAnAnnulusInTheOrderOfItsRimWithItsClosedPositions) {
+  const TemporaryFolder folder;
+  folder.write("l.obj", kSquare);
+  const ValveFile file = read_valve(folder.write("valve.json", R"({"leaflets": "l.obj",
+    "annulus": [0, 1, 2, 3, 5, 6, 7, 8], "annulus_closed": [[0, 0, 10], [0, 0, 11], [0, 0, 12], [0, 0, 13],
+    [0, 0, 15], [0, 0, 16], [0, 0, 17], [0, 0, 18]]})"));
+  ASSERT_EQ(file.valve.annulus.size(), 8u);
+  for (size_t k = 0; k < 8; ++k) {
+    const int v = file.valve.annulus[k], next = file.valve.annulus[(k + 1) % 8];
+    EXPECT_EQ((file.valve.leaflets.vertices.col(v) - file.valve.leaflets.vertices.col(next)).norm(), 1);
+    EXPECT_EQ(file.valve.annulus_closed(2, static_cast<int>(k)), 10 + v);
+  }
+  EXPECT_EQ(file.sets.at("annulus"), file.valve.annulus);
+  EXPECT_EQ(file.points.at("annulus_closed"), file.valve.annulus_closed);
+  ASSERT_EQ(file.warnings.size(), 2u) << "polygons were cut";
+  EXPECT_NE(file.warnings[1].find("annulus: its vertices did not follow one another"), std::string::npos);
+}
+
 struct DataFile {
   const char* path;
   int vertices;

@@ -10,8 +10,6 @@
 namespace coapt::formats {
 namespace {
 
-constexpr long long kMostGenerated = 10'000'000;
-
 // Nodes of an element type that a scene knows, 0 for the others.
 size_t node_count(const std::string& type) {
   static const std::map<std::string, size_t> kCounts = {{"S3", 3},    {"S3R", 3},  {"STRI3", 3}, {"M3D3", 3},
@@ -217,16 +215,22 @@ void AbaqusAssembly::add_range(const AbaqusLine& line, int scope, bool of_nodes,
     range[k] = *value;
   }
   const auto [first, last, step] = range;
-  if (line.fields.size() < 2 || step <= 0 || last < first || first < 0 ||
-      (last - first) / step >= kMostGenerated)
+  if (line.fields.size() < 2 || step <= 0 || last < first || first < 0)
     return defects_.add("line", line.number,
                         "expected first, last and step of the numbers to generate, the first not above the "
                         "last");
-  for (long long label = first; label <= last; label += step) {
-    const AbaqusScope* const owner = this->scope(scope);
-    const auto& index = of_nodes ? owner->node_index : owner->element_index;
-    if (index.contains(label)) set.items.push_back({scope, label});
-  }
+  // The labels that there are, not those of the range: it may be far longer.
+  const AbaqusScope& owner = *this->scope(scope);
+  std::vector<long long> labels;
+  const auto take = [&, first = first, last = last, step = step](long long label) {
+    if (label >= first && label <= last && (label - first) % step == 0) labels.push_back(label);
+  };
+  if (of_nodes)
+    for (const auto& [label, x] : owner.nodes) take(label);
+  else
+    for (const AbaqusElement& element : owner.elements) take(element.label);
+  std::sort(labels.begin(), labels.end());
+  for (const long long label : labels) set.items.push_back({scope, label});
 }
 
 void AbaqusAssembly::read_set(const AbaqusCard& card, bool of_nodes) {

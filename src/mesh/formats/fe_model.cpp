@@ -1,5 +1,7 @@
 #include "mesh/formats/fe_model.hpp"
 
+#include "mesh/rim_order.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,6 +11,20 @@ namespace {
 
 std::string plural(size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+// Lengths, areas and their squares must stay finite.
+void refuse_far_nodes(const FeModel& model, Defects& defects) {
+  const auto is_near = [](const Vec3& x) { return (x.array().abs() <= kGreatestCoordinate).all(); };
+  for (Eigen::Index k = 0; k < model.nodes.cols(); ++k)
+    if (!is_near(model.nodes.col(k)))
+      defects.add("node", model.labels[static_cast<size_t>(k)],
+                  "a coordinate is not finite or greater than 1e9 mm");
+  for (const auto& [node, hold] : model.holds)
+    if (!is_near(hold.displacement))
+      defects.add("node", model.labels[static_cast<size_t>(node)],
+                  "a displacement is not finite or greater than 1e9 mm");
+  defects.throw_if_any();
 }
 
 // Vertex of each node, -1 where no triangle has it.
@@ -146,7 +162,8 @@ void fill_supports(const std::map<int, FeHold>& holds, Valve& valve) {
 }
 
 // Sets of vertices alone that name some of them. Those with a meaning of their own fill it, but an annulus
-// must be what is held.
+// must be what is held. Sets are often sorted by label: a loop keeps the order of the rim unless the set goes
+// round it too.
 void fill_sets(const FeModel& model, const std::vector<int>& vertex, Valve& valve) {
   for (const auto& [name, nodes] : model.node_sets) {
     std::vector<int> vertices;
@@ -155,14 +172,15 @@ void fill_sets(const FeModel& model, const std::vector<int>& vertex, Valve& valv
     const std::set<int> different(vertices.begin(), vertices.end());
     if (!are_vertices || static_cast<int>(different.size()) == valve.leaflets.vertex_count()) continue;
     const std::set<int> annulus(valve.annulus.begin(), valve.annulus.end());
-    if (name == "commissures")
+    if (name == "commissures") {
       valve.commissures = std::move(vertices);
-    else if (name == "free_edge")
-      valve.free_edge = std::move(vertices);
-    else if (name == "annulus" && different == annulus && vertices.size() == annulus.size())
-      valve.annulus = std::move(vertices);
-    else
+    } else if (name == "free_edge") {
+      valve.free_edge = rim_loop(vertices, valve.leaflets.triangles).vertices;
+    } else if (name == "annulus" && different == annulus) {
+      if (is_same_loop(valve.annulus, vertices)) valve.annulus = std::move(vertices);
+    } else {
       valve.sets[free_name(valve, name)] = std::move(vertices);
+    }
   }
 }
 
@@ -181,6 +199,7 @@ void name_supports(Valve& valve) {
 
 Valve valve_of(FeModel& model) {
   Defects defects(model.file);
+  refuse_far_nodes(model, defects);
   if (model.triangles.empty() && model.lines.empty())
     defects.fail("holds no shells, membranes or lines of tension");
   if (model.triangles.empty()) defects.fail("holds no shells or membranes; a valve has leaflets");

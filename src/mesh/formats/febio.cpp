@@ -1,5 +1,6 @@
 // FEBio models, specification 3.0 and 4.0: shells of three or four nodes, springs, node sets, held and moved
 // nodes, pressure, contact.
+#include "mesh/formats/abaqus_cards.hpp"
 #include "mesh/formats/detail/febio_materials.hpp"
 #include "mesh/formats/fe_readers.hpp"
 #include "mesh/formats/text.hpp"
@@ -14,21 +15,33 @@
 namespace coapt::formats {
 namespace {
 
-// A curve over time: its value at the end.
+// A curve over time: its value at the end. At its points every kind of curve has their values; nothing where
+// it is not linear between points, or not constant beyond them, and the end is there.
 struct LoadCurve {
   std::vector<std::pair<double, double>> points;
-  double end_value(std::optional<double> end) const {
+  bool is_linear = true, is_constant_beyond = true;
+  std::optional<double> end_value(std::optional<double> end) const {
     constexpr double kRoundOff = 1e-9;  // of the sum of the time steps
     if (!end) return points.back().second;
     for (size_t k = 0; k < points.size(); ++k) {
       if (std::abs(points[k].first - *end) <= kRoundOff * *end) return points[k].second;
       if (points[k].first < *end) continue;
-      if (k == 0) return points[0].second;
+      if (k == 0) return beyond(points[0].second);
+      if (!is_linear) return std::nullopt;
       const double part = (*end - points[k - 1].first) / (points[k].first - points[k - 1].first);
       return points[k - 1].second + part * (points[k].second - points[k - 1].second);
     }
-    return points.back().second;
+    return beyond(points.back().second);
   }
+  std::optional<double> beyond(double value) const {
+    return is_constant_beyond ? std::optional(value) : std::nullopt;
+  }
+};
+
+// The model itself, whose components always act, or a step, whose components end with it.
+struct Section {
+  pugi::xml_node node;
+  std::optional<double> end;  // of its time; not known where a step has no length
 };
 
 class FebioReader {
@@ -52,9 +65,8 @@ class FebioReader {
     const std::string version = root_.attribute("version").as_string();
     if (version != "4.0" && version != "3.0")
       defects_.fail("is of FEBio's specification " + formats::quoted(version) + "; 3.0 and 4.0 are read");
-    for (const pugi::xml_node& step : root_.child("Step").children("step")) sections_.push_back(step);
-    sections_.insert(sections_.begin(), root_);
-    read_time();
+    check_units();
+    read_sections();
     read_curves();
     for (const pugi::xml_node& nodes : mesh().children("Nodes")) read_nodes(nodes);
     defects_.throw_if_any();
@@ -63,7 +75,10 @@ class FebioReader {
       model_.nodes.col(static_cast<Eigen::Index>(k)) = positions_[k];
     for (const pugi::xml_node& set : mesh().children("NodeSet")) read_node_set(set);
     for (const pugi::xml_node& elements : mesh().children("Elements")) read_elements(elements);
-    for (const pugi::xml_node& section : sections_) read_section(section);
+    read_history();
+    for (const pugi::xml_node& data : root_.child("MeshData").children())
+      if (data.type() == pugi::node_element && std::string_view(data.name()) != "NodeData")
+        leave_out(data.name(), " of <MeshData> ", data, "");
     read_springs();
     // Sets that an export made for its supports alone.
     std::erase_if(model_.node_sets, [](const auto& set) { return set.first.starts_with("coapt_"); });
@@ -81,17 +96,65 @@ class FebioReader {
  private:
   pugi::xml_node mesh() const { return root_.child("Mesh"); }
 
-  // The end of the last step; not known where a step has no length.
-  void read_time() {
+  // FEBio counts in the unit system that the model names, if it names one.
+  void check_units() {
+    const pugi::xml_node units = root_.child("Module").child("units");
+    const std::string system(trimmed(units.text().get()));
+    if (!system.empty() && system != "mm-N-s" && system != "mm-N-MPa")
+      places_.add(units, "the unit system is " + formats::quoted(system) +
+                             "; lengths in mm and forces in N are read (mm-N-s): convert the model");
+  }
+
+  void read_sections() {
+    sections_ = {{root_, {}}};
+    for (const pugi::xml_node& step : root_.child("Step").children("step")) sections_.push_back({step, {}});
     double end = 0;
-    bool is_known = false;
-    for (const pugi::xml_node& section : sections_) {
-      const pugi::xml_node control = section.child("Control");
-      if (!control) continue;
-      end += places_.number_or(control, "time_steps", 0) * places_.number_or(control, "step_size", 0);
-      is_known = true;
+    for (Section& section : sections_) {
+      if (const pugi::xml_node control = section.node.child("Control"))
+        end += places_.number_or(control, "time_steps", 0) * places_.number_or(control, "step_size", 0);
+      if (end > 0) section.end = end;
     }
-    if (is_known && end > 0) end_ = end;
+    sections_.front().end = sections_.back().end;
+  }
+
+  // By what the element is called: its type, else its name or number.
+  void leave_out(const char* what, const char* of, const pugi::xml_node& element, const char* why) {
+    std::string text = "<";
+    text.append(what).append(">").append(of);
+    for (const char* key : {"type", "name", "id"})
+      if (const pugi::xml_attribute called = element.attribute(key)) {
+        text += formats::quoted(called.as_string());
+        break;
+      }
+    left_out_.insert(text + why);
+  }
+
+  // What the model states, and of the steps the last one that states supports, and the last that states
+  // loads.
+  void read_history() {
+    const auto last = [&](const char* part, const char* component) {
+      for (size_t k = sections_.size() - 1; k > 0; --k)
+        if (sections_[k].node.child(part).child(component)) return k;
+      return size_t{0};
+    };
+    const auto visit = [&](const char* part, size_t of_steps, auto&& read) {
+      for (size_t k = 0; k < sections_.size(); ++k) {
+        const pugi::xml_node components = sections_[k].node.child(part);
+        end_ = sections_[k].end;
+        if (k == 0 || k == of_steps)
+          read(components);
+        else if (components.first_child())
+          leave_out(part, " of step ", sections_[k].node, ", which ends with that step");
+      }
+    };
+    visit("Boundary", last("Boundary", "bc"), [&](const pugi::xml_node& components) {
+      for (const pugi::xml_node& bc : components.children("bc")) read_bc(bc);
+    });
+    visit("Loads", last("Loads", "surface_load"), [&](const pugi::xml_node& components) {
+      for (const pugi::xml_node& load : components.children()) read_load(load);
+    });
+    for (const Section& section : sections_)
+      if (section.node.child("Contact").child("contact")) model_.has_contact = true;
   }
 
   void read_curves() {
@@ -106,6 +169,12 @@ class FebioReader {
           else
             curve.points.emplace_back((*pair)[0], (*pair)[1]);
         }
+      const auto says = [&](const char* child, const char* usual) {
+        const std::string text = upper_case(trimmed(controller.child(child).text().get()));
+        return text.empty() || text == usual;
+      };
+      curve.is_linear = says("interpolate", "LINEAR");
+      curve.is_constant_beyond = says("extend", "CONSTANT");
       if (!curve.points.empty()) curves_[controller.attribute("id").as_string()] = std::move(curve);
     }
   }
@@ -114,7 +183,15 @@ class FebioReader {
     const pugi::xml_attribute lc = value.attribute("lc");
     if (!lc) return 1;
     const auto found = curves_.find(lc.as_string());
-    if (found != curves_.end()) return found->second.end_value(end_);
+    if (found != curves_.end()) {
+      const auto at_end = found->second.end_value(end_);
+      if (!at_end)
+        places_.add(value,
+                    "load controller " + formats::quoted(lc.as_string()) +
+                        " is not LINEAR between points, or not CONSTANT beyond them, and the end of the "
+                        "time is no point of it; add one there");
+      return at_end.value_or(1);
+    }
     places_.add(value,
                 "load controller " + formats::quoted(lc.as_string()) + " is no load curve of the file");
     return 1;
@@ -233,17 +310,13 @@ class FebioReader {
     return corners;
   }
 
-  void read_section(const pugi::xml_node& section) {
-    for (const pugi::xml_node& bc : section.child("Boundary").children("bc")) read_bc(bc);
-    for (const pugi::xml_node& load : section.child("Loads").children()) {
-      const std::string type = load.attribute("type").as_string();
-      if (load.type() != pugi::node_element) continue;
-      if (std::string_view(load.name()) == "surface_load" && type == "pressure")
-        read_pressure(load);
-      else
-        left_out_.insert("load " + formats::quoted(type));
-    }
-    if (section.child("Contact").child("contact")) model_.has_contact = true;
+  void read_load(const pugi::xml_node& load) {
+    const std::string type = load.attribute("type").as_string();
+    if (load.type() != pugi::node_element) return;
+    if (std::string_view(load.name()) == "surface_load" && type == "pressure")
+      read_pressure(load);
+    else
+      left_out_.insert("load " + formats::quoted(type));
   }
 
   void read_bc(const pugi::xml_node& bc) {
@@ -278,6 +351,8 @@ class FebioReader {
   std::vector<double> displacements(const pugi::xml_node& bc, size_t count) {
     const pugi::xml_node value = bc.child("value");
     if (!value) places_.add(bc, "<value> is missing");
+    if (places_.number_or(bc, "relative", 0) != 0)
+      places_.add(bc, "a displacement relative to the step before is not read; state it from the start");
     const double scale = factor(value);
     if (std::string_view(value.attribute("type").as_string()) != "map")
       return std::vector<double>(count, scale * places_.number(value).value_or(0));
@@ -397,9 +472,9 @@ class FebioReader {
   FebioPlaces places_;
   pugi::xml_document document_;
   pugi::xml_node root_;
-  std::vector<pugi::xml_node> sections_;  // the model itself, then its steps
+  std::vector<Section> sections_;  // the model itself, then its steps
   FeModel model_;
-  std::optional<double> end_;
+  std::optional<double> end_;  // of the section that is being read
   std::map<std::string, LoadCurve> curves_;
   std::vector<Vec3> positions_;
   std::unordered_map<long long, int> index_;  // of the node ids

@@ -10,6 +10,9 @@
 namespace coapt::formats {
 namespace {
 
+constexpr double kGreatestPoisson = 0.4999;     // of the scene's linear membranes
+constexpr double kLargestBelowHalf = 0.499999;  // where the bulk modulus is still a number to work with
+
 // Twelve digits: what a product and a quotient leave of a number that somebody wrote.
 double rounded(double value) {
   char text[40];
@@ -131,33 +134,53 @@ double FebioPlaces::required(const pugi::xml_node& parent, const char* name) con
 std::optional<Material> febio_shell_law(const pugi::xml_node& material, double thickness,
                                         const FebioPlaces& places) {
   const std::string type = material.attribute("type").as_string();
+  bool is_sound = true;
   const auto value = [&](const char* name) { return places.required(material, name); };
+  const auto positive = [&](const char* name) {
+    const double number = places.required(material, name);
+    if (number > 0 || !material.child(name)) return number;
+    places.add(material.child(name), "must be positive");
+    is_sound = false;
+    return 1.0;
+  };
+  const auto not_negative = [&](const char* name) {
+    const double number = value(name);
+    if (number >= 0) return number;
+    places.add(material.child(name), "must not be negative");
+    is_sound = false;
+    return 0.0;
+  };
+  const auto poisson_up_to = [&](double greatest) {
+    const double number = value("v");
+    if (number > -1 && number <= greatest) return number;
+    places.add(material.child("v"), "Poisson's ratio must lie above -1 and up to " + number_text(greatest));
+    is_sound = false;
+    return 0.0;
+  };
   Material law;
   if (type == "isotropic elastic") {
-    law = {"cst_stvk", {{"young", pressure_text(value("E"))}, {"poisson", number_text(value("v"))}}};
+    const double young = positive("E"), poisson = std::min(poisson_up_to(0.5), kGreatestPoisson);
+    law = {"cst_stvk", {{"young", pressure_text(young)}, {"poisson", number_text(poisson)}}};
   } else if (type == "neo-Hookean") {
-    const double young = value("E"), poisson = value("v");
-    if (poisson <= -1 || poisson >= 0.5) {
-      places.add(material, "Poisson's ratio must lie between -1 and 0.5");
-      return std::nullopt;
-    }
+    const double young = positive("E"), poisson = poisson_up_to(kLargestBelowHalf);
     law = {"cst_neo_hookean",
            {{"shear_modulus", pressure_text(rounded(young / (2 * (1 + poisson))))},
             {"bulk", pressure_text(rounded(young / (3 * (1 - 2 * poisson))))}}};
   } else if (type == "incomp neo-Hookean") {
-    law = {"cst_neo_hookean", {{"shear_modulus", pressure_text(value("G"))}}};
+    law = {"cst_neo_hookean", {{"shear_modulus", pressure_text(positive("G"))}}};
   } else if (type == "Mooney-Rivlin" && places.number_or(material, "c2", 0) == 0) {
-    law = {"cst_neo_hookean", {{"shear_modulus", pressure_text(2 * value("c1"))}}};
+    law = {"cst_neo_hookean", {{"shear_modulus", pressure_text(2 * positive("c1"))}}};
   } else if (type == "isotropic Lee-Sacks" || type == "uncoupled isotropic Lee-Sacks") {
     law = {"cst_exponential",
-           {{"c0", pressure_text(value("c0"))},
-            {"c1", pressure_text(value("c1"))},
-            {"c2", number_text(value("c2"))}}};
-    if (type == "isotropic Lee-Sacks") law.keys.emplace_back("bulk", pressure_text(value("k")));
+           {{"c0", pressure_text(positive("c0"))},
+            {"c1", pressure_text(not_negative("c1"))},
+            {"c2", number_text(not_negative("c2"))}}};
+    if (type == "isotropic Lee-Sacks") law.keys.emplace_back("bulk", pressure_text(positive("k")));
   } else {
     places.add(material, "no law of a scene is like " + formats::quoted(type));
     return std::nullopt;
   }
+  if (!is_sound) return std::nullopt;
   law.keys.emplace_back("thickness", length_text(thickness));
   return law;
 }

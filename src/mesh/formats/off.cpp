@@ -28,6 +28,10 @@ class OffReader {
     builder_.reserve(static_cast<size_t>(vertex_count), static_cast<size_t>(face_count));
     for (long long i = 0; i < vertex_count; ++i) read_vertex(i, vertex_count);
     for (long long i = 0; i < face_count; ++i) read_face(i, face_count);
+    if (std::string_view more; next_line(more))
+      defects_.add("line", lines_.number(),
+                   "stands behind the " + std::to_string(vertex_count) + " vertices and " +
+                       std::to_string(face_count) + " faces announced; correct the counts");
     return builder_.finish();
   }
 

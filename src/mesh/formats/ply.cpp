@@ -68,6 +68,11 @@ class PlyReader {
         region_ = value >= 0 && value < kMostRegions ? static_cast<int>(value) : 0;
         break;
       case PlyRole::Corners:
+        if (std::isfinite(value) && value != std::floor(value)) {
+          std::string text;
+          append_number(text, value);
+          defects_.add(element.name, i, "corner " + text + " is not a whole number");
+        }
         corners_.push_back(value >= -1e15 && value <= 1e15 ? static_cast<long long>(value) : -1);
         break;
       case PlyRole::None:
@@ -99,6 +104,11 @@ class PlyReader {
     for (const PlyProperty& property : element.properties) {
       double count = 1, value = 0;
       if (property.is_list && !next(count)) return;
+      if (!(count >= 0) || count != std::floor(count)) {
+        defects_.add("line", number, element.name + ": the length of a list is not a whole number");
+        ok_ = false;
+        return;
+      }
       for (double k = 0; k < count; ++k) {
         if (!next(value)) return;
         take(property, value, element, i);

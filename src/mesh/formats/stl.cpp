@@ -96,11 +96,16 @@ class StlReader {
       } else if (word == "solid") {
         names_.emplace_back(trimmed(rest));
         if (names_.back().empty()) names_.back() = "solid " + std::to_string(names_.size());
-      } else if (word == "outer") {
-        loop_.clear();
+      } else if (word == "facet" || word == "outer") {
+        refuse_open_loop(lines.number());
+        facet_has_loop_ = facet_has_loop_ && word == "outer";
       } else if (word == "endloop") {
         close_loop(lines.number());
-      } else if (!word.empty() && word != "facet" && word != "endfacet" && word != "endsolid") {
+      } else if (word == "endfacet") {
+        refuse_open_loop(lines.number());
+        if (!facet_has_loop_) defects_.add("line", lines.number(), "a facet without a loop of vertices");
+        facet_has_loop_ = false;
+      } else if (!word.empty() && word != "endsolid") {
         defects_.add("line", lines.number(), quoted(word) + " is not a statement of STL");
       }
     }
@@ -117,7 +122,18 @@ class StlReader {
     loop_.push_back(vertex(corner));
   }
 
+  // A loop that is not ended makes no triangle.
+  void refuse_open_loop(int line) {
+    if (loop_.empty()) return;
+    defects_.add(
+        "line", line,
+        "the loop of " + std::to_string(loop_.size()) + " vertices before is not ended by 'endloop'");
+    loop_.clear();
+    facet_has_loop_ = true;  // said once
+  }
+
   void close_loop(int line) {
+    facet_has_loop_ = true;
     if (loop_.size() < 3)
       defects_.add("line", line, "facet with " + std::to_string(loop_.size()) + " vertices; 3 are needed");
     else
@@ -131,6 +147,7 @@ class StlReader {
   MeshBuilder builder_;
   std::unordered_map<Corner, int, CornerHash> numbers_;
   std::vector<long long> loop_;
+  bool facet_has_loop_ = false;
   std::vector<int> regions_;
   std::vector<std::string> names_;
   std::uint64_t corner_count_ = 0;

@@ -39,8 +39,13 @@ class VtpReader {
     if (left_out_ > 0)
       builder_.warnings.push_back(defects_.file() + ": " + std::to_string(left_out_) +
                                   " points, lines or strips are no polygons and were left out");
-    if (!has_regions_) return builder_.finish();
-    return builder_.finish(std::move(regions_), region_names(data.child("FieldData")));
+    const pugi::xml_node field_data = data.child("FieldData");
+    MeshFile file =
+        has_regions_ ? builder_.finish(std::move(regions_), region_names(field_data)) : builder_.finish();
+    if (const auto space = texts(field_data, "SPACE");
+        !space.empty() && (space[0] == "RAS" || space[0] == "LPS"))
+      file.space = space[0];
+    return file;
   }
 
  private:
@@ -115,8 +120,10 @@ class VtpReader {
   template <class Number>
   static Number checked(double value) {
     if (!std::isfinite(value)) throw InputError("holds a number that is not finite");
-    if constexpr (std::is_integral_v<Number>)
+    if constexpr (std::is_integral_v<Number>) {
       if (std::abs(value) > 1e15) throw InputError("holds a number that is out of range");
+      if (value != std::floor(value)) throw InputError("holds a number that is not whole");
+    }
     return static_cast<Number>(value);
   }
 
@@ -135,10 +142,20 @@ class VtpReader {
     return parent.find_child_by_attribute("DataArray", "Name", name);
   }
 
+  // The piece says how many there are; a file that was cut or edited holds another number.
+  void compare_count(const pugi::xml_node& piece, const char* announced, size_t count) {
+    if (count == 0 && defects_.any()) return;  // said already
+    const pugi::xml_attribute number = piece.attribute(announced);
+    if (number && number.as_llong(-1) != static_cast<long long>(count))
+      defects_.add(std::string(announced) + " is " + quoted(number.as_string()) + ", but the file holds " +
+                   std::to_string(count));
+  }
+
   void read_piece(const pugi::xml_node& piece) {
     const long long first_vertex = builder_.vertex_count();
     const auto points = numbers<double>(piece.child("Points").child("DataArray"), "Points");
     if (points.size() % 3 != 0) defects_.add("Points: the coordinates are not a multiple of 3");
+    compare_count(piece, "NumberOfPoints", points.size() / 3);
     for (size_t i = 0; i + 2 < points.size(); i += 3)
       builder_.add_vertex(points[i], points[i + 1], points[i + 2]);
 
@@ -153,6 +170,9 @@ class VtpReader {
     if (!polys || piece.attribute("NumberOfPolys").as_llong(1) == 0) return;
     const auto corners = numbers<long long>(named(polys, "connectivity"), "Polys connectivity");
     const auto ends = numbers<long long>(named(polys, "offsets"), "Polys offsets");
+    compare_count(piece, "NumberOfPolys", ends.size());
+    if (!ends.empty() && ends.back() < static_cast<long long>(corners.size()))
+      defects_.add("Polys connectivity: holds corners behind the last offset");
     std::vector<double> regions;
     if (const pugi::xml_node node = named(piece.child("CellData"), "region")) {
       regions = numbers<double>(node, "CellData region");
@@ -176,9 +196,9 @@ class VtpReader {
   }
 
   // Strings are stored as character codes, each string ended by a zero.
-  std::vector<std::string> region_names(const pugi::xml_node& field_data) const {
+  static std::vector<std::string> texts(const pugi::xml_node& field_data, const char* array) {
     std::vector<std::string> names;
-    std::string_view codes = field_data.find_child_by_attribute("Array", "Name", "region_names").text().get();
+    std::string_view codes = field_data.find_child_by_attribute("Array", "Name", array).text().get();
     std::string name;
     for (std::string_view word = next_word(codes); !word.empty(); word = next_word(codes)) {
       long long code = 0;
@@ -190,6 +210,11 @@ class VtpReader {
       names.push_back(std::move(name));
       name.clear();
     }
+    return names;
+  }
+
+  std::vector<std::string> region_names(const pugi::xml_node& field_data) const {
+    std::vector<std::string> names = texts(field_data, "region_names");
     for (const int region : regions_)
       while (static_cast<int>(names.size()) <= region)
         names.push_back("region " + std::to_string(names.size()));

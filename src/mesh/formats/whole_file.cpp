@@ -28,6 +28,7 @@ std::string read_whole(const std::filesystem::path& path, std::uintmax_t greates
   while (stream.read(block, sizeof block) || stream.gcount() > 0)
     bytes.append(block, static_cast<size_t>(stream.gcount()));
   if (stream.bad()) throw InputError(name + ": reading failed");
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   return bytes;
 }
 

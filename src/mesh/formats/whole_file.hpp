@@ -10,8 +10,8 @@
 
 namespace coapt::formats {
 
-// Throws InputError when the path is not a regular file that can be read, or is greater than `greatest`
-// [bytes].
+// The bytes of a file without the byte order mark of UTF-8. Throws InputError when the path is not a regular
+// file that can be read, or is greater than `greatest` [bytes].
 std::string read_whole(const std::filesystem::path& path,
                        std::uintmax_t greatest = std::numeric_limits<std::uintmax_t>::max());
 

@@ -281,6 +281,12 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
   const auto closed_tips = valve.chords.papillary_closed.cols();
   if (closed_tips > 0 && closed_tips != valve.chords.papillary.cols())
     defects.push_back("chords: there are as many closed papillary tips as open ones, or none");
+  for (const auto& [name, tips] :
+       {std::pair{"tip ", &valve.chords.papillary}, std::pair{"closed tip ", &valve.chords.papillary_closed}})
+    for (int k = 0; k < tips->cols(); ++k)
+      if (!(tips->col(k).array().abs() <= kGreatestCoordinate).all())
+        defects.push_back("chords: " + std::string(name) + std::to_string(k) +
+                          ": a coordinate is not finite or greater than 1e9 mm");
   if (!defects.empty()) throw InputError(defects);
   const Plane plane = annulus_plane(valve);
   check_tips(valve, plane, options.depth, defects);

@@ -46,8 +46,8 @@ struct LeafletChordOptions {
 // is there, at the zone's height), each at a vertex of its own; count x branches^(levels - 1) of each zone.
 // Neighbours share a chord, which comes from the tip nearest to them. Deterministic.
 //
-// Throws InputError with all defects: options out of range, no tips, tips on or above the plane, no annulus
-// or free edge, fewer vertices than insertions.
+// Throws InputError with all defects: options out of range, no tips, tips that are not finite, beyond
+// kGreatestCoordinate, or on or above the plane, no annulus or free edge, fewer vertices than insertions.
 ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& options);
 
 // Names the rims of a mesh from its boundary, as far as they are not named: the loop farthest from the tips

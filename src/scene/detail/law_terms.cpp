@@ -1,6 +1,6 @@
 #include "scene/detail/law_terms.hpp"
 
-#include <nlohmann/json.hpp>
+#include "scene/detail/json_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -31,7 +31,7 @@ std::string keys_text(const Material& law) {
   return text;
 }
 
-std::string list_text(const std::vector<std::string>& names) { return nlohmann::json(names).dump(); }
+std::string list_text(const std::vector<std::string>& names) { return json_text(nlohmann::json(names)); }
 
 std::string usual_membrane(const Valve& valve, const ImportOptions& options, const std::string& name,
                            const std::vector<std::string>& regions) {
@@ -100,7 +100,7 @@ std::string digits(double value) {
   return {buffer, result.ptr};
 }
 
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 
 std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& options) {
   Names names;

@@ -1,6 +1,7 @@
 #include "scene/detail/read_parameters.hpp"
 
 #include "core/error.hpp"
+#include "scene/detail/json_text.hpp"
 #include "scene/detail/read_item.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/term_types.hpp"
@@ -85,7 +86,7 @@ std::optional<double> read_integer(const Item& item) {
     return std::nullopt;
   }
   const std::vector<std::string>& choices = item.key.choices;
-  if (!choices.empty() && std::find(choices.begin(), choices.end(), item.json.dump()) == choices.end()) {
+  if (!choices.empty() && std::find(choices.begin(), choices.end(), json_text(item.json)) == choices.end()) {
     item.refuse("read " + shown(item.json) + "; expected one of " + listed(choices));
     return std::nullopt;
   }
@@ -254,7 +255,7 @@ void check_group(const Json& json, const KeyGroup& group, const std::string& whe
 
 std::string shown(const Json& json) {
   constexpr size_t kLongest = 60;
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(json);
   return text.size() > kLongest ? text.substr(0, kLongest) + " ..." : text;
 }
 

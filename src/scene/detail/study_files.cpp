@@ -3,6 +3,7 @@
 
 #include "mesh/formats/whole_file.hpp"
 #include "scene/detail/csv_text.hpp"
+#include "scene/detail/json_text.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -42,7 +43,7 @@ void add_row(std::ostream& out, const std::string& name, const SensitivityRun& r
 
 void write_study(const std::filesystem::path& folder, const std::string& name, const Json& json,
                  const std::string& csv) {
-  formats::write_whole(folder / (name + ".json"), json.dump(2) + "\n");
+  formats::write_whole(folder / (name + ".json"), json_text(json, 2) + "\n");
   formats::write_whole(folder / (name + ".csv"), csv);
 }
 

@@ -6,7 +6,6 @@
 #include "scene/markups.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 namespace coapt::detail {
 namespace {
@@ -89,15 +88,6 @@ void apply_curves(const ImportOptions& options, const std::string& file, Valve& 
   });
   attempt([&] { apply_tips(options, file, valve, warnings); });
   if (!defects.empty()) throw InputError(defects);
-}
-
-bool states_ras(const std::filesystem::path& mesh_file) {
-  constexpr size_t kHeader = 4096;
-  std::ifstream stream(mesh_file, std::ios::binary);
-  std::string head(kHeader, ' ');
-  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
-  return head.find("SPACE=RAS") != std::string::npos;
 }
 
 }  // namespace coapt::detail

@@ -4,7 +4,6 @@
 #include "mesh/valve.hpp"
 #include "scene/import.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,5 @@ void choose_annulus(Valve& valve, const Points& curve);
 // names it in messages. Throws InputError with all defects.
 void apply_curves(const ImportOptions& options, const std::string& file, Valve& valve,
                   std::vector<std::string>& warnings);
-
-// Whether the header of a mesh file says SPACE=RAS, as 3D Slicer writes it: x and y have the other sign.
-bool states_ras(const std::filesystem::path& mesh_file);
 
 }  // namespace coapt::detail

@@ -202,6 +202,15 @@ TEST(LeafletChordsTest, NamesEveryDefect) {
   Valve above = valve;
   above.chords.papillary(2, 1) = 3;
   EXPECT_EQ(defects(above, {}), 1u);
+  for (const double bad : {kNaN, kInfinity, 1e200}) {
+    Valve far = valve;
+    far.chords.papillary(0, 1) = bad;
+    EXPECT_EQ(defects(far, {}), 1u) << bad;
+    far = valve;
+    far.chords.papillary_closed = valve.chords.papillary;
+    far.chords.papillary_closed(2, 0) = -bad;
+    EXPECT_EQ(defects(far, {}), 1u) << bad;
+  }
   EXPECT_THROW(chord_zone("fre_edge"), InputError);
 }
 

@@ -1,0 +1,16 @@
+// JSON values as texts. Private to this room.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace coapt {
+
+// The text of a value; bytes that are not UTF-8, as a path may have, become U+FFFD. indent -1: on one line.
+template <class AnyJson>
+std::string json_text(const AnyJson& json, int indent = -1) {
+  return json.dump(indent, ' ', false, AnyJson::error_handler_t::replace);
+}
+
+}  // namespace coapt
