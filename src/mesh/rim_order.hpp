@@ -14,7 +14,7 @@ bool is_same_loop(const std::vector<int>& a, const std::vector<int>& b);
 struct RimLoop {
   std::vector<int> vertices;  // in the order of the rim from the first one given; as given where kept
   bool is_reordered = false;
-  int rims = 0;  // on which they lie, where one of these is wholly theirs; else 0 or 1
+  int rims = 0;  // on which they lie; 0 where those are several and none is wholly theirs
   bool spans_rims() const { return rims > 1; }
 };
 

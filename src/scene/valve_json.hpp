@@ -32,6 +32,8 @@ enum class ValveMeshes { Read, Skip };
 // Reads a valve JSON in any unit of length ("units", default mm) and with it the meshes that it names.
 // With Skip the meshes are left out, vertex numbers are not compared with their size, and materials and
 // chord_materials, which belong to regions of the mesh, are passed over.
+// An annulus in another order than that of its rim is put in order, with its closed positions and a warning;
+// one of two rims is refused (with the leaflets alone).
 // Throws InputError with all defects, each naming file and entry.
 ValveFile read_valve(const std::filesystem::path& path, ValveMeshes meshes = ValveMeshes::Read);
 
