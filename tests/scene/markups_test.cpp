@@ -188,12 +188,12 @@ TEST(Markups, NamesThatAreNotUtf8ComeThroughAnImport) {
   TriangleMesh surface = tube();
   surface.regions.assign(static_cast<size_t>(surface.triangle_count()), 0);
   surface.regions[0] = 1;
-  surface.region_names = {"W\xe4nde", "rest"};
+  surface.region_names = {"rest", "W\xe4nde"};
   write_mesh(mesh, surface);
   import_valve(mesh, folder.path() / "out", {});
   const Scene scene = load_scene(folder.path() / "out" / "scene.json");
   EXPECT_EQ(scene.name, "R\xc3\xb6hre");
-  EXPECT_EQ(build(scene).mesh.region_names[0], "W\xc3\xa4nde");
+  EXPECT_EQ(build(scene).mesh.region_names[0], "W\xc3\xa4nde") << "of the first triangle";
 }
 
 TEST(Markups, RefusesCurvesWhereTheyDoNotFit) {
