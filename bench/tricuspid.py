@@ -69,6 +69,8 @@ def main() -> None:
             scene = imported(arguments.coapt, source, folder, options)
             switch(scene)
             scene.setdefault("solver", {})["max_seconds"] = "2000 s"
+            if arguments.full:  # the Abaqus file holds no closed state
+                scene["reference"] = {"closed_surface": str((data / "leaflets_closed_reference.obj").resolve())}
             (folder / "row.json").write_text(json.dumps(scene))
             result = solved(arguments.coapt, folder / "row.json", "--tolerance", "1e-8")
             metrics, distance = result["metrics"], result.get("distance_to_reference", {})

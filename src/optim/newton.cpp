@@ -10,9 +10,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kFirstShift = 10;  // times force over length of the scene
-constexpr double kFall = 0.2;       // of the shift after a step that kept its promise
-constexpr double kRise = 4;         // after one that was shortened much
+constexpr double kFirstShift = 5;  // times force over length of the scene
+constexpr double kFall = 0.2;      // of the shift after a step that kept its promise
+constexpr double kRise = 4;        // after one that was shortened much
 constexpr double kMostShift = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease

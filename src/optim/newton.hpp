@@ -11,7 +11,7 @@ namespace coapt {
 // projection adds, as far as the curvature is positive (Steihaug 1983). The skew part, from pressure on free
 // edges, is taken into account by GMRES preconditioned with the factor of the symmetric one; near an
 // equilibrium whose symmetric part is indefinite GMRES solves with the exact tangent. The shift mu
-// (pseudo-transient continuation; Kelley & Keyes 1998) starts at ten times force over length of the scene,
+// (pseudo-transient continuation; Kelley & Keyes 1998) starts at five times force over length of the scene,
 // falls five- or twenty-fivefold with each full step that keeps what the quadratic model promised, and rises
 // where a step has to be shortened. Of the options: globalisation, factorisation.
 std::unique_ptr<Solver> make_newton(const SolverOptions& options = {});

@@ -80,7 +80,7 @@ TEST_F(RegionTuningTest, SparesTheChordsOfAValveInContact) {
 TEST_F(RegionTuningTest, SparesTheChordsOfLeafletsOfTissueInContact) {
   expect_tuned(scene("barrier", R"({"type": "cst_exponential", "name": "leaflets", "c0": "0.1 MPa",
       "c1": "0.02 MPa", "c2": 4, "thickness": "0.65 mm"})"),
-               0.12);
+               0.08);
 }
 
 }  // namespace

@@ -157,7 +157,7 @@ TEST_F(StatedLaws, ThatNobodyKnowsAreNamedAndTheUsualOnesTaken) {
     warning({{"chord_materials", chords}}, "chord_materials.model: no law is known as");
   }
   chords = chord_tissue();
-  chords["anterior"][1] = -98.25;
+  chords["anterior"][0] = -98.25;
   warning({{"chord_materials", chords}}, "chord_materials.anterior: no term is like this law");
 }
 
