@@ -69,7 +69,7 @@ void Monitor::begin_round(int round, double tolerance) {
   last_gain_ = iterations_;
 }
 
-std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g) {
+std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g, double time) {
   if (!std::isfinite(energy) || !g.allFinite()) return Status::NonFinite;
   if (!is_first_of_round_) ++iterations_;
   is_first_of_round_ = false;
@@ -81,6 +81,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.residual = objective_.relative_residual(g);
   now.step = last_.size() == q.size() && q.size() > 0 ? (q - last_).lpNorm<Eigen::Infinity>() : 0;
   now.seconds = seconds();
+  now.time = time;
   now.evaluations = objective_.counts().gradient + objective_.counts().hessian;
   last_ = q;
   objective_.advance(q);

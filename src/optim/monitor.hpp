@@ -30,7 +30,8 @@ class Monitor {
 
   // Call once per accepted iterate, the start included. Returns why to stop, or nothing to go on: among
   // the reasons that many iterates in a row have lowered neither the energy nor the residual.
-  std::optional<Status> accept(const Vector& q, double energy, const Vector& g);
+  // time: simulated, of a method that has one [s].
+  std::optional<Status> accept(const Vector& q, double energy, const Vector& g, double time = 0);
 
   // For methods that hide their iterates: call it at every evaluation; true = stop now.
   bool is_out_of_time() const;

@@ -42,6 +42,7 @@ struct Iteration {
   double residual = 0;   // relative, of that potential
   double step = 0;       // largest change of an unknown [length]
   double seconds = 0;    // wall time since the start
+  double time = 0;       // simulated, of a method that follows the motion of masses [s]
   long evaluations = 0;  // of the gradient so far
 };
 
@@ -130,6 +131,7 @@ struct SolverOptions {
   bool is_preconditioned = false;                           // lbfgs: the factorised Hessian as start metric
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
+  std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
 };
 
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;

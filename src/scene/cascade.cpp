@@ -82,13 +82,13 @@ class Cascade {
       : make_solver_(make_solver), stop_(stop), observer_(observer) {}
 
   // Solves a mesh of the cascade and notes it as a level.
-  Result level(const Problem& problem, int triangles, double tolerance) {
+  Result level(const Problem& problem, const Model& model, double tolerance) {
     StopRule stop = stop_;
     stop.tolerance = std::max(tolerance, stop_.tolerance);
     stop.max_seconds = std::max(0.0, stop_.max_seconds - (wall_seconds() - wall_start_));
-    const std::unique_ptr<Solver> solver = make_solver_();
+    const std::unique_ptr<Solver> solver = make_solver_(model);
     Result result = solve(*solver, problem, stop, observer_);
-    outcome.levels.push_back({triangles, result.iterations, result.status, result.residual,
+    outcome.levels.push_back({model.mesh.triangle_count(), result.iterations, result.status, result.residual,
                               wall_seconds() - level_wall_, cpu_seconds() - level_cpu_});
     level_wall_ = wall_seconds();
     level_cpu_ = cpu_seconds();
@@ -154,7 +154,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
       const Problem problem =
           is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
                       : problem_at(start.x, model);
-      const Result result = cascade.level(problem, mesh.triangle_count(), kCoarseTolerance);
+      const Result result = cascade.level(problem, model, kCoarseTolerance);
       start = {model.objective->positions(result.q), result.status};
       if (result.status != Status::Converged) failure = result.message;
     } catch (const InputError& error) {
@@ -180,7 +180,6 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                              const SolverMaker& make_solver, const StopRule& stop, const Observer& observer,
                              const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
-  const int triangles = model.mesh.triangle_count();
   std::optional<Start> start = coarse_start(scene, ground, cascade);
   if (start && !can_start_at(start->x, model)) {
     cascade.warn(
@@ -191,10 +190,10 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
     Problem problem = problem_at(start->x, model);
     problem.stability = stability;
     if (was_interrupted(start->status)) {
-      cascade.finish(judged(problem, start->status, *make_solver()));
+      cascade.finish(judged(problem, start->status, *make_solver(model)));
       return std::move(cascade.outcome);
     }
-    Result result = cascade.level(problem, triangles, stop.tolerance);
+    Result result = cascade.level(problem, model, stop.tolerance);
     if (result.status == Status::Converged || result.status == Status::IterationLimit ||
         was_interrupted(result.status)) {
       cascade.finish(std::move(result));
@@ -205,8 +204,8 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
     model.objective->prescribe(model.X);
   }
   cascade.finish(
-      cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation, stability},
-                    triangles, stop.tolerance));
+      cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation, stability}, model,
+                    stop.tolerance));
   return std::move(cascade.outcome);
 }
 

@@ -26,7 +26,8 @@ struct CascadeOutcome {
   std::vector<std::string> warnings;
 };
 
-using SolverMaker = std::function<std::unique_ptr<Solver>()>;
+// Makes a solver for a model; methods that move masses need to know what they are.
+using SolverMaker = std::function<std::unique_ptr<Solver>(const Model& model)>;
 
 // The prescribed motion is followed on the coarsest mesh alone; finer ones start where it ends. The meshes of
 // the cascade have about a quarter of the triangles of the next. Coarser meshes are solved to a loose

@@ -198,6 +198,7 @@ SolverSpec solver_from(const Parameters& values) {
       values.text("globalisation") == "trust_region" ? Globalisation::TrustRegion : Globalisation::LineSearch;
   solver.factorisation = values.text("factorisation");
   solver.threads = values.integer("threads");
+  solver.density = values.number("density");
   if (values.has("continuation")) {
     const Parameters& continuation = values.object("continuation");
     solver.continuation.load_steps = continuation.integer("load_steps");

@@ -20,6 +20,7 @@ namespace coapt {
 struct Line {
   int a = 0, b = 0;        // nodes
   double rest_length = 0;  // [mm]; 0 for a constant-force cable
+  double area = 0;         // cross-section [mm2]; 0: not known
   std::string term;        // name of the term that it belongs to
   int element = 0;         // its element in that term
 };

@@ -76,8 +76,9 @@ struct SolverSpec {
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   std::string factorisation = "auto";                       // name in the table of the build
   Continuation continuation;
-  int threads = 1;  // that assemble the Hessian
-  int modes = 0;    // smallest eigenvalues in the certificate
+  int threads = 1;           // that assemble the Hessian
+  double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
+  int modes = 0;             // smallest eigenvalues in the certificate
 };
 
 struct Scene {

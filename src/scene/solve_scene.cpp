@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "scene/build.hpp"
+#include "scene/masses.hpp"
 #include "scene/suggestion.hpp"
 
 #include <cmath>
@@ -26,6 +27,13 @@ SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name)
   return found->second;
 }
 
+// What the scene says of the method, and what the method may ask of the body that it moves.
+SolverOptions solver_options(const SolverSpec& spec, const FactorisationFactory& factorisation,
+                             const Model& model) {
+  return {spec.memory, spec.is_preconditioned, spec.globalisation, factorisation,
+          [&model, density = spec.density] { return lumped_masses(model, density); }};
+}
+
 StopRule stop_rule(const Scene& scene, const RunOptions& options) {
   StopRule stop;
   stop.tolerance = options.tolerance.value_or(scene.solver.tolerance);
@@ -45,11 +53,8 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
   const FactorisationFactory factorisation =
       chosen_factorisation(options.factorisations, scene.solver.factorisation);
-  const SolverOptions solver_options{scene.solver.memory, scene.solver.is_preconditioned,
-                                     scene.solver.globalisation, factorisation};
-  setup.make_solver = [factory = chosen_solver(solvers, setup.solver), solver_options] {
-    return factory(solver_options);
-  };
+  setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, factorisation](
+                          const Model& model) { return make(solver_options(spec, factorisation, model)); };
   setup.stop = stop_rule(scene, options);
   setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
   setup.observer = options.observer;
@@ -63,7 +68,7 @@ CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& 
                          setup.stability);
   CascadeOutcome outcome;
   outcome.result =
-      solve(*setup.make_solver(),
+      solve(*setup.make_solver(model),
             {*model.objective, model.q0, model.motion, scene.solver.continuation, setup.stability},
             setup.stop, setup.observer);
   return outcome;
@@ -72,7 +77,7 @@ CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& 
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup) {
   Problem problem = problem_at(x, model);
   problem.stability = setup.stability;
-  return solve(*setup.make_solver(), problem, setup.stop, setup.observer);
+  return solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
 }
 
 }  // namespace coapt

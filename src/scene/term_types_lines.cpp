@@ -62,8 +62,10 @@ std::vector<RestLine> rest_lines(const Parameters& p, const BuildContext& contex
   return p.has("network") ? network_lines(p, context) : edge_lines(p, context);
 }
 
-void note_line(const TermSpec& spec, const RestLine& line, double length, int element, Model& model) {
-  model.lines.push_back({line.a, line.b, length, spec.name, element});
+// area: 0 where the term has none.
+void note_line(const TermSpec& spec, const RestLine& line, double length, double area, int element,
+               Model& model) {
+  model.lines.push_back({line.a, line.b, length, area, spec.name, element});
 }
 
 void warn_of_no_length(const RestLine& line, Model& model) {
@@ -79,8 +81,8 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
   std::vector<std::string> defects;
   for (const RestLine& line : rest_lines(p, context)) {
     Cable::Rest element{0, 0, 0, p.number_or("tension", 0)};
+    const double area = is_elastic ? p.number_or("area", line.area) * p.number("area_scale") : line.area;
     if (is_elastic) {
-      const double area = p.number_or("area", line.area) * p.number("area_scale");
       element.length = line.length * p.number("length_scale");
       if (area <= 0) defects.push_back(line.label + ": has no area; give `area` in " + p.where());
       if (element.length <= 0) {
@@ -90,7 +92,7 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
       element.stiffness = p.number("young") * area / element.length;
       element.smoothing = p.number("smoothing") * element.length;
     }
-    note_line(spec, line, element.length, static_cast<int>(rest.size()), context.model);
+    note_line(spec, line, element.length, area, static_cast<int>(rest.size()), context.model);
     nodes.insert(nodes.end(), {line.a, line.b});
     rest.push_back(element);
   }
@@ -113,7 +115,7 @@ TermPointer build_cable_law(const TermSpec& spec, BuildContext& context, const L
       warn_of_no_length(line, context.model);
       continue;
     }
-    note_line(spec, line, length, static_cast<int>(rest.size()), context.model);
+    note_line(spec, line, length, area, static_cast<int>(rest.size()), context.model);
     nodes.insert(nodes.end(), {line.a, line.b});
     rest.push_back(CableLaw<Law>::rest(length, area, p.number("smoothing"), law));
   }
@@ -201,7 +203,7 @@ TermPointer build_tether(const TermSpec& spec, BuildContext& context) {
   for (const RestLine& line : rest_lines(p, context)) {
     const double length = p.number_or("length", line.length * p.number("length_scale"));
     if (length == 0) context.model.warnings.push_back(line.label + ": the tether has length zero.");
-    note_line(spec, line, length, static_cast<int>(rest.size()), context.model);
+    note_line(spec, line, length, line.area, static_cast<int>(rest.size()), context.model);
     nodes.insert(nodes.end(), {line.a, line.b});
     rest.push_back({p.number("strength"), length, p.number("scale")});
   }

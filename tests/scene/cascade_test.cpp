@@ -39,7 +39,7 @@ class CascadeTest : public testing::Test {
     return solve_cascade(scene, ground_, model_, maker, stop, observer);
   }
 
-  static std::unique_ptr<Solver> lbfgs() { return make_lbfgs(); }
+  static std::unique_ptr<Solver> lbfgs(const Model&) { return make_lbfgs(); }
 
   TemporaryFolder folder_;
   Groundwork ground_;
@@ -113,7 +113,7 @@ TEST_F(CascadeTest, SolvesDirectlyWithAWarningWhereACoarseMeshFails) {
       return make_lbfgs()->minimize(objective, q, monitor);
     }
   };
-  const CascadeOutcome outcome = solve(scene(), [] { return std::make_unique<Choosy>(); });
+  const CascadeOutcome outcome = solve(scene(), [](const Model&) { return std::make_unique<Choosy>(); });
   EXPECT_EQ(outcome.result.status, Status::Converged) << outcome.result.message;
   ASSERT_EQ(outcome.warnings.size(), 1u);
   EXPECT_NE(outcome.warnings[0].find("was not solved (stalled"), std::string::npos) << outcome.warnings[0];
