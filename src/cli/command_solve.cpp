@@ -19,7 +19,7 @@ namespace {
 struct Arguments {
   std::string scene, folder, solver;
   double tolerance = 0, max_seconds = 0;
-  int modes = 0;
+  int modes = 0, frames = 0;
 };
 
 void print_value(const char* label, const std::optional<double>& value, const char* unit,
@@ -97,7 +97,11 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                           ->add_option("--modes", arguments->modes,
                                        "Smallest eigenvalues in the certificate (default: the scene's)")
                           ->check(CLI::Range(0, 1000));
-  command->callback([arguments, tolerance, seconds, modes, &exit_code] {
+  const auto* frames = command
+                           ->add_option("--frames", arguments->frames,
+                                        "Write every N-th iterate as a frame of an animation (frames.pvd)")
+                           ->check(CLI::Range(1, 1000000000));
+  command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
     listen_for_interrupts();
     RunOptions options;
     options.solver = arguments->solver;
@@ -105,6 +109,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (tolerance->count() > 0) options.tolerance = arguments->tolerance;
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
     if (modes->count() > 0) options.modes = arguments->modes;
+    if (frames->count() > 0) options.frame_interval = arguments->frames;
     options.factorisations = all_factorisations();
     options.judge = intersection_judge();
     options.observer = make_observer();

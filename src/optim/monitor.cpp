@@ -10,6 +10,7 @@ constexpr double kEnergyNoise = 1e-12;  // relative to the energy
 constexpr double kWorkNoise = 1e-14;    // relative to force times extent
 constexpr size_t kUsualTrace = 1000;    // iterates for which the trace never grows
 constexpr int kPatience = 1000;         // iterates without gain
+constexpr int kPathPatience = 10000;    // iterates whose residual gains nothing, where no energy has to
 constexpr double kRunaway = 1e4;        // growth of the unknowns' extent that no equilibrium explains
 
 template <typename Evaluate>
@@ -66,7 +67,7 @@ void Monitor::begin_round(int round, double tolerance) {
   tolerance_ = tolerance;
   is_first_of_round_ = true;
   best_energy_ = best_residual_ = kInfinity;
-  last_gain_ = iterations_;
+  last_gain_ = last_residual_gain_ = iterations_;
 }
 
 std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g, double time) {
@@ -103,13 +104,18 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   if (is_out_of_time()) return Status::TimeLimit;
   if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;
   // Small gains add up: they are measured from the last iterate that counted as one.
-  if (energy < best_energy_ - energy_noise(energy) || now.residual < 0.9 * best_residual_) {
+  const bool is_closer = now.residual < 0.9 * best_residual_;
+  if (is_closer) last_residual_gain_ = iterations_;
+  if (is_closer || energy < best_energy_ - energy_noise(energy)) {
     last_gain_ = iterations_;
     best_energy_ = std::min(best_energy_, energy);
     best_residual_ = std::min(best_residual_, now.residual);
   }
   if (watch_ != nullptr && watch_->is_lost(objective_, q, now.residual)) return Status::NoEquilibrium;
   if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
+  // A force without potential can drive a shape in circles for ever: its work along the path always falls.
+  if (objective_.has_circulatory_force() && iterations_ - last_residual_gain_ >= kPathPatience)
+    return Status::Stalled;
   return std::nullopt;
 }
 

@@ -61,7 +61,7 @@ class Monitor {
   int iterations_ = 0;
   bool is_first_of_round_ = true;
   double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round
-  int last_gain_ = 0;                                           // iteration of the last improvement
+  int last_gain_ = 0, last_residual_gain_ = 0;                  // iterations of the last improvements
   bool cancelled_ = false;
   EquilibriumWatch* watch_ = nullptr;
   long factorisations_ = 0;

@@ -26,7 +26,8 @@ void ShiftedHessian::analyse(Monitor& monitor) {
 bool ShiftedHessian::factorise_shifted(Monitor& monitor, double shift) {
   PhaseTimer timer(monitor.phases(), "factorise");
   const double wanted = std::max(shift, least_shift_);
-  for (const int k : diagonal_) h_.valuePtr()[k] += wanted - shift_;
+  for (size_t i = 0; i < diagonal_.size(); ++i)
+    h_.valuePtr()[diagonal_[i]] += (wanted - shift_) * (weights_ ? (*weights_)[static_cast<int>(i)] : 1);
   shift_ = wanted;
   monitor.count_factorisation();
   return factor_->factorise(h_);
@@ -43,7 +44,7 @@ bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vec
     for (const int k : diagonal_) mean += h_.valuePtr()[k] / static_cast<double>(diagonal_.size());
     if (!std::isfinite(mean)) return false;
     shift_ = 0;
-    least_shift_ = kLeastShift * std::abs(mean);
+    least_shift_ = kLeastShift * std::abs(mean) / (weights_ ? weights_->mean() : 1);
     if (is_exact_) exact_ = Eigen::Map<const Vector>(h_.valuePtr(), h_.nonZeros());
     if (factorise_shifted(monitor, shift)) return true;
   }

@@ -10,11 +10,14 @@ namespace coapt {
 
 class ShiftedHessian {
  public:
-  explicit ShiftedHessian(const FactorisationFactory& make) : factor_(make()) {}
+  // weights: of the unknowns in the shift, such as masses; null: all 1. They must outlive the Hessian.
+  explicit ShiftedHessian(const FactorisationFactory& make, const Vector* weights = nullptr)
+      : factor_(make()), weights_(weights) {}
 
-  // Evaluates the Hessian at q and factorises it with `shift` [force/length] added to its diagonal: the exact
-  // one if that is positive definite, else that of projected elements with a shift that is raised until it is
-  // one. g: gradient at q. Returns false when no shift helps: the Hessian is not finite.
+  // Evaluates the Hessian at q and factorises it with `shift` times the weights [force/length] added to its
+  // diagonal: the exact one if that is positive definite, else that of projected elements with a shift that
+  // is raised until it is one. g: gradient at q. Returns false when no shift helps: the Hessian is not
+  // finite.
   bool factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g, double& shift);
 
   // The same Hessian with a greater shift.
@@ -33,6 +36,7 @@ class ShiftedHessian {
   bool factorise_shifted(Monitor& monitor, double shift);
 
   std::unique_ptr<Factorisation> factor_;
+  const Vector* weights_;
   SparseMatrix h_;
   Vector exact_;               // values of the exact Hessian, where it was not positive definite
   std::vector<int> diagonal_;  // places of the diagonal among the values

@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "optim/bfgs.hpp"
 #include "optim/carry_along.hpp"
+#include "optim/dynamic/dynamic.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
@@ -314,6 +315,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
 SolverTable built_in_solvers() {
   return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
           {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
+          {"dynamic", [](const SolverOptions& options) { return make_dynamic(options); }},
           {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
 }
 

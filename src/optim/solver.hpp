@@ -3,7 +3,9 @@
 
 #include "core/timing.hpp"
 #include "energy/objective.hpp"
+#include "mesh/triangle_mesh.hpp"
 #include "optim/certificate.hpp"
+#include "optim/dynamic/dynamic_options.hpp"
 #include "optim/factorisation.hpp"
 
 #include <functional>
@@ -131,13 +133,17 @@ struct SolverOptions {
   bool is_preconditioned = false;                           // lbfgs: the factorised Hessian as start metric
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
+  DynamicOptions dynamic = {};
+  std::function<TriangleMesh()> surface =
+      {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
 };
 
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this library: "newton", "lbfgs", "bfgs". Adapters add themselves (add_ceres_solver, ...).
+// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic". Adapters add themselves
+// (add_ceres_solver, ...).
 SolverTable built_in_solvers();
 
 }  // namespace coapt

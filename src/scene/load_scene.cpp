@@ -186,6 +186,23 @@ std::vector<TermSpec> terms_from(const Parameters& scene, Reading& reading) {
   return terms;
 }
 
+DynamicOptions dynamics_from(const Parameters& values) {
+  DynamicOptions dynamics;
+  if (values.text("integration") == "semi_implicit_euler")
+    dynamics.integration = TimeIntegration::SemiImplicitEuler;
+  dynamics.time_step = values.number("time_step");
+  dynamics.adapts_steps = values.flag("adaptive");
+  dynamics.longest_step = values.number_or("longest_step", dynamics.longest_step);
+  dynamics.relaxation_time = values.number("relaxation_time");
+  dynamics.has_kinetic_damping = values.flag("kinetic_damping");
+  const std::string& collisions = values.text("collisions");
+  if (collisions == "inelastic") dynamics.collisions = Collisions::Inelastic;
+  if (collisions == "balanced") dynamics.collisions = Collisions::Balanced;
+  dynamics.collision_distance = values.number_or("collision_distance", 0);
+  dynamics.uses_conjugate_gradients = values.text("linear_solver") == "conjugate_gradients";
+  return dynamics;
+}
+
 SolverSpec solver_from(const Parameters& values) {
   SolverSpec solver;
   solver.type = values.text("type");
@@ -205,6 +222,7 @@ SolverSpec solver_from(const Parameters& values) {
     solver.continuation.stiffness_steps = continuation.integer("stiffness_steps");
     solver.continuation.first_stiffness = continuation.number("first_stiffness");
   }
+  if (values.has("dynamics")) solver.dynamic = dynamics_from(values.object("dynamics"));
   solver.cascade = values.flag("cascade");
   if (values.has("certificate")) solver.modes = values.object("certificate").integer("modes");
   return solver;
@@ -245,8 +263,12 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
     if (reference.has("closed_surface")) scene.closed_surface = reference.text("closed_surface");
     scene.closed_surface_scale = length_scale(reference, mesh_scale, reading);
   }
-  if (values.has("output") && values.object("output").has("folder"))
-    scene.output_folder = (path.parent_path() / values.object("output").text("folder")).lexically_normal();
+  if (values.has("output")) {
+    const Parameters& output = values.object("output");
+    if (output.has("folder"))
+      scene.output_folder = (path.parent_path() / output.text("folder")).lexically_normal();
+    if (output.has("frames")) scene.frame_interval = output.integer("frames");
+  }
   check_generated(scene, file, reading);
   check_substance(scene, json, file, reading);
   if (!reading.defects.empty()) throw InputError(reading.defects);

@@ -146,10 +146,10 @@ Json levels_json(const std::vector<CascadeLevel>& levels) {
 std::string trace_csv(const Result& result) {
   std::ostringstream out;
   out.precision(10);
-  out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations\n";
+  out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations,time_s\n";
   for (const Iteration& it : result.trace)
     out << it.iteration << ',' << it.round << ',' << it.energy << ',' << it.residual << ',' << it.step << ','
-        << it.seconds << ',' << it.evaluations << '\n';
+        << it.seconds << ',' << it.evaluations << ',' << it.time << '\n';
   return out.str();
 }
 
@@ -248,6 +248,7 @@ std::vector<std::string> result_files(const Model& model, const Report& report) 
   files.insert(files.end(), {"trace.csv", "metrics.csv"});
   if (has_line(report)) files.push_back("coaptation_line.vtp");
   if (has_orifice(report)) files.push_back("orifice.vtp");
+  if (report.has_frames) files.push_back("frames.pvd");
   return files;
 }
 

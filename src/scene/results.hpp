@@ -24,6 +24,7 @@ struct Report {
   Metrics metrics;
   std::optional<ReferenceDistance> reference;
   std::vector<std::string> warnings;
+  bool has_frames = false;  // of an animation, in the result folder
 };
 
 // How the pressure of the model was treated, in words.

@@ -2,6 +2,7 @@
 
 #include "optim/smallest_modes.hpp"
 #include "scene/build.hpp"
+#include "scene/frames.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/solve_scene.hpp"
 
@@ -16,7 +17,7 @@ std::filesystem::path result_folder(const Scene& scene) {
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   RunReport run;
   Report& report = run.report;
-  const SolveSetup setup = solve_setup(scene, solvers, options);
+  SolveSetup setup = solve_setup(scene, solvers, options);
   const Groundwork ground = lay_groundwork(scene);
   run.model = build(scene, ground);
   Model& model = run.model;
@@ -25,11 +26,25 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
     run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
     prepare_result_folder(run.folder);
   }
+  std::optional<FrameWriter> frames;
+  if (options.writes) {
+    remove_frames(run.folder);
+    const int interval = options.frame_interval.value_or(scene.frame_interval);
+    if (interval > 0) {
+      frames.emplace(run.folder, interval, model);
+      setup.observer = [&frames, next = setup.observer](const Iteration& iteration, const Vector& q) {
+        frames->see(iteration, q);
+        return !next || next(iteration, q);
+      };
+    }
+  }
   report.scene_file = scene.file.filename().string();
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
   report.warnings = model.warnings;
   CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
+  if (frames) frames->finish();
+  report.has_frames = frames.has_value();
   report.result = std::move(outcome.result);
   report.levels = std::move(outcome.levels);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

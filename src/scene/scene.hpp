@@ -76,7 +76,8 @@ struct SolverSpec {
   Globalisation globalisation = Globalisation::LineSearch;  // newton
   std::string factorisation = "auto";                       // name in the table of the build
   Continuation continuation;
-  int threads = 1;           // that assemble the Hessian
+  int threads = 1;  // that assemble the Hessian
+  DynamicOptions dynamic;
   double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
   int modes = 0;             // smallest eigenvalues in the certificate
 };
@@ -96,6 +97,7 @@ struct Scene {
   std::optional<std::filesystem::path> closed_surface;  // reference
   double closed_surface_scale = 1;                      // mm per unit of that file
   std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
+  int frame_interval = 0;                               // accepted iterates from frame to frame; 0: no frames
 };
 
 // Reads and validates a scene file (docs/scene.md). Throws InputError with all defects, each as

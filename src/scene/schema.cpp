@@ -194,6 +194,62 @@ KeySpec chords_key() {
           "rims; without them the boundary loop farthest from the tips is the annulus."};
 }
 
+KeySpec dynamics_key() {
+  return {
+      .name = "dynamics",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys = {{.name = "integration",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"backward_differences\"",
+                     .choices = {"backward_differences", "semi_implicit_euler"},
+                     .doc = "Backward differences of second order, implicit, or semi-implicit Euler."},
+                    {.name = "time_step",
+                     .dimension = kTime,
+                     .fallback = "\"0.1 ms\"",
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "The first time step."},
+                    {.name = "adaptive",
+                     .kind = KeyKind::Flag,
+                     .fallback = "true",
+                     .doc = "Whether time steps adapt; otherwise all are the first."},
+                    {.name = "longest_step",
+                     .dimension = kTime,
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "Greatest time step; default: no limit."},
+                    {.name = "relaxation_time",
+                     .dimension = kTime,
+                     .fallback = "\"1 ms\"",
+                     .min = 0,
+                     .doc = "In which viscous drag alone slows every mass down by a factor e; 0: no drag."},
+                    {.name = "kinetic_damping",
+                     .kind = KeyKind::Flag,
+                     .fallback = "false",
+                     .doc = "Whether all masses are stopped whenever the kinetic energy has begun to fall."},
+                    {.name = "collisions",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"none\"",
+                     .choices = {"none", "inelastic", "balanced"},
+                     .doc = "What keeps leaflets apart besides contact terms: inelastic stops vertices that "
+                            "approach a near facet (Hammer et al. 2008); balanced also takes the forces "
+                            "that press them towards it (Hammer et al. 2011). What passes through all the "
+                            "same is counted in the result, and a run that comes to rest on collisions "
+                            "ends as stalled, as they are no part of the energy."},
+                    {.name = "collision_distance",
+                     .dimension = kLength,
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "Below which a facet is near; default: 0.3 mean edge lengths."},
+                    {.name = "linear_solver",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"cholesky\"",
+                     .choices = {"cholesky", "conjugate_gradients"},
+                     .doc = "How backward differences solve for a step."}}},
+      .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
+}
+
 KeySpec solver_key() {
   return {.name = "solver",
           .kind = KeyKind::Object,
@@ -202,7 +258,7 @@ KeySpec solver_key() {
               {.keys = {{.name = "type",
                          .kind = KeyKind::Choice,
                          .fallback = "\"newton\"",
-                         .choices = {"newton", "lbfgs", "bfgs", "ceres", "nlopt"},
+                         .choices = {"newton", "lbfgs", "bfgs", "dynamic", "ceres", "nlopt"},
                          .doc = "The method; ceres and nlopt need a build that has them."},
                         {.name = "tolerance",
                          .fallback = "1e-6",
@@ -266,6 +322,7 @@ KeySpec solver_key() {
                          .min = 0,
                          .excludes_min = true,
                          .doc = "Mass density of membrane, chords and cables, for methods that move masses."},
+                        dynamics_key(),
                         {.name = "globalisation",
                          .kind = KeyKind::Choice,
                          .fallback = "\"line_search\"",
@@ -344,8 +401,12 @@ const ObjectSpec& scene_spec() {
            .kind = KeyKind::Object,
            .object = {.keys = {{.name = "folder",
                                 .kind = KeyKind::Text,
-                                .required = true,
-                                .doc = "Result folder, relative to the scene's."}}},
+                                .doc = "Result folder, relative to the scene's."},
+                               {.name = "frames",
+                                .kind = KeyKind::Integer,
+                                .min = 1,
+                                .doc = "Writes every so-many-th accepted iterate as a frame of an animation, "
+                                       "listed by `frames.pvd`; default: none."}}},
            .doc = "Where results go."},
       }};
   return kSpec;

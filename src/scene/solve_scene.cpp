@@ -10,6 +10,8 @@
 namespace coapt {
 namespace {
 
+constexpr double kCollisionDistance = 0.3;  // of dynamics, over the mean edge length
+
 FactorisationFactory chosen_factorisation(const FactorisationTable& table, const std::string& name) {
   if (name == "auto") return table.contains("cholmod") ? table.at("cholmod") : make_eigen_factorisation;
   if (const auto found = table.find(name); found != table.end()) return found->second;
@@ -30,8 +32,18 @@ SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name)
 // What the scene says of the method, and what the method may ask of the body that it moves.
 SolverOptions solver_options(const SolverSpec& spec, const FactorisationFactory& factorisation,
                              const Model& model) {
-  return {spec.memory, spec.is_preconditioned, spec.globalisation, factorisation,
-          [&model, density = spec.density] { return lumped_masses(model, density); }};
+  SolverOptions options;
+  options.memory = spec.memory;
+  options.is_preconditioned = spec.is_preconditioned;
+  options.globalisation = spec.globalisation;
+  options.factorisation = factorisation;
+  options.dynamic = spec.dynamic;
+  if (options.dynamic.collision_distance == 0 && model.mesh.triangle_count() > 0)
+    options.dynamic.collision_distance =
+        kCollisionDistance * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
+  options.surface = [&model] { return TriangleMesh{model.X, model.mesh.triangles, {}, {}}; };
+  options.masses = [&model, density = spec.density] { return lumped_masses(model, density); };
+  return options;
 }
 
 StopRule stop_rule(const Scene& scene, const RunOptions& options) {

@@ -69,6 +69,8 @@ Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms 
   stop.max_seconds = method.max_seconds;
   SolverOptions options;
   options.factorisation = best_factorisation();
+  options.masses = method.masses;
+  options.dynamic = method.dynamic;
   const auto watch = [&](const Iteration&, const Vector& q) {
     if (method.watch) method.watch(objective.positions(q));
     return true;

@@ -35,6 +35,8 @@ struct Method {
   MotionPath motion = {};
   Continuation continuation = {};
   std::function<void(const Points& x)> watch = {};  // sees all nodes at every accepted iterate
+  std::function<Vector()> masses = {};              // of each node, for "dynamic"
+  DynamicOptions dynamic = {};
 };
 
 Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms terms, const Method& method);

@@ -1,0 +1,167 @@
+#include "optim/dynamic/time_integrator.hpp"
+#include "optim/gmres.hpp"
+#include "optim/shifted_hessian.hpp"
+
+#include <Eigen/IterativeLinearSolvers>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr int kMostIterations = 15;  // of Newton's method in a step
+constexpr int kFew = 3, kMany = 8;   // that make the next step longer, or shorter
+constexpr double kGrowth = 2;        // below 1 + sqrt(2), up to which the method is stable
+constexpr double kShrinkage = 0.5;
+constexpr double kEnough = 0.05;  // out of balance, relative to the static force, at which a step ends
+constexpr double kDecrease = 1e-4;
+constexpr int kTrials = 12;
+constexpr int kKrylovVectors = 30;
+constexpr double kForcing = 1e-2;
+
+class BackwardDifferences final : public TimeIntegrator {
+ public:
+  BackwardDifferences(const TimeIntegratorContext& context, const DynamicOptions& options,
+                      const FactorisationFactory& factorisation)
+      : objective_(context.objective),
+        monitor_(context.monitor),
+        mass_(context.mass),
+        applied_(context.applied),
+        drag_(options.relaxation_time > 0 ? 1 / options.relaxation_time : 0),
+        uses_conjugate_gradients_(options.uses_conjugate_gradients),
+        hessian_(factorisation, &context.mass) {}
+
+  void restart() override { last_step_ = 0; }
+
+  double next_step(double h, const Motion&) override {
+    return iterations_ <= kFew ? kGrowth * h : iterations_ >= kMany ? kShrinkage * h : h;
+  }
+
+  bool step(double h, Motion& at) override {
+    aim(h, at);
+    now_.q = at.q;
+    now_.energy = at.energy;
+    now_.g = at.g;
+    for (iterations_ = 0; iterations_ < kMostIterations; ++iterations_) {
+      imbalance_ = now_.g - applied_ + inertia_ * mass_.cwiseProduct(now_.q - target_);
+      if (iterations_ > 0 && is_enough()) {
+        finish(h, at);
+        return true;
+      }
+      if (monitor_.is_out_of_time() || !find_direction() || !descend()) return false;
+    }
+    return false;
+  }
+
+ private:
+  // The backward difference of q is rate (q - drift), its second difference gives the target:
+  //   v = rate (q - drift),   M inertia (q - target) + dE/dq = 0
+  void aim(double h, const Motion& at) {
+    const double r = last_step_ > 0 ? h / last_step_ : 0;  // 0: implicit Euler
+    const double b1 = -(1 + r) / h, b2 = r * r / (1 + r) / h;
+    rate_ = (1 + 2 * r) / (1 + r) / h;
+    inertia_ = rate_ * rate_ + drag_ * rate_;
+    drift_ = -b1 / rate_ * at.q;
+    target_ = -b1 / inertia_ * at.v;
+    if (r > 0) {
+      drift_ -= b2 / rate_ * before_.q;
+      target_ -= b2 / inertia_ * before_.v;
+    }
+    target_ += drift_;
+  }
+
+  bool is_enough() const {
+    return objective_.relative_residual(imbalance_) <=
+           std::max(kEnough * objective_.relative_residual(now_.g), 0.1 * monitor_.tolerance());
+  }
+
+  bool find_direction() {
+    if (uses_conjugate_gradients_) return find_by_conjugate_gradients();
+    double shift = inertia_;
+    if (!hessian_.factorise(objective_, monitor_, now_.q, work_, shift)) return false;
+    PhaseTimer timer(monitor_.phases(), "direction");
+    work_ = -imbalance_;
+    hessian_.solve(work_, symmetric_);
+    direction_ = symmetric_;
+    if (objective_.has_skew_tangent())
+      gmres_.solve(
+          [this](const Vector& v, Vector& out) {
+            work_.setZero();
+            objective_.add_skew_product(v, work_);
+            hessian_.solve(work_, out);
+          },
+          symmetric_, kForcing, direction_);
+    slope_ = imbalance_.dot(direction_);
+    if (slope_ < 0) return true;
+    direction_ = symmetric_;
+    slope_ = imbalance_.dot(direction_);
+    return slope_ < 0;
+  }
+
+  // Of the projected Hessian, which is never indefinite, without its skew part.
+  bool find_by_conjugate_gradients() {
+    monitor_.hessian(now_.q, work_, matrix_, Projection::PositiveSemidefinite);
+    PhaseTimer timer(monitor_.phases(), "direction");
+    matrix_.diagonal() += inertia_ * mass_;
+    conjugate_gradients_.setTolerance(kForcing);
+    conjugate_gradients_.compute(matrix_);
+    direction_ = conjugate_gradients_.solve(-imbalance_);
+    slope_ = imbalance_.dot(direction_);
+    return direction_.allFinite() && slope_ < 0;
+  }
+
+  // The potential of the step, whose gradient is imbalance_.
+  double merit(const Motion& at) const {
+    return at.energy - applied_.dot(at.q) + 0.5 * inertia_ * (at.q - target_).cwiseAbs2().dot(mass_);
+  }
+
+  bool descend() {
+    const double from = merit(now_), noise = monitor_.energy_noise(from);
+    double step = monitor_.step_limit(now_.q, direction_, 1);
+    for (int trial = 0; trial < kTrials && step > 0; ++trial, step *= 0.5) {
+      next_.q = now_.q + step * direction_;
+      next_.energy = monitor_.gradient(next_.q, next_.g);
+      if (!std::isfinite(next_.energy) || !next_.g.allFinite()) continue;
+      if (merit(next_) > from + kDecrease * step * slope_ + noise) continue;
+      std::swap(now_, next_);
+      return true;
+    }
+    return false;
+  }
+
+  void finish(double h, Motion& at) {
+    now_.v = rate_ * (now_.q - drift_);
+    now_.time = at.time + h;
+    last_step_ = h;
+    std::swap(before_, at);
+    std::swap(at, now_);
+  }
+
+  Objective& objective_;
+  Monitor& monitor_;
+  const Vector &mass_, &applied_;
+  double drag_;  // [1/time]
+  bool uses_conjugate_gradients_;
+  ShiftedHessian hessian_;
+  Gmres gmres_{kKrylovVectors};
+  SparseMatrix matrix_;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> conjugate_gradients_;
+
+  double last_step_ = 0;           // 0: there was none
+  double rate_ = 0, inertia_ = 0;  // [1/time], [1/time^2]
+  double slope_ = 0;               // of the merit along the direction
+  int iterations_ = 0;             // of the last step
+  Motion before_, now_, next_;     // the state before `at`; iterates of the step
+  Vector drift_, target_, imbalance_, direction_, symmetric_, work_;
+};
+
+}  // namespace
+
+std::unique_ptr<TimeIntegrator> make_backward_differences(const TimeIntegratorContext& context,
+                                                          const DynamicOptions& options,
+                                                          const FactorisationFactory& factorisation) {
+  return std::make_unique<BackwardDifferences>(context, options, factorisation);
+}
+
+}  // namespace coapt

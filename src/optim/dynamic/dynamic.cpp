@@ -1,0 +1,141 @@
+#include "optim/dynamic/dynamic.hpp"
+
+#include "core/error.hpp"
+#include "optim/dynamic/time_integrator.hpp"
+#include "optim/dynamic/vertex_proximity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace coapt {
+
+double kinetic_energy(const Motion& at, const Vector& mass) { return 0.5 * at.v.cwiseAbs2().dot(mass); }
+
+namespace {
+
+constexpr double kShorter = 0.25;    // after a step that failed
+constexpr double kShortest = 1e-12;  // of the first step
+constexpr int kRestSteps = 50;  // at rest in a row, after which collisions hold what the objective does not
+
+// The seeds' collisions, over unknowns.
+class CollisionHandling {
+ public:
+  CollisionHandling(const DynamicOptions& options, const TriangleMesh& surface, const Objective& objective,
+                    const Vector& masses)
+      : kind_(options.collisions),
+        proximity_(surface.vertices, surface.triangles, options.collision_distance),
+        objective_(objective),
+        masses_(masses) {
+    for (Eigen::Index k = 0; k < masses_.size(); ++k)
+      if (objective.fixed().col(k).any()) masses_[k] = kInfinity;
+  }
+
+  // Finds what is near at the new state and stops its approach. Returns whether a velocity changed.
+  bool act(Motion& at) {
+    if (proximity_.find(objective_.positions(at.q)) == 0) return false;
+    Points v = nodal(at.v);
+    proximity_.stop_approach(v, masses_);
+    const Vector stopped = objective_.unknowns(v);
+    const bool is_changed = stopped != at.v;
+    at.v = stopped;
+    return is_changed;
+  }
+
+  // The forces that balance what presses, for the next step.
+  void press_back(const Motion& at, Vector& applied) const {
+    if (kind_ == Collisions::Balanced)
+      applied = objective_.unknowns(proximity_.balancing_forces(nodal(-at.g)));
+  }
+
+ private:
+  // A vector of unknowns over the nodes; zero where nothing is free.
+  Points nodal(const Vector& unknowns) const {
+    return objective_.fixed().select(0, objective_.positions(unknowns).array()).matrix();
+  }
+
+  Collisions kind_;
+  VertexProximity proximity_;
+  const Objective& objective_;
+  Vector masses_;  // of each node
+};
+
+class SolverDynamic final : public Solver {
+ public:
+  explicit SolverDynamic(const SolverOptions& options)
+      : options_(options.dynamic), factorisation_(options.factorisation), masses_(options.masses()) {
+    if (!(masses_.array() > 0).all() || !masses_.allFinite())
+      throw InputError("solver \"dynamic\": every node needs a mass above 0");
+    if (options_.collisions != Collisions::None) surface_ = options.surface();
+  }
+
+  std::string_view name() const override { return "dynamic"; }
+  bool follows_path() const override { return true; }
+
+  Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
+    const Vector mass = objective.unknowns(masses_.transpose().replicate<3, 1>());
+    Vector applied = Vector::Zero(q.size());
+    const auto integrator = make_integrator({objective, monitor, mass, applied});
+    std::optional<CollisionHandling> collisions;
+    if (surface_) collisions.emplace(options_, *surface_, objective, masses_);
+    const double extent = objective.extent(q);
+    Motion at{q, Vector::Zero(q.size()), 0, Vector(), 0};
+    at.energy = monitor.gradient(at.q, at.g);
+    double kinetic = 0, h = options_.time_step;
+    int rest_steps = 0;
+    if (options_.adapts_steps && options_.integration == TimeIntegration::SemiImplicitEuler)
+      h = std::min(h, integrator->next_step(h, at));
+    while (true) {
+      // The work that the tolerated force does along the scene.
+      const bool is_at_rest = kinetic <= monitor.tolerance() * objective.reference_force() * extent;
+      const auto status = monitor.accept(at.q, at.energy + kinetic, at.g, at.time);
+      if (status != Status::NonFinite) q = at.q;
+      if (status && (*status != Status::Converged || is_at_rest)) return *status;
+      rest_steps = is_at_rest && at.time > 0 ? rest_steps + 1 : 0;
+      if (collisions && rest_steps >= kRestSteps) return Status::Stalled;
+      while (!integrator->step(h, at)) {
+        if (monitor.is_out_of_time()) return Status::TimeLimit;
+        if (!options_.adapts_steps || h < kShortest * options_.time_step) return Status::LineSearchFailed;
+        h *= kShorter;
+      }
+      if (options_.adapts_steps) h = std::min(integrator->next_step(h, at), options_.longest_step);
+      if (collisions) {
+        if (collisions->act(at)) integrator->restart();
+        collisions->press_back(at, applied);
+      }
+      const double before = kinetic;
+      kinetic = kinetic_energy(at, mass);
+      if (options_.has_kinetic_damping && kinetic < before) {
+        at.v.setZero();
+        kinetic = 0;
+        integrator->restart();
+      }
+    }
+  }
+
+ private:
+  std::unique_ptr<TimeIntegrator> make_integrator(const TimeIntegratorContext& context) const {
+    return options_.integration == TimeIntegration::BackwardDifferences
+               ? make_backward_differences(context, options_, factorisation_)
+               : make_semi_implicit_euler(context, options_);
+  }
+
+  DynamicOptions options_;
+  FactorisationFactory factorisation_;
+  Vector masses_;                        // of each node
+  std::optional<TriangleMesh> surface_;  // where collisions are looked for
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_dynamic(const SolverOptions& options) {
+  if (!options.masses) throw InputError("solver \"dynamic\" needs the masses of the nodes");
+  const DynamicOptions& dynamic = options.dynamic;
+  if (!(dynamic.time_step > 0 && dynamic.longest_step > 0 && dynamic.relaxation_time >= 0))
+    throw InputError("solver \"dynamic\": time steps must be above 0, the relaxation time at least 0");
+  if (dynamic.collisions != Collisions::None && !(options.surface && dynamic.collision_distance > 0))
+    throw InputError("solver \"dynamic\": collisions need a surface and a distance above 0");
+  return std::make_unique<SolverDynamic>(options);
+}
+
+}  // namespace coapt

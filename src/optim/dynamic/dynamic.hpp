@@ -1,0 +1,17 @@
+// The motion of masses with drag until it comes to rest.
+#pragma once
+
+#include "optim/solver.hpp"
+
+namespace coapt {
+
+// Follows M a + (M/T) v + dE/dq = 0 from the start at rest (DynamicOptions), step by step; each step is an
+// accepted iterate, whose energy is that of the whole motion, potential and kinetic. Converged: the residual
+// of the objective is below the tolerance and the kinetic energy below the tolerance times force times size.
+// Steps that fail are made shorter. Kinetic damping is that of dynamic relaxation (Cundall 1976, Barnes
+// 1999). Collisions are no part of the objective: what they hold is out of balance by its residual, and a run
+// that has come to rest on them ends as stalled. Of the options: masses, surface, dynamic, factorisation.
+// Throws InputError for a mass that is not positive, or an option without meaning.
+std::unique_ptr<Solver> make_dynamic(const SolverOptions& options);
+
+}  // namespace coapt
