@@ -275,7 +275,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
     throw InputError("solver \"" + std::string(solver.name()) +
                      "\" chooses its steps itself and cannot keep them free of collisions, which term \"" +
                      term->name() + "\" (" + std::string(term->type()) +
-                     ") needs; use \"newton\", \"lbfgs\" or \"bfgs\", or \"contact_facet\"");
+                     ") needs; use \"newton\", \"lbfgs\", \"bfgs\" or \"dynamic\", or \"contact_facet\"");
   const double cpu_start = cpu_seconds();
   const EvaluationCounts counts_before = objective.counts();
   Monitor monitor(objective, stop, observer);

@@ -79,7 +79,7 @@ class SolverDynamic final : public Solver {
     std::optional<CollisionHandling> collisions;
     if (surface_) collisions.emplace(options_, *surface_, objective, masses_);
     const double extent = objective.extent(q);
-    Motion at{q, Vector::Zero(q.size()), 0, Vector(), 0};
+    Motion at{q, Vector::Zero(q.size()), 0, Vector(), 0}, last;
     at.energy = monitor.gradient(at.q, at.g);
     double kinetic = 0, h = options_.time_step;
     int rest_steps = 0;
@@ -93,6 +93,7 @@ class SolverDynamic final : public Solver {
       if (status && (*status != Status::Converged || is_at_rest)) return *status;
       rest_steps = is_at_rest && at.time > 0 ? rest_steps + 1 : 0;
       if (collisions && rest_steps >= kRestSteps) return Status::Stalled;
+      if (options_.has_kinetic_damping) last = at;
       while (!integrator->step(h, at)) {
         if (monitor.is_out_of_time()) return Status::TimeLimit;
         if (!options_.adapts_steps || h < kShortest * options_.time_step) return Status::LineSearchFailed;
@@ -105,7 +106,12 @@ class SolverDynamic final : public Solver {
       }
       const double before = kinetic;
       kinetic = kinetic_energy(at, mass);
-      if (options_.has_kinetic_damping && kinetic < before) {
+      if (options_.has_kinetic_damping && before > 0 && kinetic <= before) {
+        // Back to the peak: velocities are half a step ahead of positions, and stopping them beyond it would
+        // keep what fast oscillations have.
+        at.q = last.q;
+        at.g = last.g;
+        at.energy = last.energy;
         at.v.setZero();
         kinetic = 0;
         integrator->restart();

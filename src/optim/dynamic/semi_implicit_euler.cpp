@@ -6,13 +6,19 @@
 namespace coapt {
 namespace {
 
-constexpr int kRenewal = 20;     // steps between bounds of the highest frequency
-constexpr double kSafety = 0.8;  // of the longest stable step
+constexpr int kRenewal = 20;  // steps between bounds of the highest frequency
+// Share of the longest stable step. A step from rest is one along the gradient, which is stable up to
+// 1/sqrt(2) only.
+constexpr double kSafety = 0.8, kSafetyFromRest = 0.5;
+constexpr double kMostGain = 1;  // of energy in a step, over the kinetic energy: it swings even if stable
 
 class SemiImplicitEuler final : public TimeIntegrator {
  public:
   SemiImplicitEuler(const TimeIntegratorContext& context, const DynamicOptions& options)
-      : context_(context), drag_(options.relaxation_time > 0 ? 1 / options.relaxation_time : 0) {}
+      : context_(context),
+        adapts_(options.adapts_steps),
+        safety_(options.has_kinetic_damping ? kSafetyFromRest : kSafety),
+        drag_(options.relaxation_time > 0 ? 1 / options.relaxation_time : 0) {}
 
   bool step(double h, Motion& at) override {
     next_.v =
@@ -23,13 +29,21 @@ class SemiImplicitEuler final : public TimeIntegrator {
     next_.energy = context_.monitor.gradient(next_.q, next_.g);
     if (!std::isfinite(next_.energy) || !next_.g.allFinite()) return false;
     next_.time = at.time + h;
+    // What was slack when the frequencies were bounded may have become taut.
+    const double before = at.energy + kinetic_energy(at, context_.mass),
+                 kinetic = kinetic_energy(next_, context_.mass);
+    if (adapts_ &&
+        next_.energy + kinetic > before + kMostGain * kinetic + context_.monitor.energy_noise(before)) {
+      age_ = 0;
+      return false;
+    }
     std::swap(at, next_);
     return true;
   }
 
   double next_step(double h, const Motion& at) override {
     if (age_++ % kRenewal == 0) stable_step_ = longest_stable_step(at);
-    return std::min(2 * h, kSafety * stable_step_);
+    return std::min(2 * h, safety_ * stable_step_);
   }
 
  private:
@@ -48,6 +62,8 @@ class SemiImplicitEuler final : public TimeIntegrator {
   }
 
   TimeIntegratorContext context_;
+  bool adapts_;
+  double safety_;
   double drag_;  // [1/time]
   int age_ = 0;
   double stable_step_ = kInfinity;
