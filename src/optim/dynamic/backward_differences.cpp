@@ -10,11 +10,11 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostIterations = 15;  // of Newton's method in a step
-constexpr int kFew = 3, kMany = 8;   // that make the next step longer, or shorter
-constexpr double kGrowth = 2;        // below 1 + sqrt(2), up to which the method is stable
+constexpr int kMostIterations = 6;  // of Newton's method in a step
+constexpr int kFew = 2, kMany = 4;  // that make the next step longer, or shorter
+constexpr double kGrowth = 2;       // below 1 + sqrt(2), up to which the method is stable
 constexpr double kShrinkage = 0.5;
-constexpr double kEnough = 0.05;  // out of balance, relative to the static force, at which a step ends
+constexpr double kEnough = 2;  // out of balance, relative to the static force, at which a step ends
 constexpr double kDecrease = 1e-4;
 constexpr int kTrials = 12;
 constexpr int kKrylovVectors = 30;
