@@ -11,7 +11,7 @@ constexpr double kWorkNoise = 1e-14;    // relative to force times extent
 constexpr size_t kUsualTrace = 1000;    // iterates for which the trace never grows
 constexpr int kPatience = 1000;         // iterates without gain
 constexpr int kPathPatience = 10000;    // iterates whose residual gains nothing, where no energy has to
-constexpr double kRunaway = 1e4;        // growth of the unknowns' extent that no equilibrium explains
+constexpr double kRunaway = 1e12;       // growth of the unknowns' extent that no equilibrium explains
 
 template <typename Evaluate>
 double guarded(Vector& g, Eigen::Index size, const Evaluate& evaluate) {

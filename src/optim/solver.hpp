@@ -98,6 +98,14 @@ struct Problem {
   StabilityOptions stability = {};
 };
 
+// A step of a path, of loads, stiffnesses or prescribed motion, that ended on another branch of equilibria
+// than the one it came by: the branch has a limit point on the way, and the shape snapped through.
+struct BranchChange {
+  int step = 0;         // that left the branch, from 1
+  int before = 0;       // a step before it, where both branches have an equilibrium
+  double distance = 0;  // of the two there: of the node farthest apart [length]
+};
+
 struct Result {
   Vector q;  // the best iterate: finite, last accepted
   Status status = Status::Stalled;
@@ -111,6 +119,7 @@ struct Result {
   long factorisations = 0;
   std::vector<TermReport> terms;
   Certificate certificate;  // where the problem asked for it
+  std::vector<BranchChange> branch_changes;  // from the third step of a path on; a path of fewer has none
   std::vector<Iteration> trace;
   double wall_s = 0, cpu_s = 0;
   std::map<std::string, double> phase_s;  // wall time by phase

@@ -153,6 +153,15 @@ Json levels(const Json& statuses) {
       "figures are those of the scene's own mesh");
 }
 
+Json branch_changes() {
+  return list(object({{"step", count("that left the branch, from 1")},
+                      {"before", count("a step before it, where both branches have an equilibrium")},
+                      {"distance_mm", number("of the two there: of the node farthest apart [mm]")}},
+                     "one step"),
+              "steps of the prescribed motion or of the continuation that snapped to another branch of "
+              "equilibria; told from the third step on");
+}
+
 Json counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
                  {"cable_elements", count("cables and tethers")},
@@ -179,6 +188,7 @@ std::string result_schema() {
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
               {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"branch_changes", branch_changes()},
               {"evaluations", object({{"value", count("energy alone")},
                                       {"gradient", count("energy and gradient")},
                                       {"hessian", count("energy, gradient and Hessian")},

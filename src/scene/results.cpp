@@ -143,6 +143,14 @@ Json levels_json(const std::vector<CascadeLevel>& levels) {
   return json;
 }
 
+Json branch_changes_json(const std::vector<BranchChange>& changes) {
+  Json json = Json::array();
+  for (const BranchChange& change : changes)
+    json.push_back(
+        {{"step", change.step}, {"before", change.before}, {"distance_mm", number(change.distance)}});
+  return json;
+}
+
 std::string trace_csv(const Result& result) {
   std::ostringstream out;
   out.precision(10);
@@ -216,6 +224,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},
+      {"branch_changes", branch_changes_json(result.branch_changes)},
       {"evaluations",
        {{"value", result.evaluations.value},
         {"gradient", result.evaluations.gradient},

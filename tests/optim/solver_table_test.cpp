@@ -180,7 +180,7 @@ TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, SolverOnScene,
-    testing::Combine(testing::Values("lbfgs", "bfgs", "ceres", "nlopt"),
+    testing::Combine(testing::Values("newton", "lbfgs", "bfgs", "ceres", "nlopt"),
                      testing::Values("disc_frozen", "disc_volume", "disc_follower", "sail_follower",
                                      "catenary", "prestressed_square", "sphere")),
     [](const auto& instance) { return std::get<0>(instance.param) + "_on_" + std::get<1>(instance.param); });
