@@ -118,7 +118,7 @@ struct Result {
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;
-  Certificate certificate;  // where the problem asked for it
+  Certificate certificate;                   // where the problem asked for it
   std::vector<BranchChange> branch_changes;  // from the third step of a path on; a path of fewer has none
   std::vector<Iteration> trace;
   double wall_s = 0, cpu_s = 0;
