@@ -2,9 +2,11 @@
 
 #include "core/error.hpp"
 #include "mesh/projected_area.hpp"
+#include "scene/contact_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace coapt {
@@ -60,10 +62,8 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
   metrics.max_displacement_mm =
       fields.displacement.cols() == 0 ? 0 : fields.displacement.colwise().norm().maxCoeff();
   const bool is_finite = fields.x.allFinite();
-  if (triangles.cols() > 0 && is_finite) {
-    const Points surface = fields.x.leftCols(model.mesh.vertex_count());
-    metrics.intersections = static_cast<long>(judge.pairs(surface, triangles).size());
-  }
+  if (triangles.cols() > 0 && is_finite)
+    metrics.intersections = std::ssize(membrane_intersections(fields.x, model, judge));
   if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
   measure_lines(fields, metrics);
   measure_regimes(model, fields, metrics);
@@ -91,7 +91,9 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
     return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
   };
   return {
-      {"intersections", "", "pairs of facets without a common vertex that touch or pass through each other",
+      {"intersections", "",
+       "pairs of facets without a common vertex, one or both of the mesh, that touch or pass through each "
+       "other",
        true, count(m.intersections)},
       {"orifice_area_mm2", "mm2", "area of the annulus opening, seen along its normal, left uncovered", false,
        m.orifice_area_mm2},

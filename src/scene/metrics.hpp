@@ -13,7 +13,7 @@ namespace coapt {
 
 // Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
 struct Metrics {
-  long intersections = 0;                      // pairs of facets that pass through each other
+  long intersections = 0;                      // pairs of facets, one or both of the mesh
   std::string intersection_judge;              // who counted them
   std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
