@@ -115,6 +115,11 @@ double part_below(std::array<double, 3> values, double level) {
 
 }  // namespace
 
+std::optional<double> line_strain(const Line& line, const Points& x) {
+  if (line.rest_length <= 0) return std::nullopt;
+  return (x.col(line.a) - x.col(line.b)).norm() / line.rest_length - 1;
+}
+
 const std::vector<int>* annulus_of(const Model& model) {
   const auto annulus = model.sets.find("annulus");
   return annulus != model.sets.end() && annulus->second.size() >= 3 ? &annulus->second : nullptr;

@@ -4,6 +4,8 @@
 
 #include "scene/model.hpp"
 
+#include <optional>
+
 namespace coapt {
 
 struct Fields {
@@ -27,6 +29,10 @@ struct Fields {
 // covers the triangle, the prestress included. The regime of a membrane that resists compression is that in
 // which a tension field would be.
 Fields compute_fields(const Model& model, const Points& x);
+
+// Length of a line at positions x over its rest length, less 1; empty for a constant-force cable, which has
+// no rest length.
+std::optional<double> line_strain(const Line& line, const Points& x);
 
 // Whether contact means anything to the model: it has an annulus or a contact term. Others pay nothing for
 // it.

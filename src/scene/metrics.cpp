@@ -43,10 +43,25 @@ void measure_regimes(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.slack_area_mm2 = area_in(MembraneRegime::Slack);
 }
 
-void measure_lines(const Fields& fields, Metrics& metrics) {
+void measure_line_strains(const Model& model, const Fields& fields, Metrics& metrics) {
+  double sum = 0;
+  int stretched = 0;
+  for (const Line& line : model.lines) {
+    const std::optional<double> strain = line_strain(line, fields.x);
+    if (!strain) continue;
+    metrics.max_chord_strain = std::max(metrics.max_chord_strain.value_or(*strain), *strain);
+    if (*strain <= 0) continue;
+    sum += *strain;
+    ++stretched;
+  }
+  if (stretched > 0) metrics.mean_chord_strain = sum / stretched;
+}
+
+void measure_lines(const Model& model, const Fields& fields, Metrics& metrics) {
   if (fields.line_force.size() == 0) return;
   metrics.max_chord_force_n = fields.line_force.maxCoeff();
   metrics.slack_chords = (fields.line_force.array() <= 0).count();
+  measure_line_strains(model, fields, metrics);
 }
 
 }  // namespace
@@ -65,7 +80,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
     metrics.intersections = static_cast<long>(judge.pairs(surface, triangles).size());
   }
   if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
-  measure_lines(fields, metrics);
+  measure_lines(model, fields, metrics);
   measure_regimes(model, fields, metrics);
 
   if (const std::vector<int>* annulus = annulus_of(model); annulus && is_finite) try {
@@ -124,6 +139,10 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
        m.max_principal_strain},
       {"max_chord_force_n", "N", "greatest tension of a chord or cable", false, m.max_chord_force_n},
+      {"max_chord_strain", "", "greatest strain of a chord or cable, length over rest length - 1", false,
+       m.max_chord_strain},
+      {"mean_chord_strain", "", "mean strain of the chords and cables longer than at rest", false,
+       m.mean_chord_strain},
       {"force_balance", "", "resultant of loads and reactions over the sum of their magnitudes", false,
        m.force_balance},
       {"moment_balance", "", "the same for moments about the centre of the nodes", false, m.moment_balance},

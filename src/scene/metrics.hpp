@@ -30,7 +30,9 @@ struct Metrics {
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
   std::optional<double> max_principal_strain;                              // stretch - 1
   std::optional<double> max_chord_force_n;
-  std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
+  std::optional<double> max_chord_strain;   // length over rest length, less 1
+  std::optional<double> mean_chord_strain;  // of the lines longer than at rest
+  std::optional<double> force_balance;      // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;
   long contact_vertices = 0, contact_facets = 0;
   std::optional<double> smallest_gap_mm;

@@ -18,7 +18,7 @@ struct VertexDistance {
 struct ReferenceDistance {
   DistanceFigures to_reference;               // from the solved surface to the reference
   DistanceFigures from_reference;             // from the reference to the solved surface
-  std::optional<VertexDistance> same_vertex;  // when both have the same triangles
+  std::optional<VertexDistance> same_vertex;  // when both have the same facets, in any order
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.

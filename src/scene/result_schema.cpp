@@ -99,7 +99,7 @@ Json reference_distance() {
        {"from_reference", distance("from the reference to the solved surface")},
        {"same_vertex",
         object({{"mean_mm", number("mean [mm]")}, {"max_mm", number("greatest [mm]")}},
-               "between vertices of the same number, when the reference has the same vertices and triangles"),
+               "between vertices of the same number, when the reference has as many and the same facets"),
         Need::Optional}},
       "distance between the solved surface and the closed surface that the scene names");
 }
