@@ -11,8 +11,8 @@ struct Fields {
   Points displacement;                 // x - X, 3 x node_count [mm]
   Eigen::Matrix2Xd principal_strain;   // engineering strain (stretch - 1), largest first, per triangle
   Eigen::Matrix2Xd principal_stress;   // second Piola-Kirchhoff [MPa], largest first, per triangle; no
-                                       // columns for a model without membrane properties
-  std::vector<MembraneRegime> regime;  // per triangle; empty for a model without membrane properties
+                                       // columns for a model without membrane stress, or with springs
+  std::vector<MembraneRegime> regime;  // per triangle; empty where there is no stress
   Vector gap;                          // per mesh vertex, see mesh/vertex_gaps.hpp [mm]; empty where nobody
                                        // asks for contact, see looks_for_contact
   std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance; empty like gap

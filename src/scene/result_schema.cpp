@@ -155,6 +155,7 @@ Json levels(const Json& statuses) {
 
 Json counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
+                 {"spring_elements", count("edge springs of membranes")},
                  {"cable_elements", count("cables and tethers")},
                  {"pressure_facets", count("elements of pressure terms: facets, or loaded nodes if frozen")},
                  {"contact_candidates", count("pairs in the candidate lists at the end")},
