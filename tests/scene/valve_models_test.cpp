@@ -22,7 +22,7 @@ class ValveModels : public testing::TestWithParam<std::string> {};
 // The generated valve with the springs of a model, without contact, by both solvers.
 TEST_P(ValveModels, Closes) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 625});
   ImportOptions options;
   options.contact = "none";
   apply_valve_model(GetParam(), valve, options);
