@@ -6,6 +6,7 @@
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
 #include "optim/solver.hpp"
+#include "optim/xpbd/solver_xpbd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -288,6 +289,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   if (outcome.note.empty()) {
     outcome = follow(solver, problem, stop, monitor, result);
     if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
+    if (outcome.note.empty()) outcome.note = solver.remark();
   }
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
@@ -316,7 +318,8 @@ SolverTable built_in_solvers() {
   return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
           {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
           {"dynamic", [](const SolverOptions& options) { return make_dynamic(options); }},
-          {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
+          {"newton", [](const SolverOptions& options) { return make_newton(options); }},
+          {"xpbd", [](const SolverOptions& options) { return make_xpbd(options); }}};
 }
 
 }  // namespace coapt

@@ -7,6 +7,7 @@
 #include "optim/certificate.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
 #include "optim/factorisation.hpp"
+#include "optim/xpbd/options.hpp"
 
 #include <functional>
 #include <map>
@@ -68,6 +69,9 @@ class Solver {
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
 
+  // What there is to say of how the last minimize() ended, for the message of the result; may be empty.
+  virtual std::string remark() const { return {}; }
+
   // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
   // accepted iterate, finite whatever happens. Never throws for numerical reasons.
   virtual Status minimize(Objective& objective, Vector& q, Monitor& monitor) = 0;
@@ -127,6 +131,8 @@ enum class Globalisation {
   TrustRegion  // the shift of the diagonal is raised until the whole step keeps what the model promised
 };
 
+struct XpbdBody;
+
 // What solvers may be told; each takes what concerns it.
 struct SolverOptions {
   int memory = 12;                                          // pairs that lbfgs keeps
@@ -135,14 +141,16 @@ struct SolverOptions {
   FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
   DynamicOptions dynamic = {};
   std::function<TriangleMesh()> surface =
-      {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
+      {};  // at rest, over all nodes; asked for by collisions of `dynamic`
+  XpbdOptions xpbd = {};
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
+  std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
 };
 
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic". Adapters add themselves
+// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic", "xpbd". Adapters add themselves
 // (add_ceres_solver, ...).
 SolverTable built_in_solvers();
 

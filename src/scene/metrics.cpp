@@ -57,6 +57,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
   const Triangles& triangles = model.mesh.triangles;
   metrics.leaflet_area_open_mm2 = surface_area(model.X, triangles);
   metrics.leaflet_area_closed_mm2 = surface_area(fields.x, triangles);
+  metrics.leaflet_area_change_mm2 = metrics.leaflet_area_closed_mm2 - metrics.leaflet_area_open_mm2;
   metrics.max_displacement_mm =
       fields.displacement.cols() == 0 ? 0 : fields.displacement.colwise().norm().maxCoeff();
   const bool is_finite = fields.x.allFinite();
@@ -117,6 +118,8 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
        m.prolapse_height_mm},
       {"leaflet_area_open_mm2", "mm2", "area of the reference mesh", false, m.leaflet_area_open_mm2},
       {"leaflet_area_closed_mm2", "mm2", "area of the closed mesh", false, m.leaflet_area_closed_mm2},
+      {"leaflet_area_change_mm2", "mm2", "area of the closed mesh less that of the reference mesh", false,
+       m.leaflet_area_change_mm2},
       {"taut_area_mm2", "mm2", "reference area of the membrane in tension both ways", false, m.taut_area_mm2},
       {"wrinkled_area_mm2", "mm2", "reference area of the membrane in tension one way", false,
        m.wrinkled_area_mm2},

@@ -27,6 +27,7 @@ struct Metrics {
   std::optional<double> prolapse_height_mm;    // greatest height above every line across the annulus
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
+  double leaflet_area_change_mm2 = 0;  // of the closed mesh against the reference
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
   std::optional<double> max_principal_strain;                              // stretch - 1
   std::optional<double> max_chord_force_n;

@@ -250,6 +250,67 @@ KeySpec dynamics_key() {
       .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
 }
 
+KeySpec xpbd_key() {
+  return {
+      .name = "xpbd",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys =
+               {{.name = "time_step",
+                 .dimension = kTime,
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Time step; default: 0.1 ms with stiffness \"material\", 5 ms with \"paper\"."},
+                {.name = "iterations",
+                 .kind = KeyKind::Integer,
+                 .fallback = "20",
+                 .min = 1,
+                 .max = 100000,
+                 .doc = "Sweeps over all constraints in a step; the paper has 3 and 20."},
+                {.name = "steps",
+                 .kind = KeyKind::Integer,
+                 .fallback = "2000",
+                 .min = 1,
+                 .doc =
+                     "Greatest number of time steps at each place of the prescribed motion; it ends before "
+                     "where nothing moves any more."},
+                {.name = "damping",
+                 .fallback = "0.05",
+                 .min = 0,
+                 .max = 1,
+                 .doc = "Share of its velocity that a node loses in a step."},
+                {.name = "thickness",
+                 .dimension = kLength,
+                 .fallback = "\"0.5 mm\"",
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Distance that contact keeps between facets, in place of that of the contact term."},
+                {.name = "stiffness",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"material\"",
+                 .choices = {"material", "paper"},
+                 .doc =
+                     "material: compliances and masses from the moduli, sections and density of the scene, "
+                     "so that the result can be compared; paper: the mass 1 and the numbers of the paper "
+                     "for all."},
+                {.name = "forces",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"scene\"",
+                 .choices = {"scene", "paper"},
+                 .doc = "scene: the loads of the scene; paper: flow field and pressure of the paper, by the "
+                        "set \"annulus\"."},
+                {.name = "phase",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"systole\"",
+                 .choices = {"systole", "diastole"},
+                 .doc =
+                     "systole: the forces as they are, they close a valve; diastole: turned round, they open "
+                     "it."}}},
+      .doc =
+          "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of the "
+          "solver."};
+}
+
 KeySpec solver_key() {
   return {.name = "solver",
           .kind = KeyKind::Object,
@@ -258,7 +319,7 @@ KeySpec solver_key() {
               {.keys = {{.name = "type",
                          .kind = KeyKind::Choice,
                          .fallback = "\"newton\"",
-                         .choices = {"newton", "lbfgs", "bfgs", "dynamic", "ceres", "nlopt"},
+                         .choices = {"newton", "lbfgs", "bfgs", "dynamic", "xpbd", "ceres", "nlopt"},
                          .doc = "The method; ceres and nlopt need a build that has them."},
                         {.name = "tolerance",
                          .fallback = "1e-6",
@@ -315,7 +376,9 @@ KeySpec solver_key() {
                          .fallback = "1",
                          .min = 1,
                          .max = 256,
-                         .doc = "Threads that assemble the Hessian; the result does not depend on them."},
+                         .doc = "Threads that assemble the Hessian or sweep the constraints of xpbd; the "
+                                "result does "
+                                "not depend on them."},
                         {.name = "density",
                          .dimension = kDensity,
                          .fallback = "\"1060 kg/m^3\"",
@@ -323,6 +386,7 @@ KeySpec solver_key() {
                          .excludes_min = true,
                          .doc = "Mass density of membrane, chords and cables, for methods that move masses."},
                         dynamics_key(),
+                        xpbd_key(),
                         {.name = "globalisation",
                          .kind = KeyKind::Choice,
                          .fallback = "\"line_search\"",
