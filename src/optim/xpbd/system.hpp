@@ -26,8 +26,7 @@ class XpbdSystem {
   const Points& positions_before() const { return before_; }
   double largest_move() const;  // of a node in the last step [length]
 
-  const ColouredConstraints<LineConstraint>& lines() const { return lines_; }
-  const ColouredConstraints<StretchConstraint>& stretches() const { return stretches_; }
+  const ColouredConstraints<StretchConstraint>& tethers() const { return tethers_; }
   const std::optional<XpbdContact>& contact() const { return contact_; }
   size_t constraint_count() const;  // without contact
 
@@ -36,7 +35,7 @@ class XpbdSystem {
   double dt2_;
   InverseMasses w_;
   Points x_, before_;
-  ColouredConstraints<StretchConstraint> stretches_;  // edges, and tethers of a straight law
+  ColouredConstraints<StretchConstraint> stretches_;  // edges
   ColouredConstraints<AreaConstraint> areas_;
   ColouredConstraints<FilmConstraint> films_;
   ColouredConstraints<BendingConstraint> bends_;
