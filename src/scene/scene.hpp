@@ -80,7 +80,7 @@ struct SolverSpec {
   DynamicOptions dynamic;
   double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
   XpbdOptions xpbd;
-  int modes = 0;             // smallest eigenvalues in the certificate
+  int modes = 0;  // smallest eigenvalues in the certificate
 };
 
 struct Scene {

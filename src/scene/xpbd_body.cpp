@@ -106,20 +106,22 @@ bool add_films(const EnergyTerm& term, XpbdBody& body) {
 
 // --- Membranes --------------------------------------------------------------------------------------------
 
-// Whether each triangle's membrane pushes back where it is made smaller; 0 where there is no membrane.
-std::vector<char> resisting(const Model& model) {
-  std::vector<char> resists(model.membrane.size(), 0);
+// What covers a triangle; only these know whether they push back where they are made smaller.
+enum class Cover : char { None, Relaxed, Resisting };
+
+std::vector<Cover> covers(const Model& model) {
+  std::vector<Cover> all(static_cast<size_t>(model.mesh.triangle_count()), Cover::None);
   for (const MembranePatch& patch : model.membrane_patches)
     for (size_t e = 0; e < patch.triangles.size(); ++e) {
-      const int t = patch.triangles[e];
-      const auto corners = model.mesh.triangles.col(t);
+      const auto t = static_cast<size_t>(patch.triangles[e]);
+      const auto corners = model.mesh.triangles.col(patch.triangles[e]);
       CstVector x;
       for (int k = 0; k < 3; ++k) x.segment<3>(3 * k) = kShrunk * model.X.col(corners[k]);
-      const MembraneState state = patch.state(static_cast<int>(e), x);
-      resists[static_cast<size_t>(t)] =
-          state.stress.minCoeff() < -kPushes * model.membrane[static_cast<size_t>(t)].young;
+      const bool pushes =
+          patch.state(static_cast<int>(e), x).stress.minCoeff() < -kPushes * model.membrane[t].young;
+      all[t] = pushes ? Cover::Resisting : Cover::Relaxed;
     }
-  return resists;
+  return all;
 }
 
 // E' of the edges.
@@ -128,20 +130,21 @@ double spring_modulus(const MembraneProperties& m) {
 }
 
 void add_membrane(const Model& model, XpbdBody& body) {
-  if (model.membrane.empty()) return;
-  const std::vector<char> resists = resisting(model);
+  if (model.membrane_patches.empty()) return;
+  const std::vector<Cover> cover = covers(model);
   const Triangles& triangles = model.mesh.triangles;
   Vector areas(triangles.cols());
   for (int t = 0; t < triangles.cols(); ++t) {
     const auto corners = triangles.col(t);
     areas[t] = area_vector(model.X, corners).norm();
+    if (cover[static_cast<size_t>(t)] == Cover::None) continue;
     const MembraneProperties& m = model.membrane[static_cast<size_t>(t)];
     const std::array<int, 3> nodes{corners[0], corners[1], corners[2]};
     const double resultant = m.young * m.thickness;
     if (m.poisson > kSpringPoisson && resultant > 0)
       body.areas.push_back({nodes, areas[t],
                             resultant * (3 * m.poisson - 1) / (2 * (1 - m.poisson * m.poisson) * areas[t]),
-                            resists[static_cast<size_t>(t)] == 0});
+                            cover[static_cast<size_t>(t)] == Cover::Relaxed});
     if (m.prestress > 0) body.films.push_back({nodes, m.prestress});
   }
   for (const Edge& edge : edges(triangles)) {
@@ -149,9 +152,10 @@ void add_membrane(const Model& model, XpbdBody& body) {
     double stiffness = 0;
     bool only_tension = true;
     for (const int t : edge.triangles) {
+      if (cover[static_cast<size_t>(t)] == Cover::None) continue;
       const MembraneProperties& m = model.membrane[static_cast<size_t>(t)];
       stiffness += spring_modulus(m) * m.thickness * areas[t] / (length * length);
-      only_tension = only_tension && resists[static_cast<size_t>(t)] == 0;
+      only_tension = only_tension && cover[static_cast<size_t>(t)] == Cover::Relaxed;
     }
     if (stiffness > 0) body.edges.push_back({edge.a, edge.b, length, stiffness, only_tension});
   }
