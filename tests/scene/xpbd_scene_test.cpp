@@ -203,17 +203,21 @@ TEST_F(XpbdValve, ClosesInSystoleAndOpensInDiastole) {
   std::printf("xpbd valve opened: %.1f mm2\n", opened);
 }
 
+// Without hinges: in radians the paper's compliance makes them too stiff to fold (docs/theory.md).
 TEST_F(XpbdValve, MovesByThePapersNumbersInBothPhases) {
+  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(),
+                    {.membrane = "stvk", .contact = "none"});
   XpbdOptions first;
   first.steps = 1;
   const double open = orifice(run_xpbd(scene(), first));
   XpbdOptions options;
   options.stiffness = XpbdStiffness::Paper;
   options.forces = XpbdForces::Paper;
-  options.steps = 300;
+  options.steps = 600;
   options.iterations = 3;
   const RunReport closed = run_xpbd(scene(), options);
-  EXPECT_LT(orifice(closed), 0.5 * open);
+  EXPECT_LT(orifice(closed), 0.2 * open);
+  EXPECT_LT(std::abs(closed.report.metrics.leaflet_area_change_mm2), 4);  // as the paper says of its valves
   options.phase = HeartPhase::Diastole;
   const double opened = orifice(run_xpbd(scene(), options));
   EXPECT_GT(opened, open);

@@ -10,7 +10,8 @@ namespace coapt {
 // Where compliances and masses come from.
 enum class XpbdStiffness {
   Material,  // moduli, thickness and density of the scene, so that the result can be compared with others
-  Paper      // every node has the mass 1, every constraint the compliance and stiffness of XpbdPaper
+  Paper      // every node has the mass 1, every constraint the compliance and stiffness of XpbdPaper; edges
+             // and areas resist both ways
 };
 
 // What drives the motion.

@@ -25,7 +25,7 @@ std::vector<StretchConstraint> stretch_constraints(const XpbdBody& body, const H
                      e.length,
                      hardness.alpha(e.stiffness),
                      hardness.share(XpbdPaper::kStretch),
-                     pulls(e.only_tension)});
+                     pulls(e.only_tension && !hardness.is_paper)});
   return all;
 }
 
@@ -34,7 +34,7 @@ std::vector<AreaConstraint> area_constraints(const XpbdBody& body, const Hardnes
   for (const XpbdArea& a : body.areas)
     if (a.stiffness > 0)
       all.push_back({a.nodes, a.area, hardness.alpha(a.stiffness), hardness.share(XpbdPaper::kArea),
-                     pulls(a.only_growth)});
+                     pulls(a.only_growth && !hardness.is_paper)});
   return all;
 }
 
