@@ -8,8 +8,11 @@ namespace coapt {
 namespace {
 
 constexpr double kSlack = 0.5;       // h: how far a search looks beyond what it has to
-constexpr double kFarthest = 6;      // h: a step that goes farther is not followed by the search
 constexpr double kCorrection = 0.5;  // h: that sweeps may add to the predicted move
+
+// A step that goes farther than the lesser is not followed by the search, which would find the whole sheet.
+constexpr double kFarthest = 6;        // h
+constexpr double kFarthestEdge = 0.5;  // mean edge lengths
 
 PairCorners corners(const Points& x, const std::array<int, 4>& nodes) {
   PairCorners c;
@@ -46,7 +49,9 @@ XpbdContact::XpbdContact(const XpbdBody& body, double thickness, double alpha, d
       neighbours_(static_cast<size_t>(body.rest.cols())),
       thickness_(thickness),
       alpha_(alpha),
-      stiffness_(stiffness) {
+      stiffness_(stiffness),
+      farthest_(
+          std::min(kFarthest * thickness, kFarthestEdge * mean_edge_length(body.rest, body.triangles))) {
   for (const Edge& edge : edges(surface_.triangles())) {
     neighbours_[static_cast<size_t>(edge.a)].push_back(edge.b);
     neighbours_[static_cast<size_t>(edge.b)].push_back(edge.a);
@@ -85,8 +90,7 @@ void XpbdContact::search(const Points& x, double reach) {
 }
 
 void XpbdContact::begin_step(const Points& x, const Points& predicted) {
-  const double farthest = kFarthest * thickness_;
-  const double move = std::min(largest_move(x, predicted), farthest) + kCorrection * thickness_;
+  const double move = std::min(largest_move(x, predicted), farthest_) + kCorrection * thickness_;
   const bool is_stale = searches_ == 0 || thickness_ + 2 * (move + largest_move(searched_at_, x)) > reach_;
   if (is_stale) search(x, thickness_ + 2 * (move + kSlack * thickness_));
 
@@ -94,10 +98,9 @@ void XpbdContact::begin_step(const Points& x, const Points& predicted) {
   for (const ContactConstraint& candidate : candidates_) {
     const PairCorners c = corners(x, candidate.nodes);
     const ClosestPair closest = closest_points(candidate.kind, c);
-    double own_move = 0;
-    for (const int node : candidate.nodes)
-      own_move = std::max(own_move, (predicted.col(node) - x.col(node)).squaredNorm());
-    const double near = candidate.thickness + 2 * (std::sqrt(own_move) + kCorrection * thickness_);
+    // What moves along together does not come nearer.
+    const Vec3 approach = (corners(predicted, candidate.nodes) - c) * closest.weights;
+    const double near = candidate.thickness + approach.norm() + 2 * kCorrection * thickness_;
     if (closest.distance > near) continue;
     active.push_back(candidate);
     if (closest.distance > 0) active.back().side = c * closest.weights / closest.distance;

@@ -50,6 +50,7 @@ class XpbdContact {
   ContactSurface surface_;
   std::vector<std::vector<int>> neighbours_;  // of each node by an edge, ascending
   double thickness_, alpha_, stiffness_;
+  double farthest_;  // move in a step that a search follows [length]
   std::vector<ContactConstraint> candidates_;
   Points searched_at_;
   double reach_ = 0;  // of the search
