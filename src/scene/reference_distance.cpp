@@ -28,12 +28,10 @@ TriangleMesh surface_at(const Model& model, const Points& x) {
   return surface;
 }
 
-std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
-  if (!model.closed_reference) return std::nullopt;
-  const TriangleMesh& reference = *model.closed_reference;
-  const TriangleMesh closed = surface_at(model, fields.x);
+ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
+                                     Vector& vertex_distances) {
   const SurfaceDistance there = surface_distance(closed, reference);
-  fields.reference_distance = there.vertex_distances;
+  vertex_distances = there.vertex_distances;
   ReferenceDistance distance{figures(there), figures(surface_distance(reference, closed)), std::nullopt};
   const bool is_same_mesh = reference.vertices.cols() == closed.vertices.cols() &&
                             reference.triangles.cols() == closed.triangles.cols() &&
@@ -43,6 +41,11 @@ std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fiel
     distance.same_vertex = VertexDistance{apart.mean(), apart.maxCoeff()};
   }
   return distance;
+}
+
+std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
+  if (!model.closed_reference) return std::nullopt;
+  return reference_distance(surface_at(model, fields.x), *model.closed_reference, fields.reference_distance);
 }
 
 }  // namespace coapt

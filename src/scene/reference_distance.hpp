@@ -27,6 +27,11 @@ DistanceFigures both_directions(const ReferenceDistance& distance);
 // The same between any two surfaces. Throws InputError when one of them has no area.
 DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b);
 
+// From one surface to another and back; `vertex_distances` gets the distance of every vertex of `closed` to
+// the closest point of `reference` [mm]. Throws InputError when one of them has no area.
+ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
+                                     Vector& vertex_distances);
+
 // The model's surface with its nodes at x (3 x node_count, relative to the origin).
 TriangleMesh surface_at(const Model& model, const Points& x);
 
