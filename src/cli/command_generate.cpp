@@ -6,6 +6,7 @@
 #include "scene/closed_curve.hpp"
 #include "scene/import.hpp"
 #include "scene/markups.hpp"
+#include "scene/valve_models.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -22,7 +23,7 @@ struct Arguments : SceneArguments {
   std::string what;
   int triangles = 2500;
   unsigned seed = 0;
-  std::string annulus, papillary;
+  std::string annulus, papillary, model;
   std::vector<double> anterior, ventricle;  // three numbers, or none
   std::vector<std::string> given;           // options on the command line
 };
@@ -61,7 +62,7 @@ void write_shape(const Arguments& arguments) {
   std::vector<std::string> defects;
   const std::vector<std::string> shapes = shape_names();
   const bool is_known = std::find(shapes.begin(), shapes.end(), arguments.what) != shapes.end();
-  for (const char* option : {"--seed", "--membrane"})
+  for (const char* option : {"--seed", "--membrane", "--model"})
     if (is_known && is_given(arguments, option))
       defects.push_back(std::string(option) + ": belongs to the shape mitral; a " + arguments.what +
                         " has no such choice");
@@ -71,10 +72,21 @@ void write_shape(const Arguments& arguments) {
   write_shape_scene(arguments.what, options, arguments.folder);
 }
 
+void write_mitral(const Arguments& arguments) {
+  if (!arguments.model.empty() && is_given(arguments, "--membrane"))
+    throw InputError(
+        "generate mitral: --membrane has no meaning beside --model, which says what the leaflets are; leave "
+        "one out");
+  Valve valve = generated_mitral(arguments);
+  ImportOptions options = import_options(arguments);
+  if (!arguments.model.empty()) apply_valve_model(arguments.model, valve, options);
+  write_valve_scene(valve, arguments.folder, options);
+}
+
 void generate(const Arguments& arguments) {
   check_measured(arguments);
   if (arguments.what == "mitral") {
-    write_valve_scene(generated_mitral(arguments), arguments.folder, import_options(arguments));
+    write_mitral(arguments);
   } else {
     write_shape(arguments);
   }
@@ -98,6 +110,10 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   command
       ->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
       ->capture_default_str();
+  command
+      ->add_option("--model", arguments->model,
+                   "Mitral: tissue, chords and pressure of a published model of springs")
+      ->check(CLI::IsMember(valve_model_names()));
   command->add_option(
       "--annulus", arguments->annulus,
       "Mitral: closed curve (.mrk.json, or three numbers a line, mm) that the annulus follows");

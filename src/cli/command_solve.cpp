@@ -68,6 +68,7 @@ void print_summary(const RunReport& run) {
                 m.leaflet_area_open_mm2);
   print_value("greatest strain", m.max_principal_strain, "", "%.4f");
   print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
+  print_value("greatest chord strain", m.max_chord_strain, "", "%.4f");
   print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
   if (report.reference) print_reference(both_directions(*report.reference));

@@ -16,8 +16,8 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments,
   command
       .add_option("--membrane", arguments.membrane,
                   "Leaflets of a valve: a tension field with bending, or for comparison one that resists "
-                  "compression")
-      ->check(CLI::IsMember({"tension_field", "stvk"}))
+                  "compression, or springs along the mesh edges with bending")
+      ->check(CLI::IsMember({"tension_field", "stvk", "spring"}))
       ->capture_default_str();
   command
       .add_option("--pressure", arguments.pressure, "Pressure model of the scene (default: what suits it)")

@@ -31,15 +31,19 @@ std::string positive_defect(const std::string& text) {
   return number > 0 ? "" : "expected a number above 0, read " + text;
 }
 
-void add_study_arguments(CLI::App& command, StudyArguments& arguments) {
+void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
   command.add_option("-o,--output", arguments.folder,
                      "Folder of the files (default: the scene's result folder)");
-  command.add_option("--solver", arguments.solver, "Solver (default: the scene's)");
   command.add_option("--tolerance", arguments.tolerance, "On the residual (default: the scene's)")
       ->check(positive_defect);
   command.add_option("--max-seconds", arguments.max_seconds, "Of each solve (default: the scene's)")
       ->check(positive_defect);
+}
+
+void add_study_arguments(CLI::App& command, StudyArguments& arguments) {
+  add_run_arguments(command, arguments);
+  command.add_option("--solver", arguments.solver, "Solver (default: the scene's)");
 }
 
 }  // namespace coapt::cli

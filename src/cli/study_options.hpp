@@ -23,7 +23,10 @@ struct StudyArguments {
 // For a number given as an option: empty, or what is wrong with it. CLI11's own checks let NaN pass.
 std::string positive_defect(const std::string& text);
 
-// SCENE, -o, --solver, --tolerance, --max-seconds.
+// SCENE, -o, --tolerance, --max-seconds.
+void add_run_arguments(CLI::App& command, StudyArguments& arguments);
+
+// The same and --solver.
 void add_study_arguments(CLI::App& command, StudyArguments& arguments);
 
 }  // namespace coapt::cli

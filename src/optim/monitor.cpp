@@ -11,7 +11,9 @@ constexpr double kWorkNoise = 1e-14;    // relative to force times extent
 constexpr size_t kUsualTrace = 1000;    // iterates for which the trace never grows
 constexpr int kPatience = 1000;         // iterates without gain
 constexpr int kPathPatience = 10000;    // iterates whose residual gains nothing, where no energy has to
-constexpr double kRunaway = 1e4;        // growth of the unknowns' extent that no equilibrium explains
+constexpr double kRunaway = 1e12;       // growth of the unknowns' extent that no equilibrium explains
+constexpr double kFar = 1e4;            // growth that few do: only while the residual falls
+constexpr int kFarPatience = 400;       // iterates
 
 template <typename Evaluate>
 double guarded(Vector& g, Eigen::Index size, const Evaluate& evaluate) {
@@ -99,7 +101,9 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   }
   // Before the residual is asked: what is out of balance on a shape that has run away may be nothing beside
   // the reactions there.
-  if (extent_ > kRunaway * first_extent_) return Status::NoEquilibrium;
+  const bool is_far = extent_ > kFar * first_extent_;
+  if (extent_ > kRunaway * first_extent_ || (is_far && iterations_ - last_residual_gain_ > kFarPatience))
+    return Status::NoEquilibrium;
   if (now.residual <= tolerance_) return Status::Converged;
   if (is_out_of_time()) return Status::TimeLimit;
   if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;

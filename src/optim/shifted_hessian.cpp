@@ -36,7 +36,7 @@ bool ShiftedHessian::factorise_shifted(Monitor& monitor, double shift) {
 bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g,
                                double& shift) {
   for (const Projection projection : {Projection::None, Projection::PositiveSemidefinite}) {
-    monitor.hessian(q, g, h_, projection);
+    if (!std::isfinite(monitor.hessian(q, g, h_, projection))) return false;
     is_exact_ = projection == Projection::None;
     if (objective.pattern_version() != pattern_version_) analyse(monitor);
     pattern_version_ = objective.pattern_version();

@@ -17,7 +17,7 @@ class ShiftedHessian {
   // Evaluates the Hessian at q and factorises it with `shift` times the weights [force/length] added to its
   // diagonal: the exact one if that is positive definite, else that of projected elements with a shift that
   // is raised until it is one. g: gradient at q. Returns false when no shift helps: the Hessian is not
-  // finite.
+  // finite, or a term cannot be evaluated with it.
   bool factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g, double& shift);
 
   // The same Hessian with a greater shift.

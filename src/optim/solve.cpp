@@ -1,11 +1,12 @@
 #include "core/error.hpp"
 #include "optim/bfgs.hpp"
-#include "optim/carry_along.hpp"
 #include "optim/dynamic/dynamic.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
+#include "optim/path_following.hpp"
 #include "optim/solver.hpp"
+#include "optim/xpbd/solver_xpbd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,64 +15,14 @@
 namespace coapt {
 namespace {
 
-constexpr int kMaxRounds = 100;  // renewals of a load without potential
-constexpr int kMaxRoundsWithoutGain = 12;
-constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
-constexpr double kLeastMotion = 1e-4;  // of the whole prescribed motion, that collisions may leave of a step
-constexpr int kMostStiffenings = 5;    // of a contact that proves too soft
-constexpr int kMostSaddles = 2;        // that are left in one run
-constexpr double kFirstKick = 1e-2;    // off a saddle, relative to the extent of the unknowns
+constexpr int kMostSaddles = 2;      // that are left in one run
+constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
 
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-bool ends_the_run(Status status) {
-  return status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
-         status == Status::NonFinite || status == Status::NoEquilibrium;
-}
-
-// Renews the load that has no potential until the exact residual is small. Each round minimises the
-// potential around the last equilibrium; the remainder contracts geometrically where it settles.
-Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-              int& rounds, std::string& note) {
-  if (!objective.has_circulatory_force() || solver.follows_path()) {
-    for (int stiffening = 0;; ++stiffening) {
-      if (objective.has_circulatory_force()) objective.follow_path(q);
-      monitor.begin_round(monitor.round(), tolerance);
-      const Status status = solver.minimize(objective, q, monitor);
-      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
-    }
-  }
-  Vector best = q;
-  double best_residual = kInfinity, gained_residual = kInfinity;
-  double last_residual = kInfinity, contraction = kNaN;
-  int without_gain = 0;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    objective.hold_dead(q);
-    const double residual = objective.true_residual(q);
-    without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
-    if (without_gain == 0) gained_residual = residual;
-    if (residual < best_residual) {
-      best_residual = residual;
-      best = q;
-    }
-    if (round > 0) contraction = residual / last_residual;
-    last_residual = residual;
-    if (residual <= tolerance) return Status::Converged;
-    if (without_gain >= kMaxRoundsWithoutGain) break;
-    ++rounds;
-    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
-    const Status status = solver.minimize(objective, q, monitor);
-    if (ends_the_run(status)) return status;
-  }
-  q = best;
-  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
-         number(contraction) + " a round)";
-  return Status::Stalled;
 }
 
 std::string sentence(const Result& result, double tolerance, const std::string& note) {
@@ -103,78 +54,6 @@ std::string sentence(const Result& result, double tolerance, const std::string& 
       break;
   }
   return note.empty() ? text : text + ": " + note;
-}
-
-// How far a solver got, and what there is to say about it.
-struct Outcome {
-  Status status = Status::Converged;
-  std::string note = {};
-  bool is_on_the_way = false;  // the full problem was not reached
-};
-
-// Moves the prescribed nodes from where they are at `from` towards `to`, the free ones carried along, as far
-// as no collision is in the way; returns how far that is.
-double move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
-  const Points start = objective.positions(q);
-  for (double t = to; t > from; t = from + 0.5 * (t - from)) {
-    const Points x = motion.positions(t);
-    const Vector carried = carried_along(objective, q, x);
-    objective.prescribe(x);
-    if (objective.step_limit(start, objective.positions(carried) - start, 1) == 1) {
-      q = carried;
-      return t;
-    }
-    objective.prescribe(start);
-    if (t - from < kLeastMotion) break;
-  }
-  return from;
-}
-
-// Follows the prescribed motion and the continuation to the full problem.
-Outcome follow(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
-               Result& result) {
-  Objective& objective = problem.objective;
-  const Continuation& continuation = problem.continuation;
-  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
-                              continuation.stiffness_steps});
-  Outcome outcome;
-  double moved = 0;  // of the prescribed motion
-  bool is_blocked = false;
-  bool has_arrived = true;
-  int step = 1;
-  for (; step <= steps; ++step) {
-    const double t = static_cast<double>(step) / steps;
-    has_arrived = !problem.motion.positions;
-    do {
-      if (!has_arrived) {
-        const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);
-        has_arrived = reached == t;
-        is_blocked = !has_arrived && reached - moved < kLeastMotion;
-        moved = reached;
-        if (is_blocked) break;
-      }
-      objective.scale(continuation.load_steps > 1 ? t : 1,
-                      continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
-      const bool is_last = has_arrived && step == steps;
-      outcome.status = settle(solver, objective, result.q, monitor,
-                              is_last ? stop.tolerance : std::max(stop.tolerance, kMotionTolerance),
-                              result.rounds, outcome.note);
-    } while (!has_arrived && !ends_the_run(outcome.status));
-    if (is_blocked || ends_the_run(outcome.status)) break;
-  }
-  // A run that was cut short is judged, with the full load, and kept, where it had got to.
-  objective.scale(1, 1);
-  outcome.is_on_the_way = step < steps || is_blocked || !has_arrived;
-  if (is_blocked) {
-    outcome.status = Status::Stalled;
-    outcome.note =
-        "the prescribed motion presses facets against each other, at " + number(100 * moved) + " % of it";
-  } else if (!has_arrived)
-    outcome.note = "after " + number(100 * moved) + " % of the prescribed motion";
-  else if (outcome.is_on_the_way)
-    outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
-                   " of the prescribed motion or of the continuation";
-  return outcome;
 }
 
 bool feels_no_force(const Result& result) {
@@ -286,8 +165,9 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   monitor.set_watch(&watch);
   Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
   if (outcome.note.empty()) {
-    outcome = follow(solver, problem, stop, monitor, result);
+    outcome = follow_path(solver, problem, stop, monitor, result);
     if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
+    if (outcome.note.empty()) outcome.note = solver.remark();
   }
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
@@ -316,7 +196,8 @@ SolverTable built_in_solvers() {
   return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
           {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
           {"dynamic", [](const SolverOptions& options) { return make_dynamic(options); }},
-          {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
+          {"newton", [](const SolverOptions& options) { return make_newton(options); }},
+          {"xpbd", [](const SolverOptions& options) { return make_xpbd(options); }}};
 }
 
 }  // namespace coapt

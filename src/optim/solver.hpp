@@ -7,6 +7,7 @@
 #include "optim/certificate.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
 #include "optim/factorisation.hpp"
+#include "optim/xpbd/options.hpp"
 
 #include <functional>
 #include <map>
@@ -68,6 +69,9 @@ class Solver {
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
 
+  // What there is to say of how the last minimize() ended, for the message of the result; may be empty.
+  virtual std::string remark() const { return {}; }
+
   // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
   // accepted iterate, finite whatever happens. Never throws for numerical reasons.
   virtual Status minimize(Objective& objective, Vector& q, Monitor& monitor) = 0;
@@ -98,6 +102,14 @@ struct Problem {
   StabilityOptions stability = {};
 };
 
+// A step of a path, of loads, stiffnesses or prescribed motion, that ended on another branch of equilibria
+// than the one it came by: the branch has a limit point on the way, and the shape snapped through.
+struct BranchChange {
+  int step = 0;         // that left the branch, from 1
+  int before = 0;       // a step before it, where both branches have an equilibrium
+  double distance = 0;  // of the two there: of the node farthest apart [length]
+};
+
 struct Result {
   Vector q;  // the best iterate: finite, last accepted
   Status status = Status::Stalled;
@@ -110,7 +122,8 @@ struct Result {
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;
-  Certificate certificate;  // where the problem asked for it
+  Certificate certificate;                   // where the problem asked for it
+  std::vector<BranchChange> branch_changes;  // from the third step of a path on; a path of fewer has none
   std::vector<Iteration> trace;
   double wall_s = 0, cpu_s = 0;
   std::map<std::string, double> phase_s;  // wall time by phase
@@ -127,6 +140,8 @@ enum class Globalisation {
   TrustRegion  // the shift of the diagonal is raised until the whole step keeps what the model promised
 };
 
+struct XpbdBody;
+
 // What solvers may be told; each takes what concerns it.
 struct SolverOptions {
   int memory = 12;                                          // pairs that lbfgs keeps
@@ -135,14 +150,16 @@ struct SolverOptions {
   FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
   DynamicOptions dynamic = {};
   std::function<TriangleMesh()> surface =
-      {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
+      {};  // at rest, over all nodes; asked for by collisions of `dynamic`
+  XpbdOptions xpbd = {};
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
+  std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
 };
 
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic". Adapters add themselves
+// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic", "xpbd". Adapters add themselves
 // (add_ceres_solver, ...).
 SolverTable built_in_solvers();
 

@@ -20,6 +20,14 @@ Triangles all_facets(const Model& model) {
   return all;
 }
 
+FacetPairs membrane_intersections(const Points& x, const Model& model, const IntersectionJudge& judge) {
+  FacetPairs pairs = judge.pairs(x, all_facets(model));
+  std::erase_if(pairs, [count = model.mesh.triangle_count()](const std::array<int, 2>& pair) {
+    return std::min(pair[0], pair[1]) >= count;
+  });
+  return pairs;
+}
+
 FacetPairs read_facet_pairs(const std::string& path, int facet_count) {
   const std::string text = read_text(path);
   FacetPairs pairs;

@@ -1,6 +1,7 @@
-// Pairs of facets at the start of a scene with a contact barrier: which intersect, which are excluded.
+// Pairs of facets of the membrane and of obstacles: which pass through each other, which are excluded.
 #pragma once
 
+#include "mesh/intersections.hpp"
 #include "scene/model.hpp"
 
 #include <array>
@@ -13,6 +14,10 @@ using FacetPairs = std::vector<std::array<int, 2>>;  // the smaller number first
 
 // The membrane's facets, then those of the obstacles, by node number.
 Triangles all_facets(const Model& model);
+
+// Pairs of all_facets() that pass through each other at x (3 x node_count [mm], finite), as `judge` sees it.
+// At least one of a pair is the membrane's: obstacles may overlap among themselves.
+FacetPairs membrane_intersections(const Points& x, const Model& model, const IntersectionJudge& judge = {});
 
 // Two facet numbers a line, separated by a comma; lines that start with # are passed over. Throws InputError
 // with every bad line as FILE:LINE.

@@ -3,6 +3,7 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/cable_law.hpp"
+#include "energy/kernels/spring.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "mesh/vertex_gaps.hpp"
 
@@ -51,6 +52,13 @@ void add_stress(const Model& model, Fields& fields) {
     }
 }
 
+// Springs have forces and no stress, so beside them no triangle is told to be slack.
+bool has_springs(const Model& model) {
+  const auto& terms = model.objective->terms();
+  return std::any_of(terms.begin(), terms.end(),
+                     [](const auto& term) { return term->type() == Spring::kType; });
+}
+
 void add_strain_and_stress(const Model& model, Fields& fields) {
   const Triangles& triangles = model.mesh.triangles;
   fields.principal_strain.resize(2, triangles.cols());
@@ -58,7 +66,7 @@ void add_strain_and_stress(const Model& model, Fields& fields) {
     const Eigen::Vector2d green = principal_values(green_strain(model.X, fields.x, triangles.col(t)));
     fields.principal_strain.col(t) = (1 + 2 * green.array()).max(0).sqrt() - 1;
   }
-  if (!model.membrane_patches.empty()) add_stress(model, fields);
+  if (!model.membrane_patches.empty() && !has_springs(model)) add_stress(model, fields);
 }
 
 template <typename Kernel>
@@ -114,6 +122,11 @@ double part_below(std::array<double, 3> values, double level) {
 }
 
 }  // namespace
+
+std::optional<double> line_strain(const Line& line, const Points& x) {
+  if (line.rest_length <= 0) return std::nullopt;
+  return (x.col(line.a) - x.col(line.b)).norm() / line.rest_length - 1;
+}
 
 const std::vector<int>* annulus_of(const Model& model) {
   const auto annulus = model.sets.find("annulus");

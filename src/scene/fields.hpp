@@ -4,6 +4,8 @@
 
 #include "scene/model.hpp"
 
+#include <optional>
+
 namespace coapt {
 
 struct Fields {
@@ -11,8 +13,8 @@ struct Fields {
   Points displacement;                 // x - X, 3 x node_count [mm]
   Eigen::Matrix2Xd principal_strain;   // engineering strain (stretch - 1), largest first, per triangle
   Eigen::Matrix2Xd principal_stress;   // second Piola-Kirchhoff [MPa], largest first, per triangle; no
-                                       // columns for a model without membrane properties
-  std::vector<MembraneRegime> regime;  // per triangle; empty for a model without membrane properties
+                                       // columns for a model without membrane stress, or with springs
+  std::vector<MembraneRegime> regime;  // per triangle; empty where there is no stress
   Vector gap;                          // per mesh vertex, see mesh/vertex_gaps.hpp [mm]; empty where nobody
                                        // asks for contact, see looks_for_contact
   std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance; empty like gap
@@ -20,13 +22,19 @@ struct Fields {
   double contact_distance = 0;         // [mm]
   double gap_reach = 0;                // how far gaps were looked for [mm]
   Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
-  Vector line_force;                   // tension of each line of the model [N]; negative for compression
+  Vector method_distance;  // per mesh vertex to the shape that the reference method of a comparison
+                           // found [mm]; empty outside of one
+  Vector line_force;       // tension of each line of the model [N]; negative for compression
 };
 
 // Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that
 // covers the triangle, the prestress included. The regime of a membrane that resists compression is that in
 // which a tension field would be.
 Fields compute_fields(const Model& model, const Points& x);
+
+// Length of a line at positions x over its rest length, less 1; empty for a constant-force cable, which has
+// no rest length.
+std::optional<double> line_strain(const Line& line, const Points& x);
 
 // Whether contact means anything to the model: it has an annulus or a contact term. Others pay nothing for
 // it.

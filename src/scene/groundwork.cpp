@@ -180,6 +180,14 @@ void read_obstacles(const Scene& scene, Assembly& assembly) {
     }
 }
 
+void warn_of_idle_obstacles(const Scene& scene, Assembly& assembly) {
+  const auto is_barrier = [](const TermSpec& term) { return term.type == "contact_barrier"; };
+  if (scene.obstacles.empty() || std::any_of(scene.terms.begin(), scene.terms.end(), is_barrier)) return;
+  assembly.warn({scene.file.string() +
+                 ": obstacles: nothing keeps the membrane off them, as no term is a `contact_barrier`; where "
+                 "it passes through them is counted in the intersections of the result."});
+}
+
 // Moves the nodes to zero where they lie so far from it that digits would be lost.
 void recentre(Assembly& assembly) {
   Model& model = assembly.model;
@@ -241,6 +249,7 @@ Groundwork lay_groundwork(const Scene& scene) {
   read_reference(scene, assembly);
   read_valves(scene, assembly);
   read_obstacles(scene, assembly);
+  warn_of_idle_obstacles(scene, assembly);
   assembly.stop_on_defects();
   check_surface(scene, model, assembly.defects);
   assembly.stop_on_defects();

@@ -45,8 +45,9 @@ void check_options(const ImportOptions& options) {
   if (!options.contact.empty() && options.contact != "none" && options.contact != "barrier" &&
       options.contact != "facet")
     defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, barrier, facet");
-  if (options.membrane != "tension_field" && options.membrane != "stvk")
-    defects.push_back("membrane: read \"" + options.membrane + "\"; expected one of tension_field, stvk");
+  if (options.membrane != "tension_field" && options.membrane != "stvk" && options.membrane != "spring")
+    defects.push_back("membrane: read \"" + options.membrane +
+                      "\"; expected one of tension_field, stvk, spring");
   if (!defects.empty()) throw InputError(defects);
 }
 
@@ -150,13 +151,17 @@ const std::string* key_of(const Material& law, const std::string& key) {
   return found == law.keys.end() ? nullptr : &found->second;
 }
 
-// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist. A
-// law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
+bool is_membrane(const Material& law) { return law.type.starts_with("cst_") || law.type == "spring"; }
+
+// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
+// are springs. A law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
   const bool resists = options.membrane == "stvk";
   if (law.type == "cst_stvk" || (resists && law.type == "cst_tension_field")) {
-    if (!is_own || resists) law.type = "cst_" + options.membrane;
-  } else if (resists && law.type.starts_with("cst_") && key_of(law, "compression") == nullptr) {
+    if (is_own && !resists) return;
+    law.type = detail::linear_membrane_type(options);
+    if (law.type == "spring") std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
+  } else if (resists && is_membrane(law) && key_of(law, "compression") == nullptr) {
     law.keys.emplace_back("compression", "\"resisted\"");
   }
 }
@@ -170,11 +175,12 @@ void take_moduli(const ImportOptions& options, Valve& valve) {
       const std::string* thickness = key_of(entry.second, "thickness");
       return thickness == nullptr || *thickness == usual;
     });
-    for (auto& [region, law] : valve.membranes)
-      law = {"cst_" + options.membrane,
-             {{"young", quoted(options.young)},
-              {"poisson", digits(options.poisson)},
-              {"thickness", *key_of(law, "thickness")}}};
+    for (auto& [region, law] : valve.membranes) {
+      Material linear{detail::linear_membrane_type(options), {{"young", quoted(options.young)}}};
+      if (options.membrane != "spring") linear.keys.emplace_back("poisson", digits(options.poisson));
+      linear.keys.emplace_back("thickness", *key_of(law, "thickness"));
+      law = std::move(linear);
+    }
   }
   if (!options.chord_young.empty()) valve.cables.clear();
 }
@@ -187,7 +193,7 @@ bool complete_thickness(const ImportOptions& options, Valve& valve) {
   for (const std::string& region : valve.leaflets.region_names)
     is_missing |= !valve.membranes.contains(region);
   for (auto& [region, law] : valve.membranes)
-    if (law.type.starts_with("cst_") && key_of(law, "thickness") == nullptr) {
+    if (is_membrane(law) && key_of(law, "thickness") == nullptr) {
       law.keys.emplace_back("thickness", quoted(digits(options.default_thickness) + " mm"));
       is_missing = true;
     }

@@ -10,16 +10,18 @@
 namespace coapt {
 
 struct ImportOptions {
-  std::string membrane = "tension_field";  // of leaflets without a law: tension_field with bending, or stvk
+  // Of leaflets without a law: tension_field with bending, stvk, or spring with bending.
+  std::string membrane = "tension_field";
   // Given, a linear law of this modulus takes the place of every law of the leaflets; their thickness stays.
   std::string young = "";  // empty: the valve's laws, and 1 MPa where it has none
-  double poisson = 0.45;   // of linear leaflets
+  double poisson = 0.45;   // of linear leaflets; springs have none
   // Given, linear chords of this modulus take the place of every law of chords.
   std::string chord_young = "";  // empty: the valve's laws, and 40 MPa where it has none; Hammer et al. 2011
   std::string pressure = "";     // empty: the valve's, else 120 mmHg
   std::string pressure_model = "";  // follower, volume, frozen, or field (toward the commissure line); empty:
                                     // what the file says, else follower
   std::string contact = "";         // none, barrier or facet; empty: barrier, or none where a model has none
+  bool bends = true;                // false: no term `bending`, whatever the membrane
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
   bool incompressible = false;  // leaves the key `bulk` of membrane laws out, whatever file they come from

@@ -203,6 +203,19 @@ DynamicOptions dynamics_from(const Parameters& values) {
   return dynamics;
 }
 
+XpbdOptions xpbd_from(const Parameters& values) {
+  XpbdOptions xpbd;
+  xpbd.time_step = values.number_or("time_step", 0);
+  xpbd.iterations = values.integer("iterations");
+  xpbd.steps = values.integer("steps");
+  xpbd.damping = values.number("damping");
+  xpbd.thickness = values.number("thickness");
+  if (values.text("stiffness") == "paper") xpbd.stiffness = XpbdStiffness::Paper;
+  if (values.text("forces") == "paper") xpbd.forces = XpbdForces::Paper;
+  if (values.text("phase") == "diastole") xpbd.phase = HeartPhase::Diastole;
+  return xpbd;
+}
+
 SolverSpec solver_from(const Parameters& values) {
   SolverSpec solver;
   solver.type = values.text("type");
@@ -223,6 +236,8 @@ SolverSpec solver_from(const Parameters& values) {
     solver.continuation.first_stiffness = continuation.number("first_stiffness");
   }
   if (values.has("dynamics")) solver.dynamic = dynamics_from(values.object("dynamics"));
+  if (values.has("xpbd")) solver.xpbd = xpbd_from(values.object("xpbd"));
+  solver.xpbd.threads = solver.threads;
   solver.cascade = values.flag("cascade");
   if (values.has("certificate")) solver.modes = values.object("certificate").integer("modes");
   return solver;

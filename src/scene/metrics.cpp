@@ -2,9 +2,11 @@
 
 #include "core/error.hpp"
 #include "mesh/projected_area.hpp"
+#include "scene/contact_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace coapt {
@@ -43,10 +45,25 @@ void measure_regimes(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.slack_area_mm2 = area_in(MembraneRegime::Slack);
 }
 
-void measure_lines(const Fields& fields, Metrics& metrics) {
+void measure_line_strains(const Model& model, const Fields& fields, Metrics& metrics) {
+  double sum = 0;
+  int stretched = 0;
+  for (const Line& line : model.lines) {
+    const std::optional<double> strain = line_strain(line, fields.x);
+    if (!strain) continue;
+    metrics.max_chord_strain = std::max(metrics.max_chord_strain.value_or(*strain), *strain);
+    if (*strain <= 0) continue;
+    sum += *strain;
+    ++stretched;
+  }
+  if (stretched > 0) metrics.mean_chord_strain = sum / stretched;
+}
+
+void measure_lines(const Model& model, const Fields& fields, Metrics& metrics) {
   if (fields.line_force.size() == 0) return;
   metrics.max_chord_force_n = fields.line_force.maxCoeff();
   metrics.slack_chords = (fields.line_force.array() <= 0).count();
+  measure_line_strains(model, fields, metrics);
 }
 
 }  // namespace
@@ -57,15 +74,14 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
   const Triangles& triangles = model.mesh.triangles;
   metrics.leaflet_area_open_mm2 = surface_area(model.X, triangles);
   metrics.leaflet_area_closed_mm2 = surface_area(fields.x, triangles);
+  metrics.leaflet_area_change_mm2 = metrics.leaflet_area_closed_mm2 - metrics.leaflet_area_open_mm2;
   metrics.max_displacement_mm =
       fields.displacement.cols() == 0 ? 0 : fields.displacement.colwise().norm().maxCoeff();
   const bool is_finite = fields.x.allFinite();
-  if (triangles.cols() > 0 && is_finite) {
-    const Points surface = fields.x.leftCols(model.mesh.vertex_count());
-    metrics.intersections = static_cast<long>(judge.pairs(surface, triangles).size());
-  }
+  if (triangles.cols() > 0 && is_finite)
+    metrics.intersections = std::ssize(membrane_intersections(fields.x, model, judge));
   if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
-  measure_lines(fields, metrics);
+  measure_lines(model, fields, metrics);
   measure_regimes(model, fields, metrics);
 
   if (const std::vector<int>* annulus = annulus_of(model); annulus && is_finite) try {
@@ -91,7 +107,9 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
     return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
   };
   return {
-      {"intersections", "", "pairs of facets without a common vertex that touch or pass through each other",
+      {"intersections", "",
+       "pairs of facets without a common vertex, one or both of the mesh, that touch or pass through each "
+       "other",
        true, count(m.intersections)},
       {"orifice_area_mm2", "mm2", "area of the annulus opening, seen along its normal, left uncovered", false,
        m.orifice_area_mm2},
@@ -117,6 +135,8 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
        m.prolapse_height_mm},
       {"leaflet_area_open_mm2", "mm2", "area of the reference mesh", false, m.leaflet_area_open_mm2},
       {"leaflet_area_closed_mm2", "mm2", "area of the closed mesh", false, m.leaflet_area_closed_mm2},
+      {"leaflet_area_change_mm2", "mm2", "area of the closed mesh less that of the reference mesh", false,
+       m.leaflet_area_change_mm2},
       {"taut_area_mm2", "mm2", "reference area of the membrane in tension both ways", false, m.taut_area_mm2},
       {"wrinkled_area_mm2", "mm2", "reference area of the membrane in tension one way", false,
        m.wrinkled_area_mm2},
@@ -124,6 +144,10 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
        m.max_principal_strain},
       {"max_chord_force_n", "N", "greatest tension of a chord or cable", false, m.max_chord_force_n},
+      {"max_chord_strain", "", "greatest strain of a chord or cable, length over rest length - 1", false,
+       m.max_chord_strain},
+      {"mean_chord_strain", "", "mean strain of the chords and cables longer than at rest", false,
+       m.mean_chord_strain},
       {"force_balance", "", "resultant of loads and reactions over the sum of their magnitudes", false,
        m.force_balance},
       {"moment_balance", "", "the same for moments about the centre of the nodes", false, m.moment_balance},

@@ -13,7 +13,7 @@ namespace coapt {
 
 // Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
 struct Metrics {
-  long intersections = 0;                      // pairs of facets that pass through each other
+  long intersections = 0;                      // pairs of facets, one or both of the mesh
   std::string intersection_judge;              // who counted them
   std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
@@ -27,10 +27,13 @@ struct Metrics {
   std::optional<double> prolapse_height_mm;    // greatest height above every line across the annulus
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
+  double leaflet_area_change_mm2 = 0;  // of the closed mesh against the reference
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
   std::optional<double> max_principal_strain;                              // stretch - 1
   std::optional<double> max_chord_force_n;
-  std::optional<double> force_balance;  // |sum of loads and reactions| / sum of magnitudes
+  std::optional<double> max_chord_strain;   // length over rest length, less 1
+  std::optional<double> mean_chord_strain;  // of the lines longer than at rest
+  std::optional<double> force_balance;      // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;
   long contact_vertices = 0, contact_facets = 0;
   std::optional<double> smallest_gap_mm;

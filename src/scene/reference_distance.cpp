@@ -3,12 +3,27 @@
 #include "mesh/surface_distance.hpp"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace coapt {
 namespace {
 
 DistanceFigures figures(const SurfaceDistance& distance) {
   return {distance.mean, distance.p95, distance.max};
+}
+
+// The facets by their corners, however a file lists them: corners in ascending order, and so the facets.
+std::vector<std::array<int, 3>> facets(const Triangles& triangles) {
+  std::vector<std::array<int, 3>> all;
+  all.reserve(static_cast<size_t>(triangles.cols()));
+  for (const auto& t : triangles.colwise()) {
+    std::array<int, 3> corners{t[0], t[1], t[2]};
+    std::sort(corners.begin(), corners.end());
+    all.push_back(corners);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 }  // namespace
@@ -28,21 +43,23 @@ TriangleMesh surface_at(const Model& model, const Points& x) {
   return surface;
 }
 
-std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
-  if (!model.closed_reference) return std::nullopt;
-  const TriangleMesh& reference = *model.closed_reference;
-  const TriangleMesh closed = surface_at(model, fields.x);
+ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
+                                     Vector& vertex_distances) {
   const SurfaceDistance there = surface_distance(closed, reference);
-  fields.reference_distance = there.vertex_distances;
+  vertex_distances = there.vertex_distances;
   ReferenceDistance distance{figures(there), figures(surface_distance(reference, closed)), std::nullopt};
   const bool is_same_mesh = reference.vertices.cols() == closed.vertices.cols() &&
-                            reference.triangles.cols() == closed.triangles.cols() &&
-                            reference.triangles == closed.triangles;
+                            facets(reference.triangles) == facets(closed.triangles);
   if (is_same_mesh) {
     const Eigen::RowVectorXd apart = (reference.vertices - closed.vertices).colwise().norm();
     distance.same_vertex = VertexDistance{apart.mean(), apart.maxCoeff()};
   }
   return distance;
+}
+
+std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
+  if (!model.closed_reference) return std::nullopt;
+  return reference_distance(surface_at(model, fields.x), *model.closed_reference, fields.reference_distance);
 }
 
 }  // namespace coapt

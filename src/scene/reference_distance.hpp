@@ -18,7 +18,7 @@ struct VertexDistance {
 struct ReferenceDistance {
   DistanceFigures to_reference;               // from the solved surface to the reference
   DistanceFigures from_reference;             // from the reference to the solved surface
-  std::optional<VertexDistance> same_vertex;  // when both have the same triangles
+  std::optional<VertexDistance> same_vertex;  // when both have the same facets, in any order
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.
@@ -26,6 +26,11 @@ DistanceFigures both_directions(const ReferenceDistance& distance);
 
 // The same between any two surfaces. Throws InputError when one of them has no area.
 DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b);
+
+// From one surface to another and back; `vertex_distances` gets the distance of every vertex of `closed` to
+// the closest point of `reference` [mm]. Throws InputError when one of them has no area.
+ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
+                                     Vector& vertex_distances);
 
 // The model's surface with its nodes at x (3 x node_count, relative to the origin).
 TriangleMesh surface_at(const Model& model, const Points& x);

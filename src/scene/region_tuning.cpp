@@ -62,11 +62,11 @@ class Tuning {
     solved.state.orifice_area_mm2 = metrics.orifice_area_mm2;
     std::vector<double> excess;
     for (const Line& line : model.lines) {
-      if (line.rest_length <= 0) continue;
-      const double strain = (solved.x.col(line.a) - solved.x.col(line.b)).norm() / line.rest_length - 1;
-      solved.state.max_chord_strain = std::max(solved.state.max_chord_strain, strain);
-      if (strain > options_.yield_strain) ++solved.state.strained_chords;
-      excess.push_back(strain / options_.yield_strain - 1 + kMargin);
+      const std::optional<double> strain = line_strain(line, solved.x);
+      if (!strain) continue;
+      solved.state.max_chord_strain = std::max(solved.state.max_chord_strain, *strain);
+      if (*strain > options_.yield_strain) ++solved.state.strained_chords;
+      excess.push_back(*strain / options_.yield_strain - 1 + kMargin);
     }
     if (limit_ && metrics.orifice_area_mm2)
       excess.push_back(*metrics.orifice_area_mm2 / *limit_ - 1 + kMargin);

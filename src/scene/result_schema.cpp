@@ -99,7 +99,7 @@ Json reference_distance() {
        {"from_reference", distance("from the reference to the solved surface")},
        {"same_vertex",
         object({{"mean_mm", number("mean [mm]")}, {"max_mm", number("greatest [mm]")}},
-               "between vertices of the same number, when the reference has the same vertices and triangles"),
+               "between vertices of the same number, when the reference has as many and the same facets"),
         Need::Optional}},
       "distance between the solved surface and the closed surface that the scene names");
 }
@@ -153,8 +153,18 @@ Json levels(const Json& statuses) {
       "figures are those of the scene's own mesh");
 }
 
+Json branch_changes() {
+  return list(object({{"step", count("that left the branch, from 1")},
+                      {"before", count("a step before it, where both branches have an equilibrium")},
+                      {"distance_mm", number("of the two there: of the node farthest apart [mm]")}},
+                     "one step"),
+              "steps of the prescribed motion or of the continuation that snapped to another branch of "
+              "equilibria; told from the third step on");
+}
+
 Json counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
+                 {"spring_elements", count("edge springs of membranes")},
                  {"cable_elements", count("cables and tethers")},
                  {"pressure_facets", count("elements of pressure terms: facets, or loaded nodes if frozen")},
                  {"contact_candidates", count("pairs in the candidate lists at the end")},
@@ -179,6 +189,7 @@ std::string result_schema() {
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
               {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"branch_changes", branch_changes()},
               {"evaluations", object({{"value", count("energy alone")},
                                       {"gradient", count("energy and gradient")},
                                       {"hessian", count("energy, gradient and Hessian")},

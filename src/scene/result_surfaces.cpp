@@ -83,6 +83,9 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
   if (fields.reference_distance.size() > 0)
     surface.point_arrays.push_back(
         {"distance_to_reference", over_nodes(fields.reference_distance, nodes), false});
+  if (fields.method_distance.size() > 0)
+    surface.point_arrays.push_back(
+        {"distance_to_reference_method", over_nodes(fields.method_distance, nodes), false});
 
   surface.triangle_arrays = {{"principal_strain_1", fields.principal_strain.row(0), false},
                              {"principal_strain_2", fields.principal_strain.row(1), false}};

@@ -2,6 +2,7 @@
 
 #include "core/components.hpp"
 #include "core/error.hpp"
+#include "energy/kernels/spring.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/detail/csv_text.hpp"
@@ -80,23 +81,22 @@ Json reference_json(const ReferenceDistance& distance) {
 }
 
 Json counters_json(const Model& model, const Result& result) {
-  long membrane = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
+  long membrane = 0, springs = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
   for (const auto& term : model.objective->terms()) {
     const long elements = term->counters().elements;
     const bool is_internal = term->role() == TermRole::Internal;
     if (is_internal && term->stencils().width == 3) membrane += elements;
-    if (is_internal && term->stencils().width == 2) cable += elements;
+    if (is_internal && term->stencils().width == 2)
+      (term->type() == Spring::kType ? springs : cable) += elements;
     if (term->type() == "load_pressure") pressure += elements;
   }
   for (const TermReport& term : result.terms) {
     candidates += term.counters.candidates;
     searches += term.counters.searches;
   }
-  return {{"membrane_elements", membrane},
-          {"cable_elements", cable},
-          {"pressure_facets", pressure},
-          {"contact_candidates", candidates},
-          {"contact_searches", searches}};
+  return {{"membrane_elements", membrane},    {"spring_elements", springs},
+          {"cable_elements", cable},          {"pressure_facets", pressure},
+          {"contact_candidates", candidates}, {"contact_searches", searches}};
 }
 
 Json counted(int count) { return count < 0 ? Json(nullptr) : Json(count); }
@@ -140,6 +140,14 @@ Json levels_json(const std::vector<CascadeLevel>& levels) {
                     {"residual", number(level.residual)},
                     {"wall_s", number(level.wall_s)},
                     {"cpu_s", number(level.cpu_s)}});
+  return json;
+}
+
+Json branch_changes_json(const std::vector<BranchChange>& changes) {
+  Json json = Json::array();
+  for (const BranchChange& change : changes)
+    json.push_back(
+        {{"step", change.step}, {"before", change.before}, {"distance_mm", number(change.distance)}});
   return json;
 }
 
@@ -216,6 +224,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},
+      {"branch_changes", branch_changes_json(result.branch_changes)},
       {"evaluations",
        {{"value", result.evaluations.value},
         {"gradient", result.evaluations.gradient},

@@ -79,7 +79,8 @@ struct SolverSpec {
   int threads = 1;  // that assemble the Hessian
   DynamicOptions dynamic;
   double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
-  int modes = 0;             // smallest eigenvalues in the certificate
+  XpbdOptions xpbd;
+  int modes = 0;  // smallest eigenvalues in the certificate
 };
 
 struct Scene {

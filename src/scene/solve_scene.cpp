@@ -4,6 +4,7 @@
 #include "scene/build.hpp"
 #include "scene/masses.hpp"
 #include "scene/suggestion.hpp"
+#include "scene/xpbd_body.hpp"
 
 #include <cmath>
 
@@ -30,8 +31,8 @@ SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name)
 }
 
 // What the scene says of the method, and what the method may ask of the body that it moves.
-SolverOptions solver_options(const SolverSpec& spec, const FactorisationFactory& factorisation,
-                             const Model& model) {
+SolverOptions solver_options(const SolverSpec& spec, const std::vector<TermSpec>& terms,
+                             const FactorisationFactory& factorisation, const Model& model) {
   SolverOptions options;
   options.memory = spec.memory;
   options.is_preconditioned = spec.is_preconditioned;
@@ -43,6 +44,8 @@ SolverOptions solver_options(const SolverSpec& spec, const FactorisationFactory&
         kCollisionDistance * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
   options.surface = [&model] { return TriangleMesh{model.X, model.mesh.triangles, {}, {}}; };
   options.masses = [&model, density = spec.density] { return lumped_masses(model, density); };
+  options.xpbd = spec.xpbd;
+  options.xpbd_body = [&model, terms] { return xpbd_body(model, terms); };
   return options;
 }
 
@@ -65,8 +68,10 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
   const FactorisationFactory factorisation =
       chosen_factorisation(options.factorisations, scene.solver.factorisation);
-  setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, factorisation](
-                          const Model& model) { return make(solver_options(spec, factorisation, model)); };
+  setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
+                       factorisation](const Model& model) {
+    return make(solver_options(spec, terms, factorisation, model));
+  };
   setup.stop = stop_rule(scene, options);
   setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
   setup.observer = options.observer;

@@ -10,8 +10,8 @@ namespace coapt {
 const std::vector<TermType>& term_types() {
   static const std::vector<TermType> kTypes = [] {
     std::vector<TermType> all;
-    for (auto family : {membrane_term_types, tissue_term_types, bending_term_types, line_term_types,
-                        load_term_types, contact_term_types})
+    for (auto family : {membrane_term_types, tissue_term_types, spring_term_types, bending_term_types,
+                        line_term_types, load_term_types, contact_term_types})
       for (TermType& type : family()) all.push_back(std::move(type));
     return all;
   }();

@@ -71,6 +71,7 @@ const TermType* find_term_type(const std::string& name);
 // The entries by family, each in its own file.
 std::vector<TermType> membrane_term_types();  // cst_stvk, cst_tension_field, surface_tension
 std::vector<TermType> tissue_term_types();    // cst_bilinear ... cst_crimped_fibre
+std::vector<TermType> spring_term_types();    // spring
 std::vector<TermType> bending_term_types();   // bending
 std::vector<TermType> line_term_types();      // cable, cable_bilinear ..., tether_cubic
 std::vector<TermType> load_term_types();      // load_field, load_pressure

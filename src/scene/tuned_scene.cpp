@@ -18,7 +18,8 @@ std::vector<std::string> moduli_of(const TermSpec& term) {
     return std::any_of(family.begin(), family.end(),
                        [&](const TermType& type) { return type.name == term.type; });
   };
-  if (!is_of(membrane_term_types()) && !is_of(tissue_term_types())) return keys;
+  if (!is_of(membrane_term_types()) && !is_of(tissue_term_types()) && !is_of(spring_term_types()))
+    return keys;
   for (const KeySpec& key : find_term_type(term.type)->spec.keys)
     if (key.kind == KeyKind::Quantity && key.dimension == kPressure && term.parameters.has(key.name))
       keys.push_back(key.name);

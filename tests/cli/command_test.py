@@ -185,6 +185,8 @@ class CommandTest(unittest.TestCase):
 
     def test_refuses_options_without_effect(self):
         for arguments, option in [(["disc", "--membrane", "stvk"], "--membrane"), (["disc", "--seed", 7], "--seed"),
+                                  (["disc", "--model", "hammer-2008"], "--model"),
+                                  (["mitral", "--model", "hammer-2008", "--membrane", "stvk"], "--model"),
                                   (["catenary", "--triangles", 7], "--triangles")]:
             self.assert_bad_input(coapt("generate", *arguments, "-o", self.folder / "new"), option, arguments[0])
         self.assertFalse((self.folder / "new").exists())
@@ -296,6 +298,21 @@ class CommandTest(unittest.TestCase):
         self.assertIn('"young": "30 MPa"', text)
         run = coapt("import", self.folder / "valve.json", "--young", "2 mm", "--chord-young", "-1 MPa", "-o", out)
         self.assert_bad_input(run, "young", "mm", "chord_young: must be positive")
+
+    def test_generates_valves_of_springs(self):
+        for options in [["--membrane", "spring"], ["--model", "hammer-2008"], ["--model", "hammer-2011"]]:
+            with self.subTest(options[1]):
+                scene = self.generate("mitral", "--triangles", 400, "--contact", "none", *options)
+                run = coapt("check", scene)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                run = coapt("solve", scene)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                result = self.result()
+                self.assertGreater(result["counters"]["spring_elements"], 600)
+                self.assertEqual(result["counters"]["membrane_elements"], 0)
+                self.assertIsNone(result["metrics"]["slack_area_mm2"])
+                self.assertNotIn("regime", (self.folder / "result" / "closed.vtp").read_text(errors="replace"))
+        self.assertEqual(coapt("generate", "mitral", "--model", "hammer", "-o", self.folder / "x").returncode, 2)
 
     def test_makes_chords_where_there_are_none(self):
         self.generate("mitral", "--triangles", 625)

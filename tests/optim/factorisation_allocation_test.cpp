@@ -114,22 +114,61 @@ TEST_F(Allocation, OfCholmodIsItsUpdateMatrixAtAnySize) {
 }
 #endif
 
-// From the second iterate on, whatever the iteration does: Hessian, factor, GMRES, line search, trace.
-TEST_F(Allocation, NewtonIteratesWithoutAny) {
+// Passes everything on to another factorisation and counts.
+class Counted final : public Factorisation {
+ public:
+  Counted(std::unique_ptr<Factorisation> factor, long& count) : factor_(std::move(factor)), count_(count) {}
+  std::string_view name() const override { return factor_->name(); }
+  void analyse(const SparseMatrix& lower) override { factor_->analyse(lower); }
+  bool factorise(const SparseMatrix& lower) override {
+    ++count_;
+    return factor_->factorise(lower);
+  }
+  void solve(const Vector& b, Vector& x) override { factor_->solve(b, x); }
+  double pivot_ratio() const override { return factor_->pivot_ratio(); }
+  Inertia inertia(const SparseMatrix& lower) override { return factor_->inertia(lower); }
+
+ private:
+  std::unique_ptr<Factorisation> factor_;
+  long& count_;
+};
+
+// From the second iterate on, whatever the iteration does (Hessian, factor, GMRES, line search, trace),
+// newton allocates the blocks that the library takes for each factorisation and nothing else.
+void expect_nothing_allocated_but(long blocks, const FactorisationFactory& make) {
   const ValveScene scene{{}};
   Objective objective(scene.X, scene.fixed, scene.terms());
-  const auto newton = built_in_solvers().at("newton")({});
-  std::vector<long> counts;
-  counts.reserve(1000);
+  long factorised = 0;
+  SolverOptions options;
+  options.factorisation = [&] { return std::make_unique<Counted>(make(), factorised); };
+  const auto newton = built_in_solvers().at("newton")(options);
+  struct Seen {
+    long allocations, factorised;
+  };
+  std::vector<Seen> seen;
+  seen.reserve(1000);
   const Result result = solve(*newton, {objective, objective.unknowns(scene.X), scene.method().motion},
                               {.tolerance = 1e-8}, [&](const Iteration&, const Vector&) {
-                                counts.push_back(allocations);
+                                seen.push_back({allocations, factorised});
                                 return true;
                               });
   ASSERT_EQ(result.status, Status::Converged);
-  ASSERT_GT(counts.size(), 5u);
-  EXPECT_GT(counts[1], counts[0]);  // the first iteration makes room
-  for (size_t k = 2; k < counts.size(); ++k) EXPECT_EQ(counts[k], counts[k - 1]) << "iteration " << k;
+  ASSERT_GT(seen.size(), 5u);
+  EXPECT_GT(seen[1].allocations, seen[0].allocations);  // the first iteration makes room
+  for (size_t k = 2; k < seen.size(); ++k) {
+    EXPECT_GE(seen[k].factorised, seen[k - 1].factorised + 1) << "iteration " << k;
+    EXPECT_EQ(seen[k].allocations - seen[k - 1].allocations,
+              blocks * (seen[k].factorised - seen[k - 1].factorised))
+        << "iteration " << k;
+  }
 }
+
+TEST_F(Allocation, NewtonIteratesWithoutAny) { expect_nothing_allocated_but(0, make_eigen_factorisation); }
+
+#ifdef COAPT_HAS_CHOLMOD
+TEST_F(Allocation, NewtonIteratesOnCholmodWithItsUpdateMatrixAlone) {
+  expect_nothing_allocated_but(2, [] { return make_cholmod_factorisation(); });
+}
+#endif
 
 }  // namespace

@@ -12,6 +12,9 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
+
 namespace coapt {
 namespace {
 
@@ -84,6 +87,32 @@ TEST(FollowerTangent, WorkAlongAStraightPathIsExact) {
     return std::abs(rise / (2 * h) - g.dot(d)) / std::abs(g.dot(d));
   };
   for (const double s : {0.3, 1.0, 2.0}) EXPECT_LT(slope_error(s, 1e-4), 1e-6) << s;
+}
+
+// A coarse valve of soft leaflets: the symmetric part of the tangent has negative eigenvalues at its
+// equilibrium, where steps that project them away converge slowly and linearly (154 iterations in all, some
+// 130 of them below 1e-3).
+TEST(FollowerTangent, IsWhatTheLastStepsTakeWhereItsSymmetricPartIsIndefinite) {
+  const ValveScene scene({.triangles = 200, .young = 0.05});
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  SolverOptions options;
+  options.factorisation = best_factorisation();
+  Problem problem{objective, objective.unknowns(scene.X), scene.method().motion};
+  problem.stability.factorisation = best_factorisation();
+  StopRule stop;
+  stop.tolerance = 1e-9;
+  stop.max_iterations = 500;
+  const Result result = solve(*make_newton(options), problem, stop);
+  ASSERT_EQ(result.status, Status::Converged) << result.message;
+  EXPECT_FALSE(result.certificate.is_conservative);
+  EXPECT_GT(result.certificate.stability.negative_modes, 0);
+  const auto near = std::find_if(result.trace.begin(), result.trace.end(),
+                                 [](const Iteration& iteration) { return iteration.residual < 1e-3; });
+  const auto last = result.trace.end() - near;
+  std::printf("valve of 200 triangles: %d iterations, the last %td below 1e-3; %s\n", result.iterations, last,
+              summary(result.certificate).c_str());
+  EXPECT_LE(last, 20);
+  EXPECT_LE(result.iterations, 60);
 }
 
 TEST(Gmres, SolvesWhatADenseSolverSolves) {

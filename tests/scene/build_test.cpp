@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace coapt {
 namespace {
@@ -298,12 +299,13 @@ constexpr const char* kChain = R"({"papillary": [[0, 0, 0], [10, 0, 0]], "juncti
   "chords": [{"from": {"papillary": 0}, "to": {"junction": 0}, "rest_length": 6, "area": 1, "material": "a"},
              {"from": {"junction": 0}, "to": {"papillary": 1}, "rest_length": %, "area": 1, "material": "b"}]})";
 
-Model build_chain(const TemporaryFolder& folder, const std::string& rest, const std::string& keys) {
+Model build_chain(const TemporaryFolder& folder, const std::string& rest, const std::string& keys,
+                  const std::string& law = R"("cable", "young": "1 MPa")") {
   std::string chain = kChain;
   chain.replace(chain.find('%'), 1, rest);
   folder.write("chain.json", chain);
   return build(load_scene(folder.write("scene.json", R"({"terms": [
-      {"type": "cable", "network": "chain.json", "young": "1 MPa")" +
+      {"type": )" + law + R"(, "network": "chain.json")" +
                                                          keys + R"(},
       {"type": "load_field", "direction": [0, 0, -1], "force": "1 N", "nodes": "junctions"}]})")));
 }
@@ -320,12 +322,34 @@ TEST(BuildNetwork, HangsAChainWithoutAMeshFromItsAnchors) {
   EXPECT_EQ(build_chain(folder, "6", R"(, "length_scale": 0.5)").lines[0].rest_length, 3);
 }
 
-TEST(BuildNetwork, LeavesOutAnElasticChordOfZeroLengthWithAWarning) {
+// S5, whichever law the chords have.
+TEST(BuildNetwork, S5LeavesOutAnElasticChordOfZeroLengthWithAWarning) {
   const TemporaryFolder folder;
-  const Model model = build_chain(folder, "0", "");
-  EXPECT_EQ(model.lines.size(), 1u);
+  const char* const laws[] = {
+      R"("cable", "young": "1 MPa")",
+      R"("cable_bilinear", "young_pre": "1 MPa", "young_post": "60 MPa", "transition_strain": 0.1)",
+      R"("cable_ogden", "mu": ["1 MPa"], "alpha": [2])",
+      R"("cable_toe", "young": "1 MPa", "recruitment_strain": 0.1, "intercept": 0.05, "exponent": 20)",
+      R"("cable_crimped_fibre", "fibre_young": "1 MPa", "crimp_ratio": 12, "radius_ratio": 3)"};
+  for (const std::string law : laws) {
+    const Model model = build_chain(folder, "0", "", law);
+    EXPECT_EQ(model.lines.size(), 1u) << law;
+    ASSERT_EQ(model.warnings.size(), 1u) << law;
+    EXPECT_NE(model.warnings[0].find("chords[1]: the rest length is zero"), std::string::npos)
+        << model.warnings[0];
+    EXPECT_NE(model.warnings[0].find("left out"), std::string::npos);
+    Vector g;
+    EXPECT_TRUE(std::isfinite(model.objective->gradient(model.q0, g)) && g.allFinite()) << law;
+  }
+}
+
+// A tether's law knows no rest length to divide by: it stays, and the warning says what it is.
+TEST(BuildNetwork, S5KeepsATetherOfZeroLengthWithAWarning) {
+  const TemporaryFolder folder;
+  const Model model = build_chain(folder, "0", "", R"("tether_cubic", "strength": "1 mJ", "scale": "1 mm")");
+  EXPECT_EQ(model.lines.size(), 2u);
   ASSERT_EQ(model.warnings.size(), 1u);
-  EXPECT_NE(model.warnings[0].find("chords[1]: the rest length is zero"), std::string::npos);
+  EXPECT_NE(model.warnings[0].find("the tether has length zero"), std::string::npos) << model.warnings[0];
 }
 
 TEST(BuildNetwork, NamesTheChordThatEndsAtAMissingVertex) {

@@ -147,6 +147,7 @@ TEST(Metrics, AreUndefinedWithoutAnnulusChordsAndContact) {
   const Metrics metrics = measure_at(model, model.X);
   EXPECT_FALSE(metrics.orifice_area_mm2 || metrics.tenting_height_mm || metrics.coaptation_height_mm);
   EXPECT_FALSE(metrics.coaptation_area_mm2 || metrics.max_chord_force_n || metrics.slack_chords);
+  EXPECT_FALSE(metrics.max_chord_strain || metrics.mean_chord_strain);
 }
 
 TEST(Metrics, CountFacetsThatPassThroughEachOther) {
@@ -223,7 +224,7 @@ TEST(Fields, GiveTheTensionOfTautAndSlackLines) {
   Model model;
   model.X.resize(3, 3);
   model.X << 0, 1, 3, 0, 0, 0, 0, 0, 0;
-  model.lines = {{0, 1, 1, "chords", 0}, {1, 2, 2, "chords", 1}};
+  model.lines = {{0, 1, 1, 0, "chords", 0}, {1, 2, 2, 0, "chords", 1}};
   std::vector<std::unique_ptr<EnergyTerm>> terms;
   terms.push_back(std::make_unique<ElementTerm<Cable>>(
       "chords", std::vector<int>{0, 1, 1, 2}, std::vector<Cable::Rest>{{50, 1, 0, 0}, {50, 2, 0, 0}}));
@@ -233,6 +234,30 @@ TEST(Fields, GiveTheTensionOfTautAndSlackLines) {
   const Metrics metrics = measure_at(model, x);
   EXPECT_NEAR(metrics.max_chord_force_n.value(), 5, 1e-12);
   EXPECT_EQ(metrics.slack_chords.value(), 1);
+}
+
+TEST(Metrics, GiveTheStrainOfTheLinesThatHaveARestLength) {
+  Model model;
+  model.X.resize(3, 5);
+  model.X << 0, 1, 3, 4, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0;
+  model.lines = {{0, 1, 1, 0, "chords", 0},
+                 {1, 2, 2, 0, "chords", 1},
+                 {2, 3, 1, 0, "chords", 2},
+                 {3, 4, 0, 0, "pull", 0}};
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, 5, false),
+                                                std::vector<std::unique_ptr<EnergyTerm>>{});
+  Points x = model.X;
+  EXPECT_EQ(measure_at(model, x).max_chord_strain.value(), 0);
+  EXPECT_FALSE(measure_at(model, x).mean_chord_strain);
+  x(0, 1) = 1.1;  // longer by 10 %, shorter by 35 %, longer by 60 %, and one that has no rest length
+  x(0, 2) = 2.4;
+  x(0, 4) = 9;
+  EXPECT_NEAR(measure_at(model, x).max_chord_strain.value(), 0.6, 1e-12);
+  EXPECT_NEAR(measure_at(model, x).mean_chord_strain.value(), 0.35, 1e-12);
+  x = 0.5 * model.X;
+  EXPECT_NEAR(measure_at(model, x).max_chord_strain.value(), -0.5, 1e-12);
+  model.lines = {{3, 4, 0, 0, "pull", 0}};
+  EXPECT_FALSE(measure_at(model, x).max_chord_strain);
 }
 
 TEST(ReferenceDistance, MeasuresAParallelSurfaceBothWaysAndVertexByVertex) {
@@ -246,6 +271,29 @@ TEST(ReferenceDistance, MeasuresAParallelSurfaceBothWaysAndVertexByVertex) {
   EXPECT_NEAR(distance->from_reference.max, 0.5, 1e-12);
   EXPECT_NEAR(distance->same_vertex->max, 0.5, 1e-12);
   EXPECT_NEAR(fields.reference_distance[3], 0.5, 1e-12);
+}
+
+TEST(ReferenceDistance, ComparesVerticesHoweverTheFacetsAreListed) {
+  Model model = model_of(square(10, 200));
+  model.closed_reference = model.mesh;
+  model.closed_reference->vertices.row(2).array() += 0.5;
+  Triangles& triangles = model.closed_reference->triangles;
+  const Triangles listed = triangles;
+  triangles = listed.rowwise().reverse();  // the last facet first
+  triangles.row(0).swap(triangles.row(1));
+  triangles.row(1).swap(triangles.row(2));  // each from its next corner on
+  Fields fields = compute_fields(model, model.X);
+  const auto turned = compare_with_reference(model, fields);
+  ASSERT_TRUE(turned && turned->same_vertex);
+  EXPECT_NEAR(turned->same_vertex->mean, 0.5, 1e-12);
+  // Another facet, or a vertex more: another mesh.
+  triangles = listed;
+  triangles(0, 0) = listed(0, listed.cols() - 1);
+  EXPECT_FALSE(compare_with_reference(model, fields)->same_vertex);
+  triangles = listed;
+  model.closed_reference->vertices.conservativeResize(3, model.X.cols() + 1);
+  model.closed_reference->vertices.rightCols<1>().setZero();
+  EXPECT_FALSE(compare_with_reference(model, fields)->same_vertex);
 }
 
 TEST(Metrics, AgreeWithThePublishedFiguresOfTheClosedTricuspidValve) {

@@ -37,13 +37,15 @@ Judged ContactScene::solve(const std::string& solver, double tolerance) const {
 
   Vector areas = Vector::Zero(X.cols());
   areas.head(n) = nodal_areas(sheet.vertices, sheet.triangles);
-  ContactBarrierOptions options;
-  options.gap = gap;
-  options.pressure = traction.norm() > 0 ? 5 * traction.norm() : 1e-2;
-  options.obstacles = facets().rightCols(obstacle.triangle_count());
   Terms terms =
-      terms_of(tension_field_term(X, sheet.triangles, {}), bending_term(X, sheet.triangles, bending),
-               make_contact_barrier("contact", X, sheet.triangles, options));
+      terms_of(tension_field_term(X, sheet.triangles, {}), bending_term(X, sheet.triangles, bending));
+  if (gap > 0) {
+    ContactBarrierOptions options;
+    options.gap = gap;
+    options.pressure = traction.norm() > 0 ? 5 * traction.norm() : 1e-2;
+    options.obstacles = facets().rightCols(obstacle.triangle_count());
+    terms.push_back(make_contact_barrier("contact", X, sheet.triangles, options));
+  }
   if (traction.norm() > 0)
     terms.push_back(std::make_unique<LoadDead>("load", "load_field", area_forces(areas, traction), X));
 

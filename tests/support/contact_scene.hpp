@@ -27,7 +27,7 @@ struct ContactScene {
   TriangleMesh obstacle = {};         // its nodes follow those of the sheet and are prescribed
   std::vector<int> held = {};         // nodes of the sheet that are prescribed
   Vec3 traction = Vec3(0, 0, -0.02);  // dead load per rest area
-  double gap = 0.02;
+  double gap = 0.02;                  // of the barrier; 0: no contact
   double bending = 1e-5;
   std::function<Points(double t, const Points& start)> motion = {};  // of all nodes; prescribed ones count
   int motion_steps = 1;

@@ -6,6 +6,7 @@
 #include "energy/kernels/cable_law.hpp"
 #include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/cst_isotropic.hpp"
+#include "support/crimped_oracle.hpp"
 #include "support/meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -135,10 +136,9 @@ struct Crimped {
   static CrimpedFibreLaw law(double stress) { return sharp(stress, 0.02); }
   static Knee knee() {
     const CrimpedFibreLaw tissue = law(1);
-    const double spread = std::exp(-2 * tissue.splay * tissue.splay), limit = tissue.fibre.limit(),
+    const double share = oracle::mean_square_cosine(tissue.splay), limit = tissue.fibre.limit(),
                  across = 1.05;
-    return Eigen::Vector2d(
-        std::sqrt((limit * limit - 0.5 * (1 - spread) * across * across) / (0.5 * (1 + spread))), across);
+    return Eigen::Vector2d(std::sqrt((limit * limit - (1 - share) * across * across) / share), across);
   }
 };
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include "support/autodiff.hpp"
+#include "support/crimped_oracle.hpp"
 #include "support/oracles.hpp"
 
-#include <functional>
+#include <array>
+#include <vector>
 
 namespace coapt::oracle {
 
@@ -92,9 +94,17 @@ T knee_energy(const T& strain, double modulus, double transition, double window)
 struct Exponential {
   double c0, c1, c2;
   template <typename T>
+  T grown(const T& j) const {
+    return exponential(times(c2, squared(j)));
+  }
+  template <typename T>
   T of(const T& j) const {
-    const T grown = exponential(times(c2, squared(j)));
-    return T(times(0.5 * c0, j) + times(0.5 * c1, T(grown - T(1.0))));
+    return T(times(0.5 * c0, j) + times(0.5 * c1, T(grown(j) - T(1.0))));
+  }
+  template <typename T>
+  T slope(const T& j) const {
+    const T rise = j * grown(j);
+    return T(T(0.5 * c0) + times(c1 * c2, rise));
   }
   template <typename T>
   T operator()(const PlaneMetric<T>& c) const {
@@ -102,38 +112,64 @@ struct Exponential {
   }
 };
 
-// The same with a change of volume J that makes the energy least, found by Newton in the scalar T: its steps
-// carry the derivatives along.
-struct CompressibleExponential {
-  Exponential part;
-  double bulk;
-
+struct NeoHookean {
+  double mu;
   template <typename T>
-  T at(const PlaneMetric<T>& c, const T& j) const {
-    using std::log;
-    const T a = exponential(times(-2.0 / 3, T(log(j)))), thick = T(squared(j) / determinant(c)),
-            plane = T(c.ff + c.cc);
-    const T sum = T(plane + thick);
-    const T i = T(a * sum), volume = squared(T(j - T(1.0)));
-    return T(part.of(T(i - T(3.0))) + times(0.5 * bulk, volume));
+  T of(const T& j) const {
+    return times(0.5 * mu, j);
+  }
+  template <typename T>
+  T slope(const T&) const {
+    return T(0.5 * mu);
   }
   template <typename T>
   T operator()(const PlaneMetric<T>& c) const {
-    // The derivative by J, by central differences of fourth order in T: exact enough to iterate on, and the
-    // energy does not care, being stationary; second derivatives see the error squared.
-    const auto slope = [&](const T& j) {
-      const double h = 1e-3;
-      const T a = at(c, T(j + T(h))), b = at(c, T(j - T(h))), d = at(c, T(j + T(2 * h))),
-              e = at(c, T(j - T(2 * h)));
-      return T(times(8 / (12 * h), T(a - b)) - times(1 / (12 * h), T(d - e)));
-    };
+    return of(distortion(c));
+  }
+};
+
+// A function of the first invariant with the change of volume J that makes the energy least. It is found by
+// Newton's method on the exact dW/dJ in the scalar T: each step carries the derivatives of J along.
+template <typename Invariant>
+struct Compressible {
+  Invariant part;
+  double bulk;
+
+  // plane: C11 + C22; thin: 1/det C.
+  template <typename T>
+  T energy_at(const T& plane, const T& thin, const T& j) const {
+    const T volume = squared(T(j - T(1.0)));
+    return T(part.of(distortion_at(plane, thin, j)) + times(0.5 * bulk, volume));
+  }
+  template <typename T>
+  T slope_at(const T& plane, const T& thin, const T& j) const {
+    const T psi = part.slope(distortion_at(plane, thin, j)), wide = T(plane / j), thick = T(j * thin);
+    const T rise = T(times(4.0 / 3, thick) - times(2.0 / 3, wide)), scaled = T(scale(j) * rise);
+    return T(T(psi * scaled) + times(bulk, T(j - T(1.0))));
+  }
+  template <typename T>
+  T operator()(const PlaneMetric<T>& c) const {
+    const T plane = T(c.ff + c.cc), thin = T(T(1.0) / determinant(c));
+    const auto slope = [&](double j) { return slope_at(number(plane), number(thin), j); };
     T j = T(1.0);
-    for (int k = 0; k < 40; ++k) {
-      const double h = 1e-5;
-      const double curvature = (number(slope(T(j + T(h)))) - number(slope(T(j - T(h))))) / (2 * h);
-      j = T(j - times(1 / curvature, slope(j)));
+    for (int k = 0; k < 30; ++k) {
+      const double h = 1e-5, at = number(j), curvature = (slope(at + h) - slope(at - h)) / (2 * h);
+      j = T(j - times(1 / curvature, slope_at(plane, thin, j)));
     }
-    return at(c, j);
+    return energy_at(plane, thin, j);
+  }
+
+ private:
+  // J^(-2/3)
+  template <typename T>
+  static T scale(const T& j) {
+    using std::log;
+    return exponential(times(-2.0 / 3, T(log(j))));
+  }
+  template <typename T>
+  static T distortion_at(const T& plane, const T& thin, const T& j) {
+    const T square = squared(j), thick = T(square * thin), sum = T(plane + thick), i = T(scale(j) * sum);
+    return T(i - T(3.0));
   }
 };
 
@@ -175,6 +211,20 @@ struct MayNewmanYin {
     using std::sqrt;
     const T l = T(sqrt(c.ff)), q = T(times(c1, squared(distortion(c))) + times(c2, power(T(l - T(1.0)), 4)));
     return times(c0, T(exponential(q) - T(1.0)));
+  }
+};
+
+// Fibres splayed about the first axis in a matrix of constant volume.
+struct Crimped {
+  double mu;
+  CrimpedCurve fibre;
+  double splay;
+  template <typename T>
+  T operator()(const PlaneMetric<T>& c) const {
+    using std::sqrt;
+    const double along = mean_square_cosine(splay);
+    const T square = T(times(along, c.ff) + times(1 - along, c.cc)), l = T(sqrt(square));
+    return T(times(0.5 * mu, distortion(c)) + fibre.energy(l));
   }
 };
 

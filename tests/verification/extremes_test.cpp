@@ -57,6 +57,26 @@ TEST(Valve, S4ConvergesOrSaysSoAtAnyRatioOfStiffness) {
   }
 }
 
+// E h / (p L) over the row's range.
+TEST(Valve, S4ConvergesUnderNextToNoPressure) {
+  constexpr double kThickness = 0.8, kPressure = 120 * 133.322e-6;  // mm, MPa; of ValveScene
+  for (const double ratio : {1e2, 1e4, 1e6, 1e8}) {
+    ValveOptions options;
+    const double size = bounding_box_diagonal(ValveScene(options).X);
+    options.young = ratio * kPressure * size / kThickness;
+    options.chord_young = 40 * options.young;
+    const ValveScene scene(options);
+    Method method = scene.method(1e-8);
+    method.max_iterations = 300;
+    const Equilibrium found = find_equilibrium(scene.X, scene.fixed, scene.terms(), method);
+    std::printf("S4 Eh/(pL) %.0e: %s, %d iterations\n", ratio, found.result.message.c_str(),
+                found.result.iterations);
+    EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+    EXPECT_LE(found.result.residual, 1e-8);
+    EXPECT_TRUE(found.x.allFinite());
+  }
+}
+
 // --- S5 ---------------------------------------------------------------------------------------------------
 
 TEST(Tether, S5CarriesAWeightAtAnyStrength) {
@@ -198,6 +218,27 @@ TEST(Disc, S25OfExtremeNumbersGivesFiniteAnswers) {
     if (found.result.status == Status::Converged) {
       EXPECT_LE(found.result.residual, 1e-8);
     }
+  }
+}
+
+// What grows a billionfold and has an equilibrium there is no runaway: far beyond its rest size the linear
+// law's bubble is proportional to p a / (E h).
+TEST(Disc, S25OfNextToNoStiffnessIsABubbleAndNoRunaway) {
+  double last = 0;
+  for (const double q : {1e6, 1e9}) {
+    DiscScene scene{smooth_disc_mesh(8)};
+    scene.sheet.stiffness = 1 / q;
+    scene.pressure = 1;
+    const Equilibrium found = scene.solve({.tolerance = 1e-8, .max_iterations = 200});
+    const double size = found.x.row(2).maxCoeff() / q;
+    std::printf("S25 q=%.0e: %s, %d iterations, w0/q = %.6f\n", q, found.result.message.c_str(),
+                found.result.iterations, size);
+    ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
+    EXPECT_GT(size, 0.1);
+    if (last > 0) {
+      EXPECT_NEAR(size / last, 1, 1e-3);
+    }
+    last = size;
   }
 }
 

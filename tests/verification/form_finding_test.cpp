@@ -108,7 +108,7 @@ TEST(SoapFilm, D2BetweenTwoRingsIsACatenoid) {
   const Catenoid coarse = found_catenoid(32, 16);
   std::printf("D2: errors of neck %.2e, area %.2e\n", coarse.neck / neck - 1, coarse.area / area - 1);
   // The 32-gon that stands for a ring is itself 1.6e-3 shorter than the circle, so the tolerances of the row
-  // (area 1e-3, neck 5e-3) are within reach of the next mesh only.
+  // (area 1e-3, neck 5e-3) are within reach of the next mesh only: there they are asked for, below.
   EXPECT_LT(std::abs(coarse.area / area - 1), 2.5e-3);
   EXPECT_LT(std::abs(coarse.neck / neck - 1), 5.5e-3);
   if (is_sanitized()) return;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <stdexcept>
 #include <thread>
 
 namespace coapt {
@@ -15,7 +17,7 @@ namespace {
 // Contributes nothing, until a node rises above a height: then it fails, in one of several ways, at one node.
 class Failing final : public EnergyTerm {
  public:
-  enum class Way { NaN, Infinity, NaNGradient };
+  enum class Way { NaN, Infinity, NaNGradient, Throws, ThrowsAtTheHessian };
   Failing(int node, double height, Way way)
       : EnergyTerm("failing"), node_(node), height_(height), way_(way) {}
 
@@ -24,8 +26,20 @@ class Failing final : public EnergyTerm {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(const Points& x, Sink& sink) const override {
     if (x.row(2).maxCoeff() <= height_) return 0;
-    if (way_ != Way::NaNGradient) return way_ == Way::NaN ? kNaN : kInfinity;
-    if (sink.wants_gradient()) sink.add_gradient(node_, Vec3::Constant(kNaN));
+    switch (way_) {
+      case Way::NaN:
+        return kNaN;
+      case Way::Infinity:
+        return kInfinity;
+      case Way::NaNGradient:
+        if (sink.wants_gradient()) sink.add_gradient(node_, Vec3::Constant(kNaN));
+        return 0;
+      case Way::Throws:
+        throw std::runtime_error("this term broke");
+      case Way::ThrowsAtTheHessian:
+        if (sink.wants_hessian()) throw std::runtime_error("this term has no Hessian here");
+        return 0;
+    }
     return 0;
   }
 
@@ -53,6 +67,7 @@ TEST_P(Failure, S16EndsWithAFiniteIterate) {
     std::printf("S16 %s: %s, %d iterations\n", solver.c_str(), found.result.message.c_str(),
                 found.result.iterations);
     EXPECT_TRUE(found.x.allFinite());
+    EXPECT_TRUE(std::isfinite(found.result.energy) && std::isfinite(found.result.residual));
     EXPECT_LE(found.x.row(2).maxCoeff(), 1.05 * height);
     if (is_reached)
       EXPECT_NE(found.result.status, Status::Converged);
@@ -63,8 +78,25 @@ TEST_P(Failure, S16EndsWithAFiniteIterate) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, Failure,
                          testing::Combine(testing::Values(Failing::Way::NaN, Failing::Way::Infinity,
-                                                          Failing::Way::NaNGradient),
+                                                          Failing::Way::NaNGradient, Failing::Way::Throws),
                                           testing::Values("newton", "lbfgs")));
+
+// A line search asks for no Hessian and sees nothing: newton ends where the first one is missing, and says
+// so.
+TEST(HessianFailure, S16EndsWithTheLastFiniteIterate) {
+  const DiscScene scene{smooth_disc_mesh(8)};
+  for (const std::string solver : {"newton", "lbfgs"}) {
+    Terms terms = scene.terms();
+    terms.push_back(std::make_unique<Failing>(grid_node(8, 4, 4), 0.05, Failing::Way::ThrowsAtTheHessian));
+    const Equilibrium found = find_equilibrium(scene.mesh.vertices, scene.fixed(), std::move(terms),
+                                               {.solver = solver, .tolerance = 1e-8});
+    std::printf("S16 Hessian, %s: %s\n", solver.c_str(), found.result.message.c_str());
+    EXPECT_TRUE(found.x.allFinite());
+    EXPECT_GT(found.x.row(2).maxCoeff(), 0.05);
+    EXPECT_TRUE(std::isfinite(found.result.energy) && std::isfinite(found.result.residual));
+    EXPECT_EQ(found.result.status, solver == "newton" ? Status::Stalled : Status::Converged);
+  }
+}
 
 // --- S18, S19 ---------------------------------------------------------------------------------------------
 

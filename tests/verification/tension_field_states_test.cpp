@@ -142,18 +142,17 @@ Vec3 balloon_errors(int n, double stiffness) {
   return errors;
 }
 
-// Pleats leave a seam some 1.2 % short of the ideal one: the row asks for 1 %.
+// Pleats leave a seam some 1.3 % short of the ideal one on 16 cells, 0.7 % on 32, where the row's 1 % holds.
 TEST(MylarBalloon, E3HasPaulsensShape) {
-  const Vec3 found = balloon_errors(is_sanitized() ? 8 : 16, 1e4);
-  EXPECT_LT(std::abs(found[0]), 1.3e-2);
-  EXPECT_LT(std::abs(found[1]), 1e-2);
-  EXPECT_LT(std::abs(found[2]), 1e-2);
+  const Vec3 found = balloon_errors(is_sanitized() ? 8 : 32, 1e4);
+  EXPECT_LT(found.cwiseAbs().maxCoeff(), 1e-2);
 }
 
 TEST(Nightly, E3MylarBalloonKeepsItsShapeWhenStifferAndFiner) {
   if (is_sanitized()) return;
   for (const double stiffness : {1e4, 1e5, 1e6})
-    for (const int n : {8, 16, 32}) EXPECT_LT(balloon_errors(n, stiffness).cwiseAbs().maxCoeff(), 1.3e-2);
+    for (const int n : {8, 16, 32})
+      EXPECT_LT(balloon_errors(n, stiffness).cwiseAbs().maxCoeff(), n == 16 ? 1.3e-2 : 1e-2);
 }
 
 TEST(SquareAirbag, E4MatchesTheTable) {

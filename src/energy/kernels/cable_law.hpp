@@ -11,10 +11,10 @@
 
 #include "energy/kernels/axial.hpp"
 #include "energy/laws/line_laws.hpp"
+#include "energy/laws/rounded_elongation.hpp"
 #include "energy/term.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace coapt {
@@ -91,18 +91,6 @@ struct CableLaw {
     law.stiffness = std::max(law.stiffness, least);
     expand_axial(law, difference, l, g, H);
     return law.energy;
-  }
-
-  struct Elongation {
-    double value = 0, slope = 1, curvature = 0;
-  };
-
-  // rho at e > 0, with its derivatives.
-  static Elongation rounded_elongation(double e, double s0) {
-    if (e >= s0) return {e, 1, 0};
-    const double u = e / s0, root = std::sqrt(u);
-    return {e * root * (15 - 10 * u + 3 * u * u) / 8, root * (45 - 50 * u + 21 * u * u) / 16,
-            (45 - 150 * u + 105 * u * u) / (32 * s0 * root)};
   }
 };
 

@@ -27,11 +27,13 @@ struct PlaneInvariant {
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 };
 
-// I1 = tr C + 1/det C of an incompressible membrane.
+// I1 - 3 = tr C + 1/det C - 3 of an incompressible membrane, without the cancellation of 3.
 inline PlaneInvariant first_invariant(double c11, double c22, double c12) {
   const double thin = 1 / (c11 * c22 - c12 * c12);
+  const double a = c11 - 1, b = c22 - 1, shear = c12 * c12;
+  const double distortion = (a * a + a * b + b * b + shear + (a + b) * (a * b - shear)) * thin;
   const Eigen::Vector3d slope(2 * c22, 2 * c11, -2 * c12);  // of det C
-  PlaneInvariant i{c11 + c22 + thin, Eigen::Vector3d(2, 2, 0) - thin * thin * slope,
+  PlaneInvariant i{distortion, Eigen::Vector3d(2, 2, 0) - thin * thin * slope,
                    2 * thin * thin * thin * slope * slope.transpose()};
   i.second(0, 1) -= 4 * thin * thin;
   i.second(1, 0) -= 4 * thin * thin;
@@ -100,7 +102,7 @@ struct MayNewmanYinLaw {
 
   PlaneEnergy evaluate(double c11, double c22, double c12) const {
     const PlaneInvariant i = first_invariant(c11, c22, c12), l = stretch_of(1, 0, c11, c22);
-    const double j = i.value - 3, e = l.value - 1;
+    const double j = i.value, e = l.value - 1;
     PlaneEnergy q;
     add_composed({c1 * j * j, 2 * c1 * j, 2 * c1}, i, q);
     add_composed({c2 * e * e * e * e, 4 * c2 * e * e * e, 12 * c2 * e * e}, l, q);
@@ -131,7 +133,7 @@ struct CrimpedFibreLaw {
     const PlaneInvariant i = first_invariant(c11, c22, c12),
                          l = stretch_of(0.5 * (1 + spread), 0.5 * (1 - spread), c11, c22);
     PlaneEnergy sum;
-    add_composed({0.5 * shear_modulus * (i.value - 3), 0.5 * shear_modulus, 0}, i, sum);
+    add_composed({0.5 * shear_modulus * i.value, 0.5 * shear_modulus, 0}, i, sum);
     add_composed(fibre.at(l.value - 1), l, sum);
     return sum;
   }

@@ -44,7 +44,14 @@ struct BilinearLaw {
   double initial_poisson() const { return poisson; }
 };
 
-// psi(I) of the first invariant, and its derivatives.
+// I1 - 3 of a strain without change of volume, by its squared principal stretches: a and b the first two less
+// 1, `third` the last. Without the cancellation of 3, which at small strain would leave nothing of an energy
+// that goes with the square.
+inline double distortion(double a, double b, double third) {
+  return (a * a + a * b + b * b + a * b * (a + b)) * third;
+}
+
+// psi(j) of the first invariant, j = I - 3, and its derivatives.
 struct InvariantEnergy {
   double energy = 0, first = 0, second = 0;
 };
@@ -53,7 +60,7 @@ struct InvariantEnergy {
 struct NeoHookeanInvariant {
   double shear_modulus = 0;  // mu [stress]
 
-  InvariantEnergy at(double i) const { return {0.5 * shear_modulus * (i - 3), 0.5 * shear_modulus, 0}; }
+  InvariantEnergy at(double j) const { return {0.5 * shear_modulus * j, 0.5 * shear_modulus, 0}; }
   double initial_shear_modulus() const { return shear_modulus; }
 };
 
@@ -63,9 +70,10 @@ struct ExponentialInvariant {
   double c0 = 0, c1 = 0;  // [stress]
   double c2 = 0;
 
-  InvariantEnergy at(double i) const {
-    const double j = i - 3, grown = c1 * std::exp(c2 * j * j);
-    return {0.5 * (c0 * j + grown - c1), 0.5 * c0 + c2 * j * grown, c2 * (1 + 2 * c2 * j * j) * grown};
+  InvariantEnergy at(double j) const {
+    const double grown = c1 * std::exp(c2 * j * j);
+    return {0.5 * (c0 * j + c1 * std::expm1(c2 * j * j)), 0.5 * c0 + c2 * j * grown,
+            c2 * (1 + 2 * c2 * j * j) * grown};
   }
   double initial_shear_modulus() const { return c0; }
 };
@@ -83,7 +91,7 @@ struct InvariantLaw {
   StretchEnergy evaluate(double l1, double l2) const {
     const double thin = 1 / (l1 * l2), thin2 = thin * thin;  // l3 at constant volume, squared
     if (bulk > 0) return with_volume(l1, l2, thin2);
-    const InvariantEnergy psi = invariant.at(l1 * l1 + l2 * l2 + thin2);
+    const InvariantEnergy psi = invariant.at(distortion((l1 - 1) * (l1 + 1), (l2 - 1) * (l2 + 1), thin2));
     const double i1 = 2 * (l1 - thin2 / l1), i2 = 2 * (l2 - thin2 / l2);
     return {psi.energy,
             psi.first * i1,
@@ -107,18 +115,20 @@ struct InvariantLaw {
   struct Volume {
     double energy, first, second;
     InvariantEnergy psi;
-    double i, di, ddi;  // the isochoric invariant and its derivatives by J
+    double di, ddi;  // of the isochoric invariant by J
   };
-  Volume volume(double plane, double thin2, double j) const {
-    const double root = std::cbrt(j), a = 1 / (root * root), i = a * (plane + j * j * thin2);
+  Volume volume(double l1, double l2, double thin2, double j) const {
+    const double root = std::cbrt(j), a = 1 / (root * root), plane = l1 * l1 + l2 * l2;
+    // The stretches without the change of volume, squared, less 1.
+    const double shrunk = (1 - root) * (1 + root) * a;
+    const double p1 = shrunk + a * (l1 - 1) * (l1 + 1), p2 = shrunk + a * (l2 - 1) * (l2 + 1);
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
-    const InvariantEnergy psi = invariant.at(i);
+    const InvariantEnergy psi = invariant.at(distortion(p1, p2, thin2 / (a * a)));
     return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1),
             psi.first * di + bulk * (j - 1),
             psi.second * di * di + psi.first * ddi + bulk,
             psi,
-            i,
             di,
             ddi};
   }
@@ -128,7 +138,7 @@ struct InvariantLaw {
   StretchEnergy with_volume(double l1, double l2, double thin2) const {
     const double plane = l1 * l1 + l2 * l2, least_distortion = std::sqrt(0.5 * plane / thin2);
     double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion), j = 1;
-    Volume v = volume(plane, thin2, j);
+    Volume v = volume(l1, l2, thin2, j);
     constexpr int kMost = 100;
     constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
@@ -137,7 +147,7 @@ struct InvariantLaw {
       if (!(next >= low && next <= high)) next = 0.5 * (low + high);
       const double moved = std::abs(next - j);
       j = next;
-      v = volume(plane, thin2, j);
+      v = volume(l1, l2, thin2, j);
       if (moved <= kLast * j) break;
     }
     // At fixed J the derivatives by the stretches; then those through J, which the minimum fixes.

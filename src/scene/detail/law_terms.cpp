@@ -36,9 +36,9 @@ std::string list_text(const std::vector<std::string>& names) { return json_text(
 std::string usual_membrane(const Valve& valve, const ImportOptions& options, const std::string& name,
                            const std::vector<std::string>& regions) {
   const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
-  return "    { \"type\": " + quoted("cst_" + options.membrane) + ", \"name\": " + quoted(name) +
+  return "    { \"type\": " + quoted(linear_membrane_type(options)) + ", \"name\": " + quoted(name) +
          ", \"young\": " + quoted(options.young.empty() ? kUsualYoung : options.young) +
-         ", \"poisson\": " + digits(options.poisson) +
+         (options.membrane == "spring" ? "" : ", \"poisson\": " + digits(options.poisson)) +
          ",\n      \"thickness\": " + quoted(digits(thickness) + " mm") +
          (regions.empty() ? "" : ", \"region\": " + list_text(regions)) + " }";
 }
@@ -60,7 +60,7 @@ void add_membranes(const Valve& valve, const ImportOptions& options, Names& name
   if (!has_laws) lawless.clear();  // one law for all needs no region
   if (!has_laws || !lawless.empty())
     terms.push_back(usual_membrane(valve, options, names.unique("leaflets"), lawless));
-  if (has_laws || options.membrane == "tension_field")
+  if (options.bends && (has_laws || options.membrane != "stvk"))
     terms.push_back(
         "    // Plate stiffness of the same sheet: it decides how the wrinkled parts lie.\n"
         "    { \"type\": \"bending\" }");
@@ -101,6 +101,10 @@ std::string digits(double value) {
 }
 
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
+
+std::string linear_membrane_type(const ImportOptions& options) {
+  return options.membrane == "spring" ? "spring" : "cst_" + options.membrane;
+}
 
 std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& options) {
   Names names;

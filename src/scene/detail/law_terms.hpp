@@ -13,6 +13,9 @@ namespace coapt::detail {
 // law of the options.
 std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& options);
 
+// The term type of linear leaflets.
+std::string linear_membrane_type(const ImportOptions& options);
+
 // The shortest digits that read back as the same number, and a text in quotes.
 std::string digits(double value);
 std::string quoted(const std::string& text);

@@ -11,23 +11,14 @@
 namespace coapt {
 namespace {
 
-Json number(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
-
-Json distances(const DistanceFigures& distance) {
-  return {
-      {"mean_mm", number(distance.mean)}, {"p95_mm", number(distance.p95)}, {"max_mm", number(distance.max)}};
-}
-
 Json run_json(const SensitivityRun& run) {
   Json json = {{"factor", run.factor},
                {"status", std::string(status_name(run.status))},
-               {"residual", number(run.residual)},
+               {"residual", number_json(run.residual)},
                {"iterations", run.iterations},
-               {"wall_s", number(run.wall_s)},
-               {"distance_to_base", distances(run.to_base)}};
-  json["distance_to_reference"] = run.to_reference ? distances(*run.to_reference) : Json(nullptr);
+               {"wall_s", number_json(run.wall_s)},
+               {"distance_to_base", distances_json(run.to_base)}};
+  json["distance_to_reference"] = run.to_reference ? distances_json(*run.to_reference) : Json(nullptr);
   return json;
 }
 
@@ -40,6 +31,16 @@ void add_row(std::ostream& out, const std::string& name, const SensitivityRun& r
 }
 
 }  // namespace
+
+Json number_json(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json distances_json(const DistanceFigures& distance) {
+  return {{"mean_mm", number_json(distance.mean)},
+          {"p95_mm", number_json(distance.p95)},
+          {"max_mm", number_json(distance.max)}};
+}
 
 void write_study(const std::filesystem::path& folder, const std::string& name, const Json& json,
                  const std::string& csv) {
@@ -63,7 +64,7 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                {"converged", study.has_converged()},
                {"cancelled", study.is_cancelled},
                {"left_out", study.left_out},
-               {"wall_s", number(study.wall_s)},
+               {"wall_s", number_json(study.wall_s)},
                {"first", run_json(study.base)},
                {"parameters", Json::array()}};
   std::ostringstream csv = csv_begun(
@@ -72,10 +73,10 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
   add_row(csv, "", study.base);
   for (const ParameterSensitivity& parameter : study.parameters) {
     json["parameters"].push_back({{"name", parameter.name},
-                                  {"value", number(parameter.value)},
+                                  {"value", number_json(parameter.value)},
                                   {"unit", parameter.unit},
-                                  {"movement_mm_per_100_percent", number(parameter.movement)},
-                                  {"error_change_mm_per_100_percent", number(parameter.error_change)},
+                                  {"movement_mm_per_100_percent", number_json(parameter.movement)},
+                                  {"error_change_mm_per_100_percent", number_json(parameter.error_change)},
                                   {"runs", {run_json(parameter.smaller), run_json(parameter.larger)}}});
     add_row(csv, parameter.name, parameter.smaller);
     add_row(csv, parameter.name, parameter.larger);
@@ -85,15 +86,15 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
 
 void write_region_tuning(const std::filesystem::path& folder, const RegionTuning& tuning) {
   const auto state = [](const TuningState& s) -> Json {
-    return {{"max_chord_strain", number(s.max_chord_strain)},
+    return {{"max_chord_strain", number_json(s.max_chord_strain)},
             {"strained_chords", s.strained_chords},
-            {"orifice_area_mm2", number(s.orifice_area_mm2)}};
+            {"orifice_area_mm2", number_json(s.orifice_area_mm2)}};
   };
   Json json = {{"scene", tuning.scene_file},
                {"reached", tuning.is_reached},
                {"message", tuning.message},
                {"yield_strain", tuning.yield_strain},
-               {"orifice_limit_mm2", number(tuning.orifice_limit_mm2)},
+               {"orifice_limit_mm2", number_json(tuning.orifice_limit_mm2)},
                {"before", state(tuning.before)},
                {"after", state(tuning.after)},
                {"rounds", tuning.rounds},

@@ -1,0 +1,186 @@
+#include "optim/path_following.hpp"
+
+#include "optim/branch_watch.hpp"
+#include "optim/carry_along.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+constexpr int kMaxRounds = 100;  // renewals of a load without potential
+constexpr int kMaxRoundsWithoutGain = 12;
+constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
+constexpr double kBranchTolerance = 1e-4;  // and an intermediate load, which has to stay on its branch
+constexpr double kLeastMotion = 1e-4;  // of the whole prescribed motion, that collisions may leave of a step
+constexpr int kLeastPath = 3;          // steps of a path on which a change of branch can be told
+constexpr int kMostStiffenings = 5;    // of a contact that proves too soft
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+bool ends_the_run(Status status) {
+  return status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
+         status == Status::NonFinite || status == Status::NoEquilibrium;
+}
+
+// Renews the load that has no potential until the exact residual is small. Each round minimises the
+// potential around the last equilibrium; the remainder contracts geometrically where it settles.
+Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+              int& rounds, std::string& note) {
+  if (!objective.has_circulatory_force() || solver.follows_path()) {
+    for (int stiffening = 0;; ++stiffening) {
+      if (objective.has_circulatory_force()) objective.follow_path(q);
+      monitor.begin_round(monitor.round(), tolerance);
+      const Status status = solver.minimize(objective, q, monitor);
+      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
+    }
+  }
+  Vector best = q;
+  double best_residual = kInfinity, gained_residual = kInfinity;
+  double last_residual = kInfinity, contraction = kNaN;
+  int without_gain = 0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    objective.hold_dead(q);
+    const double residual = objective.true_residual(q);
+    without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
+    if (without_gain == 0) gained_residual = residual;
+    if (residual < best_residual) {
+      best_residual = residual;
+      best = q;
+    }
+    if (round > 0) contraction = residual / last_residual;
+    last_residual = residual;
+    if (residual <= tolerance) return Status::Converged;
+    if (without_gain >= kMaxRoundsWithoutGain) break;
+    ++rounds;
+    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
+    const Status status = solver.minimize(objective, q, monitor);
+    if (ends_the_run(status)) return status;
+  }
+  q = best;
+  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
+         number(contraction) + " a round)";
+  return Status::Stalled;
+}
+
+// Moves the prescribed nodes from where they are at `from` towards `to`, the free ones carried along, as far
+// as no collision is in the way; returns how far that is.
+double move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
+  const Points start = objective.positions(q);
+  for (double t = to; t > from; t = from + 0.5 * (t - from)) {
+    const Points x = motion.positions(t);
+    const Vector carried = carried_along(objective, q, x);
+    objective.prescribe(x);
+    if (objective.step_limit(start, objective.positions(carried) - start, 1) == 1) {
+      q = carried;
+      return t;
+    }
+    objective.prescribe(start);
+    if (t - from < kLeastMotion) break;
+  }
+  return from;
+}
+
+// Loads and stiffnesses at t of the path.
+void set_scales(const Continuation& continuation, double t, Objective& objective) {
+  objective.scale(continuation.load_steps > 1 ? t : 1,
+                  continuation.stiffness_steps > 1 ? std::pow(continuation.first_stiffness, 1 - t) : 1);
+}
+
+// How the path is walked back where a step may have left its branch. The references must outlive it.
+PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                     int& rounds) {
+  Objective& objective = problem.objective;
+  const auto pose = [&](double t) {
+    set_scales(problem.continuation, t, objective);
+    if (problem.motion.positions) objective.prescribe(problem.motion.positions(t));
+  };
+  return {pose,
+          [&, pose](double t, Vector& q) {
+            if (problem.motion.positions) {
+              const Points here = objective.positions(q);
+              const Vector carried = carried_along(objective, q, problem.motion.positions(t));
+              pose(t);
+              if (objective.step_limit(here, objective.positions(carried) - here, 1) < 1) return false;
+              q = carried;
+            }
+            pose(t);
+            return true;
+          },
+          [&](Vector& q) {
+            std::string note;
+            const Status status = settle(solver, objective, q, monitor, stop.tolerance, rounds, note);
+            return !ends_the_run(status) && objective.true_residual(q) <= stop.tolerance;
+          }};
+}
+
+std::string described(const BranchChange& change) {
+  return "the path left its branch of equilibria in step " + std::to_string(change.step) + "; at step " +
+         std::to_string(change.before) + " the two are " + number(change.distance) + " apart";
+}
+
+}  // namespace
+
+Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                    Result& result) {
+  Objective& objective = problem.objective;
+  const Continuation& continuation = problem.continuation;
+  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
+                              continuation.stiffness_steps});
+  const bool is_continued = std::max(continuation.load_steps, continuation.stiffness_steps) > 1;
+  const double on_the_way = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
+  BranchWatch branches(path_means(solver, problem, stop, monitor, result.rounds));
+  Outcome outcome;
+  double moved = 0;  // of the prescribed motion
+  bool is_blocked = false;
+  bool has_arrived = true;
+  int step = 1;
+  for (; step <= steps; ++step) {
+    const double t = static_cast<double>(step) / steps;
+    has_arrived = !problem.motion.positions;
+    do {
+      if (!has_arrived) {
+        const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);
+        has_arrived = reached == t;
+        is_blocked = !has_arrived && reached - moved < kLeastMotion;
+        moved = reached;
+        if (is_blocked) break;
+      }
+      set_scales(continuation, t, objective);
+      const bool is_last = has_arrived && step == steps;
+      outcome.status = settle(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_the_way,
+                              result.rounds, outcome.note);
+    } while (!has_arrived && !ends_the_run(outcome.status));
+    if (is_blocked || ends_the_run(outcome.status)) break;
+    if (steps < kLeastPath) continue;
+    if (const auto change = branches.arrive(step, t, result.q)) {
+      result.branch_changes.push_back(*change);
+      outcome.note = described(*change);
+    }
+    if (monitor.is_cancelled()) {
+      outcome.status = Status::Cancelled;
+      break;
+    }
+  }
+  // A run that was cut short is judged, with the full load, and kept, where it had got to.
+  objective.scale(1, 1);
+  outcome.is_on_the_way = step < steps || is_blocked || !has_arrived;
+  if (is_blocked) {
+    outcome.status = Status::Stalled;
+    outcome.note =
+        "the prescribed motion presses facets against each other, at " + number(100 * moved) + " % of it";
+  } else if (!has_arrived)
+    outcome.note = "after " + number(100 * moved) + " % of the prescribed motion";
+  else if (outcome.is_on_the_way)
+    outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
+                   " of the prescribed motion or of the continuation";
+  return outcome;
+}
+
+}  // namespace coapt

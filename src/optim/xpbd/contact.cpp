@@ -1,0 +1,111 @@
+#include "optim/xpbd/contact.hpp"
+
+#include "mesh/triangle_mesh.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr double kSlack = 0.5;       // h: how far a search looks beyond what it has to
+constexpr double kCorrection = 0.5;  // h: that sweeps may add to the predicted move
+
+// A step that goes farther than the lesser is not followed by the search, which would find the whole sheet.
+constexpr double kFarthest = 6;        // h
+constexpr double kFarthestEdge = 0.5;  // mean edge lengths
+
+PairCorners corners(const Points& x, const std::array<int, 4>& nodes) {
+  PairCorners c;
+  for (int k = 0; k < 4; ++k) c.col(k) = x.col(nodes[static_cast<size_t>(k)]);
+  return c;
+}
+
+Triangles all_triangles(const XpbdBody& body) {
+  Triangles all(3, body.triangles.cols() + body.obstacles.cols());
+  all << body.triangles, body.obstacles;
+  return all;
+}
+
+double largest_move(const Points& from, const Points& to) {
+  return from.cols() == 0 ? 0 : std::sqrt((to - from).colwise().squaredNorm().maxCoeff());
+}
+
+}  // namespace
+
+ConstraintValue<4> ContactConstraint::at(const Points& x) const {
+  const PairCorners c = corners(x, nodes);
+  const ClosestPair closest = closest_points(kind, c);
+  const Vec3 difference = c * closest.weights;
+  const double d = difference.norm(), sign = difference.dot(side) < 0 ? -1 : 1;
+  const Vec3 normal = d > 0 ? Vec3(sign / d * difference) : side;
+  ConstraintValue<4> v;
+  v.value = sign * d - thickness;
+  for (int a = 0; a < 4; ++a) v.gradient[static_cast<size_t>(a)] = closest.weights[a] * normal;
+  return v;
+}
+
+XpbdContact::XpbdContact(const XpbdBody& body, double thickness, double alpha, double stiffness)
+    : surface_(body.rest, all_triangles(body), static_cast<int>(body.triangles.cols()), body.excluded),
+      neighbours_(static_cast<size_t>(body.rest.cols())),
+      thickness_(thickness),
+      alpha_(alpha),
+      stiffness_(stiffness),
+      farthest_(
+          std::min(kFarthest * thickness, kFarthestEdge * mean_edge_length(body.rest, body.triangles))) {
+  for (const Edge& edge : edges(surface_.triangles())) {
+    neighbours_[static_cast<size_t>(edge.a)].push_back(edge.b);
+    neighbours_[static_cast<size_t>(edge.b)].push_back(edge.a);
+  }
+  for (std::vector<int>& own : neighbours_) std::sort(own.begin(), own.end());
+}
+
+bool XpbdContact::is_joined(const FeaturePair& pair) const {
+  const int in_first = pair.kind == PairKind::PointTriangle ? 1 : 2;
+  for (int i = 0; i < in_first; ++i) {
+    const std::vector<int>& near = neighbours_[static_cast<size_t>(pair.nodes[static_cast<size_t>(i)])];
+    for (int j = in_first; j < 4; ++j)
+      if (std::binary_search(near.begin(), near.end(), pair.nodes[static_cast<size_t>(j)])) return true;
+  }
+  return false;
+}
+
+void XpbdContact::search(const Points& x, double reach) {
+  candidates_.clear();
+  surface_.visit_near(x, reach, [&](const FeaturePair& pair) {
+    if (is_joined(pair)) return;
+    const double apart = closest_points(pair.kind, corners(surface_.rest(), pair.nodes)).distance;
+    const double thickness = std::min(thickness_, 0.5 * apart);
+    if (!(thickness > 0)) return;
+    ContactConstraint contact;
+    contact.kind = pair.kind;
+    contact.nodes = pair.nodes;
+    contact.thickness = thickness;
+    contact.alpha = alpha_;
+    contact.stiffness = stiffness_;
+    candidates_.push_back(contact);
+  });
+  searched_at_ = x;
+  reach_ = reach;
+  ++searches_;
+}
+
+void XpbdContact::begin_step(const Points& x, const Points& predicted) {
+  const double move = std::min(largest_move(x, predicted), farthest_) + kCorrection * thickness_;
+  const bool is_stale = searches_ == 0 || thickness_ + 2 * (move + largest_move(searched_at_, x)) > reach_;
+  if (is_stale) search(x, thickness_ + 2 * (move + kSlack * thickness_));
+
+  std::vector<ContactConstraint> active;
+  for (const ContactConstraint& candidate : candidates_) {
+    const PairCorners c = corners(x, candidate.nodes);
+    const ClosestPair closest = closest_points(candidate.kind, c);
+    // What moves along together does not come nearer.
+    const Vec3 approach = (corners(predicted, candidate.nodes) - c) * closest.weights;
+    const double near = candidate.thickness + approach.norm() + 2 * kCorrection * thickness_;
+    if (closest.distance > near) continue;
+    active.push_back(candidate);
+    if (closest.distance > 0) active.back().side = c * closest.weights / closest.distance;
+  }
+  active_ = ColouredConstraints<ContactConstraint>(active, static_cast<int>(x.cols()));
+}
+
+}  // namespace coapt

@@ -1,0 +1,137 @@
+"""Drives `coapt compare` as a user does.
+
+Usage: compare_test.py COAPT_BINARY [unittest arguments]
+"""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+COAPT = os.path.abspath(sys.argv[1])
+
+
+def coapt(*arguments):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=200)
+
+
+class CompareTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.out = self.folder / "result"
+
+    def valve(self, *options, triangles=300):
+        run = coapt("generate", "mitral", "--triangles", triangles, "--contact", "none", "-o", self.folder, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.folder / "scene.json"
+
+    def compare(self, scene, *arguments, code=0):
+        run = coapt("compare", scene, "-o", self.out, *arguments)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        self.assertEqual(run.stderr, "")
+        rows = list(csv.DictReader((self.out / "compare.csv").read_text().splitlines()))
+        return run.stdout, json.loads((self.out / "compare.json").read_text()), rows
+
+    def assert_bad_input(self, run, *pieces):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for piece in pieces:
+            self.assertIn(piece, run.stderr)
+
+    def test_methods_on_one_energy_agree(self):
+        text, found, rows = self.compare(self.valve(), "--methods", "lbfgs,newton,bfgs")
+        self.assertTrue(found["converged"], text)
+        self.assertEqual(found["reference"], "newton")
+        self.assertEqual([m["name"] for m in found["methods"]], ["newton", "lbfgs", "bfgs"])
+        self.assertEqual([m["verdict"] for m in found["methods"]], ["reference"] + 2 * ["same equilibrium"])
+        for method in found["methods"][1:]:
+            self.assertLessEqual(method["distance_to_reference_method"]["same_vertex"]["max_mm"],
+                                 found["same_shape_mm"])
+            self.assertIn("orifice_area_mm2", method["metrics"])
+        self.assertEqual([row["method"] for row in rows], ["newton", "lbfgs", "bfgs"])
+        self.assertEqual([row["message"] for row in rows], [m["message"] for m in found["methods"]])
+        self.assertAlmostEqual(float(rows[1]["cpu_s"]), found["methods"][1]["time"]["cpu_s"], places=6)
+        for word in ["newton", "lbfgs", "same equilibrium", "orifice", "compare.html"]:
+            self.assertIn(word, text)
+
+    def test_results_are_those_of_solve(self):
+        scene = self.valve()
+        _, found, _ = self.compare(scene, "--methods", "newton,lbfgs", "--reference", "lbfgs")
+        self.assertEqual(found["reference"], "lbfgs")
+        solved = self.folder / "solved"
+        self.assertEqual(coapt("solve", scene, "-o", solved, "--solver", "newton").returncode, 0)
+        there, here = (json.loads((folder / "result.json").read_text()) for folder in (solved, self.out / "newton"))
+        self.assertEqual(here["metrics"], there["metrics"])
+        self.assertEqual(here["files"], there["files"])
+        for file in there["files"]:
+            self.assertTrue((self.out / "newton" / file).exists(), file)
+        self.assertEqual((self.out / "newton" / "closed.obj").read_bytes(), (solved / "closed.obj").read_bytes())
+        self.assertIn(b"distance_to_reference_method", (self.out / "newton" / "closed.vtp").read_bytes())
+        self.assertNotIn(b"distance_to_reference_method", (self.out / "lbfgs" / "closed.vtp").read_bytes())
+        page = (self.out / "compare.html").read_text()
+        self.assertIn('"name":"newton"', page)
+
+    def test_names_the_branches_of_a_membrane_that_resists_compression(self):
+        scene = self.valve("--membrane", "stvk", triangles=625)
+        text, found, _ = self.compare(scene, "--methods", "lbfgs,newton", "--reference", "lbfgs", "--tolerance", "1e-6")
+        reference, method = found["methods"]
+        self.assertEqual(method["verdict"], "another branch", text)
+        self.assertGreater(method["distance_to_reference_method"]["same_vertex"]["max_mm"], 0.1)
+        self.assertIsNotNone(method["energy_above_reference_mj"])
+        for energy in (method["energy_mj"], reference["energy_mj"]):
+            self.assertIn(f"{energy:.9g} mJ", text)
+
+    def test_a_given_closed_surface_is_a_second_yardstick(self):
+        scene = self.valve()
+        self.compare(scene, "--methods", "newton")
+        (self.out / "newton" / "closed.obj").rename(self.folder / "closed.obj")
+        text, found, rows = self.compare(scene, "--methods", "newton,lbfgs", "--closed", self.folder / "closed.obj")
+        self.assertEqual(found["closed_surface"], "closed.obj")
+        for method in found["methods"]:
+            self.assertLess(method["distance_to_closed_surface"]["max_mm"], 1e-3)
+        self.assertLess(float(rows[0]["mean_to_closed_mm"]), 1e-6)
+        self.assertIn("closed", text)
+
+    def test_says_who_did_not_converge(self):
+        scene = self.valve()
+        scene.write_text(scene.read_text().replace('"solver": {', '"solver": {"max_iterations": 40, '))
+        text, found, rows = self.compare(scene, "--methods", "newton,lbfgs", code=1)
+        self.assertEqual([row["verdict"] for row in rows], ["reference", "not converged"], text)
+        self.assertEqual([m["converged"] for m in found["methods"]], [True, False])
+        self.assertFalse(found["converged"])
+        self.assertIn("iteration limit at residual", text)
+
+    def test_json_alone_where_it_is_asked_for(self):
+        text, found, _ = self.compare(self.valve(), "--methods", "newton, lbfgs", "--json")
+        self.assertEqual(json.loads(text), found)
+
+    def test_names_all_that_cannot_be(self):
+        scene = self.valve()
+        run = coapt("compare", scene, "-o", self.out, "--methods", "newtn,lbfgs,lbfgs", "--reference", "bfgs",
+                    "--closed", self.folder / "nowhere.obj")
+        self.assert_bad_input(run, '"newtn" is not known', 'did you mean "newton"', "this build has: ", "twice",
+                              '"bfgs" is not among the methods', "nowhere.obj not found")
+        self.assertFalse(self.out.exists())
+        self.assert_bad_input(coapt("compare", scene, "--methods", "newton,"), "--methods")
+        self.assert_bad_input(coapt("compare", self.folder / "no.json"), "no.json")
+        self.assert_bad_input(coapt("compare", scene, "--max-seconds", "nan"), "--max-seconds")
+
+    def test_refuses_a_folder_that_cannot_be_written(self):
+        scene = self.valve()
+        self.out.write_text("a file")
+        run = coapt("compare", scene, "--methods", "newton", "-o", self.out)
+        self.assert_bad_input(run, "cannot be used as the result folder")
+        self.assertEqual(run.stdout, "")
+
+    def test_a_defect_of_the_scene_is_no_row(self):
+        scene = self.valve()
+        (self.folder / "leaflets.obj").unlink()
+        self.assert_bad_input(coapt("compare", scene, "--methods", "newton,lbfgs", "-o", self.out), "leaflets.obj")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -1,0 +1,158 @@
+// One triangle of each membrane law in a uniform strain: uniaxial, biaxial and sheared, against the closed
+// forms of its stress; isotropy and objectivity; the crimped fibre against its definition.
+#include "support/single_triangle.hpp"
+#include "support/tissue_answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+constexpr double kQuarter = std::numbers::pi / 2;
+
+template <typename Entry>
+class UniformState : public testing::Test {
+ protected:
+  using Law = decltype(Entry::law(1));
+  static constexpr bool kIsIsotropic = requires { IsotropicName<Law>::kType; };
+
+  static Single<Law> single(const Eigen::Matrix2d& F, double angle, bool relaxes) {
+    return Single<Law>(Entry::law(1), F, angle, relaxes);
+  }
+
+  // The width at which a strip stretched by l is free of stress across.
+  static double free_width(double l, double angle) {
+    double narrow = 0.4, wide = 1.05;
+    for (int k = 0; k < 100; ++k) {
+      const double middle = 0.5 * (narrow + wide);
+      (nominal_stress<Entry>(plane(l, 0, middle), angle)(1, 1) < 0 ? narrow : wide) = middle;
+    }
+    return wide;
+  }
+
+  static void expect_stress(const Single<Law>& found, const Eigen::Matrix2d& F, double angle) {
+    const Eigen::Matrix2d expected = nominal_stress<Entry>(F, angle);
+    EXPECT_GT(expected.norm(), 0);
+    EXPECT_LT((found.nominal() - expected).norm(), 1e-8 * expected.norm())
+        << "fibre at " << angle << ", F =\n"
+        << F << "\nP =\n"
+        << found.nominal() << "\nnot\n"
+        << expected;
+    EXPECT_NEAR(found.density() / energy_density<Entry>(F, angle), 1, 1e-8) << "fibre at " << angle << "\n"
+                                                                            << F;
+  }
+
+  // A state without compression is the same with and without relaxation.
+  static void expect_follows(const Eigen::Matrix2d& F, double angle) {
+    expect_stress(single(F, angle, false), F, angle);
+    const Eigen::Matrix2d S = F.inverse() * nominal_stress<Entry>(F, angle);
+    if (S.trace() > 0 && S.determinant() > 0) expect_stress(single(F, angle, true), F, angle);
+  }
+};
+TYPED_TEST_SUITE(UniformState, MembraneLaws, LawNames);
+
+// Uniaxial tension: a strip with free sides, and whatever narrower width its wrinkles leave it.
+TYPED_TEST(UniformState, AStripPulledAlongOrAcrossTheFibre) {
+  for (const double angle : {0.0, kQuarter})
+    for (const double l : {1.01, 1.1, 1.2, 1.3, 1.4}) {
+      const Eigen::Matrix2d F = plane(l, 0, this->free_width(l, angle));
+      this->expect_stress(this->single(F, angle, false), F, angle);
+      for (const double width : {0.99 * F(1, 1), 0.3}) {
+        const auto wrinkled = this->single(plane(l, 0, width), angle, true);
+        const double expected = nominal_stress<TypeParam>(F, angle)(0, 0);
+        EXPECT_NEAR(wrinkled.nominal()(0, 0) / expected, 1, 1e-8) << l << " by " << width;
+        EXPECT_LT((wrinkled.nominal() - plane(wrinkled.nominal()(0, 0), 0, 0)).norm(), 1e-8 * expected);
+        EXPECT_NEAR(wrinkled.density() / energy_density<TypeParam>(F, angle), 1, 1e-8);
+      }
+    }
+}
+
+TYPED_TEST(UniformState, ASheetPulledOneWayAtItsWidthBothWaysAlikeAndUnlike) {
+  for (const double angle : {0.0, 0.5, kQuarter})
+    for (const double l : {1.05, 1.2, 1.35}) {
+      this->expect_follows(plane(l, 0, 1), angle);
+      this->expect_follows(plane(l, 0, l), angle);
+      this->expect_follows(plane(l, 0, 1.1), angle);
+    }
+}
+
+TYPED_TEST(UniformState, ASheetInSimpleShearAtRestAndStretched) {
+  for (const double angle : {0.0, 0.5, kQuarter})
+    for (const double shear : {0.05, 0.2, 0.4}) {
+      this->expect_follows(plane(1, shear, 1), angle);
+      this->expect_follows(plane(1.2, shear, 1.1), angle);
+    }
+}
+
+// Turning the sheet at rest under the same deformation: nothing to an isotropic law, and to the others only
+// where the fibre does not turn with it. Turning the deformed sheet: nothing to any.
+TYPED_TEST(UniformState, IsIsotropicWhereItShouldBeAndObjective) {
+  for (const Eigen::Matrix2d& F : {plane(1.25, 0.1, 1.05), plane(1.1, -0.2, 0.95)}) {
+    const auto reference = this->single(F, 0, false);
+    for (const double angle : {0.3, 0.8, 1.4}) {
+      const Eigen::Matrix2d R = Eigen::Rotation2Dd(angle).toRotationMatrix();
+      const auto turned = this->single(F * R, 0, false), together = this->single(F * R, -angle, false),
+                 moved = this->single(R * F, 0, false);
+      if (this->kIsIsotropic) {
+        EXPECT_NEAR(turned.density() / reference.density(), 1, 1e-12);
+        EXPECT_LT((turned.nominal() - reference.nominal() * R).norm(), 1e-12 * reference.nominal().norm());
+      } else {
+        EXPECT_GT(std::abs(turned.density() / reference.density() - 1), 0.01);
+      }
+      EXPECT_NEAR(together.density() / reference.density(), 1, 1e-12);
+      EXPECT_LT((together.nominal() - reference.nominal() * R).norm(), 1e-12 * reference.nominal().norm());
+      EXPECT_NEAR(moved.density() / reference.density(), 1, 1e-12);
+      EXPECT_LT((moved.nominal() - R * reference.nominal()).norm(), 1e-12 * reference.nominal().norm());
+    }
+  }
+}
+
+// The laws' own words, without a width that must be found: uniaxial tension whatever the width held.
+TEST(Strip, FollowsTheCurveThatNamesItsLaw) {
+  const auto pulled = [](const auto& law, double l, double fibre_angle = 0) {
+    return Single(law, plane(l, 0, 0.3), fibre_angle).nominal()(0, 0);
+  };
+  for (const double l : {1.01, 1.1, 1.2, 1.3, 1.4}) {
+    const double e = l - 1, j = l * l + 2 / l - 3, slope = 2 * (l - 1 / (l * l));
+    EXPECT_NEAR(pulled(laws::Bilinear::law(1), l), 0.1 * e + answers::past_knee(e, 5.9, 0.25, 0.05), 1e-8);
+    EXPECT_NEAR(pulled(laws::NeoHookean::law(1), l), 0.15 * slope, 1e-8);
+    EXPECT_NEAR(pulled(laws::Exponential::law(1), l), (0.025 + 0.06 * j * std::exp(3 * j * j)) * slope, 1e-8);
+    EXPECT_NEAR(pulled(laws::Orthotropic::law(1), l), 0.2 * e + answers::past_knee(e, 4, 0.15, 0.04), 1e-8);
+    EXPECT_NEAR(pulled(laws::Orthotropic::law(1), l, kQuarter),
+                0.08 * e + answers::past_knee(e, 1, 0.3, 0.04), 1e-8);
+    const double grown = 0.02 * std::exp(1.5 * j * j + 20 * std::pow(e, 4));
+    EXPECT_NEAR(pulled(laws::MayNewmanYin::law(1), l) / (grown * (3 * j * slope + 80 * std::pow(e, 3))), 1,
+                1e-8);
+  }
+}
+
+TEST(CrimpedFibre, IsTheHelixThatIsPulledStraight) {
+  for (const double window : {0.0, 0.02}) {
+    const CrimpedFibre fibre(8, 9, 1.6, window);
+    const oracle::CrimpedCurve helix{8, 9, 1.6, window};
+    EXPECT_NEAR(fibre.limit(), helix.limit, 1e-14);
+    for (double l = 1.002; l < 1.4 * helix.limit; l += 0.007) {
+      AutoInner stretch(l);
+      stretch.derivatives()[0] = 1;
+      const AutoInner stress = helix.stress(stretch);
+      EXPECT_NEAR(fibre.at(l - 1).stress / stress.value(), 1, 1e-11) << l;
+      EXPECT_NEAR(fibre.at(l - 1).stiffness / stress.derivatives()[0], 1, 1e-10) << l;
+      EXPECT_NEAR(fibre.at(l - 1).energy / helix.energy(l), 1, 1e-10) << l;
+    }
+    EXPECT_EQ(fibre.at(-0.1).stress, 0);
+    EXPECT_LT(fibre.at(0.5 * (fibre.limit() - 1)).stiffness, 0.2 * 8);
+  }
+}
+
+// Fibres in all directions alike are isotropic.
+TEST(CrimpedFibre, SplayedEvenlyIsIsotropic) {
+  CrimpedFibreLaw even = laws::Crimped::law(1);
+  even.splay = 10;
+  const Eigen::Matrix2d F = plane(1.25, 0.1, 1.05);
+  EXPECT_NEAR(Single(even, F, 0.7, false).density() / Single(even, F, 0, false).density(), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace coapt

@@ -1,0 +1,289 @@
+// xpbd on scenes: the constraints that terms become, and a valve that closes and opens.
+#include "core/error.hpp"
+#include "energy/connected_parts.hpp"
+#include "mesh/generators/mitral.hpp"
+#include "mesh/mesh_io.hpp"
+#include "optim/xpbd/constraints.hpp"
+#include "scene/build.hpp"
+#include "scene/import.hpp"
+#include "scene/run.hpp"
+#include "scene/temporary_folder.hpp"
+#include "scene/xpbd_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+// Two equilateral triangles of side 2, in a scene with these terms.
+class XpbdBodyTest : public testing::Test {
+ protected:
+  XpbdBodyTest() {
+    TriangleMesh mesh;
+    mesh.vertices.resize(3, 4);
+    mesh.vertices.col(0) = Vec3(0, 0, 0);
+    mesh.vertices.col(1) = Vec3(2, 0, 0);
+    mesh.vertices.col(2) = Vec3(1, std::sqrt(3), 0);
+    mesh.vertices.col(3) = Vec3(3, std::sqrt(3), 0);
+    mesh.triangles.resize(3, 2);
+    mesh.triangles << 0, 1, 1, 3, 2, 2;
+    write_mesh(folder_.path() / "sheet.obj", mesh);
+  }
+
+  void build_with(const std::string& terms) {
+    scene_ =
+        load_scene(folder_.write("scene.json", R"({"mesh": {"file": "sheet.obj"}, "terms": [)" + terms +
+                                                   "], \"boundary\": [{\"nodes\": [0], \"fix\": true}]}"));
+    model_ = build(scene_);
+    body_ = xpbd_body(model_, scene_.terms);
+  }
+
+  // Energy of the constraints at x.
+  double energy(const Points& x) const {
+    double sum = 0;
+    for (const XpbdEdge& e : body_->edges)
+      sum += 0.5 * e.stiffness * std::pow((x.col(e.a) - x.col(e.b)).norm() - e.length, 2);
+    for (const XpbdArea& a : body_->areas)
+      sum += 0.5 * a.stiffness * std::pow(triangle_area(x, a.nodes).value - a.area, 2);
+    return sum;
+  }
+
+  // The first node, which is fixed, stays.
+  Points strained(double e11, double e22, double e12) const {
+    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+    F(0, 0) += e11;
+    F(1, 1) += e22;
+    F(0, 1) = F(1, 0) = e12;
+    const Vec3 held = model_.X.col(0);
+    return (F * (model_.X.colwise() - held)).colwise() + held;
+  }
+
+  TemporaryFolder folder_;
+  Scene scene_;
+  Model model_;
+  std::shared_ptr<const XpbdBody> body_;
+};
+
+TEST_F(XpbdBodyTest, HasTheModuliOfTheMembraneOnEquilateralTriangles) {
+  for (const char* poisson : {"0.33333333", "0.45", "0.4999"}) {
+    build_with(std::string(R"({"type": "cst_stvk", "young": "2 MPa", "thickness": "0.5 mm", "poisson": )") +
+               poisson + "}");
+    for (const auto& [e11, e22, e12] :
+         {std::tuple{1e-5, 0.0, 0.0}, {1e-5, 1e-5, 0.0}, {0.0, 0.0, 1e-5}, {1e-5, -3e-5, 2e-5}}) {
+      const Points x = strained(e11, e22, e12);
+      EXPECT_NEAR(energy(x) / model_.objective->value(model_.objective->unknowns(x)), 1, 1e-3)
+          << poisson << ": " << e11 << ", " << e22 << ", " << e12;
+    }
+  }
+}
+
+TEST_F(XpbdBodyTest, HasNoAreasBelowTheRatioThatEdgesHaveThemselves) {
+  build_with(R"({"type": "cst_stvk", "young": "2 MPa", "thickness": "0.5 mm", "poisson": 0.2})");
+  EXPECT_TRUE(body_->areas.empty());
+  // Van Gelder: E h (sum of areas) / l^2, two triangles on the edge within.
+  ASSERT_EQ(body_->edges.size(), 5U);
+  for (const XpbdEdge& edge : body_->edges) {
+    const bool is_inner = edge.a == 1 && edge.b == 2;
+    EXPECT_NEAR(edge.stiffness, (is_inner ? 2 : 1) * std::sqrt(3) / 4, 1e-6);
+    EXPECT_NEAR(edge.length, 2, 1e-6);
+  }
+}
+
+TEST_F(XpbdBodyTest, PushesBackOnlyWhereTheMembraneDoes) {
+  const std::string tail = R"(", "young": "2 MPa", "thickness": "0.5 mm"})";
+  build_with(R"({"type": "cst_tension_field)" + tail);
+  EXPECT_TRUE(body_->edges[0].only_tension);
+  EXPECT_TRUE(body_->areas[0].only_growth);
+  build_with(R"({"type": "cst_stvk)" + tail);
+  EXPECT_FALSE(body_->edges[0].only_tension);
+  EXPECT_FALSE(body_->areas[0].only_growth);
+}
+
+TEST_F(XpbdBodyTest, TakesLinesHingesFilmsAndContactFromTheirTerms) {
+  build_with(R"({"type": "cst_stvk", "young": "2 MPa", "thickness": "0.5 mm", "prestress": "0.3 N/mm"},
+    {"type": "bending"}, {"type": "surface_tension", "tension": "0.2 N/mm"},
+    {"type": "cable", "edges": [0, 1], "young": "10 MPa", "area": "0.4 mm2", "smoothing": 0},
+    {"type": "cable_toe", "edges": [0, 2], "young": "10 MPa", "area": "0.4 mm2", "recruitment_strain": 0.05,
+     "intercept": 0.02, "exponent": 30},
+    {"type": "cable", "edges": [1, 3], "tension": "3 N"},
+    {"type": "tether_cubic", "edges": [2, 3], "strength": "2 mJ", "scale": "0.5 mm"},
+    {"type": "load_pressure", "value": "1 kPa", "model": "frozen"}, {"type": "contact_facet"})");
+  EXPECT_TRUE(body_->has_contact);
+  EXPECT_NEAR(body_->pressure, 1e-3, 1e-12);
+  ASSERT_EQ(body_->hinges.size(), 1U);
+  EXPECT_NEAR(body_->hinges[0].angle, 0, 1e-6);
+  EXPECT_GT(body_->hinges[0].stiffness, 0);
+  ASSERT_EQ(body_->films.size(), 4U);
+  ASSERT_EQ(body_->tethers.size(), 4U);
+  // Forces of the objective's terms at a stretched state are those of the tethers.
+  const Points x = 1.1 * model_.X;
+  size_t k = 0;
+  for (const char* name : {"cable", "cable_toe", "cable_2", "tether_cubic"}) {
+    const XpbdTether& tether = body_->tethers[k++];
+    const double l = (x.col(tether.a) - x.col(tether.b)).norm();
+    double greatest = 0;
+    for (const auto& term : model_.objective->terms())
+      if (term->name() == name) greatest = nodal_forces(*term, x).colwise().norm().maxCoeff();
+    ASSERT_GT(greatest, 1e-6) << name;
+    const double force = tether.law ? tether.law(l).force : tether.stiffness * (l - tether.length);
+    EXPECT_NEAR(force / greatest, 1, 1e-9) << name;
+  }
+}
+
+// Springs note moduli of the triangles that they stand for: no membrane besides.
+TEST_F(XpbdBodyTest, TakesSpringsForWhatTheyAreAndNothingElse) {
+  build_with(R"({"type": "spring", "young": "2 MPa", "thickness": "0.5 mm", "compression": "resisted"})");
+  EXPECT_TRUE(body_->edges.empty());
+  EXPECT_TRUE(body_->areas.empty());
+  ASSERT_EQ(body_->tethers.size(), 5U);
+  const Points x = strained(0.02, -0.03, 0.01), forces = nodal_forces(*model_.objective->terms()[0], x);
+  Points of_tethers = Points::Zero(3, x.cols());
+  for (const XpbdTether& tether : body_->tethers) {
+    EXPECT_FALSE(tether.only_tension);
+    const Vec3 d = x.col(tether.b) - x.col(tether.a), pull = tether.law(d.norm()).force * d.normalized();
+    of_tethers.col(tether.a) += pull;
+    of_tethers.col(tether.b) -= pull;
+  }
+  EXPECT_GT(forces.norm(), 1e-3);
+  EXPECT_LT((of_tethers - forces).norm(), 1e-12);
+}
+
+class Unknown final : public EnergyTerm {
+ public:
+  using EnergyTerm::EnergyTerm;
+  std::string_view type() const override { return "soap"; }
+  TermRole role() const override { return TermRole::Internal; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(const Points&, Sink&) const override { return 0; }
+
+ private:
+  Stencils stencils_;
+};
+
+TEST_F(XpbdBodyTest, RefusesTermsThatItHasNoConstraintFor) {
+  Model model;
+  model.X = Points::Zero(3, 1);
+  std::vector<std::unique_ptr<EnergyTerm>> terms;
+  terms.push_back(std::make_unique<Unknown>("first"));
+  terms.push_back(std::make_unique<Unknown>("second"));
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, 1, false), std::move(terms));
+  try {
+    xpbd_body(model, {});
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.defects().size(), 2U);
+    EXPECT_NE(error.defects()[1].find("\"second\" (soap)"), std::string::npos) << error.what();
+  }
+}
+
+// The generated valve, and one number that says how far open it is.
+class XpbdValve : public testing::Test {
+ protected:
+  XpbdValve() { write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"}); }
+
+  Scene scene() const { return load_scene(folder_.path() / "scene.json"); }
+
+  static RunReport run_xpbd(Scene scene, const XpbdOptions& options) {
+    scene.solver.type = "xpbd";
+    scene.solver.xpbd = options;
+    RunOptions run_options;
+    run_options.writes = false;
+    return run(scene, built_in_solvers(), run_options);
+  }
+
+  static double orifice(const RunReport& report) {
+    EXPECT_TRUE(report.report.result.q.allFinite());
+    return report.report.metrics.orifice_area_mm2.value();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(XpbdValve, ClosesInSystoleAndOpensInDiastole) {
+  XpbdOptions first;
+  first.steps = 1;
+  const double open = orifice(run_xpbd(scene(), first));
+  XpbdOptions options;
+  options.steps = 150;
+  options.iterations = 10;
+  const RunReport closed = run_xpbd(scene(), options);
+  EXPECT_LT(orifice(closed), 0.3 * open);
+  EXPECT_NE(closed.report.result.message.find("membrane area"), std::string::npos)
+      << closed.report.result.message;
+  std::printf("xpbd valve: orifice %.1f -> %.1f mm2; %s\n", open, orifice(closed),
+              closed.report.result.message.c_str());
+
+  options.phase = HeartPhase::Diastole;
+  const double opened = orifice(run_xpbd(scene(), options));
+  EXPECT_GT(opened, open);
+  std::printf("xpbd valve opened: %.1f mm2\n", opened);
+}
+
+// Without hinges: in radians the paper's compliance makes them too stiff to fold (docs/theory.md).
+TEST_F(XpbdValve, MovesByThePapersNumbersInBothPhases) {
+  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(),
+                    {.membrane = "stvk", .contact = "none"});
+  XpbdOptions first;
+  first.steps = 1;
+  const double open = orifice(run_xpbd(scene(), first));
+  XpbdOptions options;
+  options.stiffness = XpbdStiffness::Paper;
+  options.forces = XpbdForces::Paper;
+  options.steps = 600;
+  options.iterations = 3;
+  const RunReport closed = run_xpbd(scene(), options);
+  EXPECT_LT(orifice(closed), 0.2 * open);
+  EXPECT_LT(std::abs(closed.report.metrics.leaflet_area_change_mm2), 4);  // as the paper says of its valves
+  options.phase = HeartPhase::Diastole;
+  const double opened = orifice(run_xpbd(scene(), options));
+  EXPECT_GT(opened, open);
+  std::printf("xpbd valve by the paper: orifice %.1f -> %.1f and %.1f mm2; %s\n", open, orifice(closed),
+              opened, closed.report.result.message.c_str());
+}
+
+TEST_F(XpbdValve, KeepsABarrierFromIntersections) {
+  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "barrier"});
+  XpbdOptions options;
+  options.steps = 100;
+  options.iterations = 5;
+  const RunReport closed = run_xpbd(scene(), options);
+  EXPECT_EQ(closed.report.metrics.intersections, 0);
+  EXPECT_TRUE(std::isfinite(closed.report.result.energy));
+  std::printf("xpbd valve with a barrier: orifice %.1f mm2; %s\n", orifice(closed),
+              closed.report.result.message.c_str());
+}
+
+TEST_F(XpbdValve, ReadsItsOptionsFromTheScene) {
+  const Scene read = parse_scene(R"({"mesh": {"file": "leaflets.obj"}, "terms": [{"type": "surface_tension",
+    "tension": "1 N/mm"}], "solver": {"type": "xpbd", "threads": 2, "xpbd": {"time_step": "2 ms",
+    "iterations": 3, "steps": 7, "damping": 0.1, "thickness": "0.2 mm", "stiffness": "paper",
+    "forces": "paper", "phase": "diastole"}}})",
+                                 folder_.path() / "other.json");
+  const XpbdOptions& options = read.solver.xpbd;
+  EXPECT_EQ(read.solver.type, "xpbd");
+  EXPECT_EQ(options.time_step, 0.002);
+  EXPECT_EQ(options.iterations, 3);
+  EXPECT_EQ(options.steps, 7);
+  EXPECT_EQ(options.damping, 0.1);
+  EXPECT_EQ(options.thickness, 0.2);
+  EXPECT_EQ(options.threads, 2);
+  EXPECT_EQ(options.stiffness, XpbdStiffness::Paper);
+  EXPECT_EQ(options.forces, XpbdForces::Paper);
+  EXPECT_EQ(options.phase, HeartPhase::Diastole);
+
+  const XpbdOptions defaults, fallback = parse_scene(R"({"mesh": {"file": "leaflets.obj"}, "terms": [
+    {"type": "surface_tension", "tension": "1 N/mm"}], "solver": {"xpbd": {}}})",
+                                                     folder_.path() / "other.json")
+                                             .solver.xpbd;
+  EXPECT_EQ(fallback.time_step, defaults.time_step);
+  EXPECT_EQ(fallback.iterations, defaults.iterations);
+  EXPECT_EQ(fallback.steps, defaults.steps);
+  EXPECT_EQ(fallback.damping, defaults.damping);
+  EXPECT_EQ(fallback.thickness, defaults.thickness);
+  EXPECT_EQ(fallback.stiffness, defaults.stiffness);
+}
+
+}  // namespace
+}  // namespace coapt
