@@ -68,6 +68,7 @@ void Monitor::begin_round(int round, double tolerance) {
   round_ = round;
   tolerance_ = tolerance;
   is_first_of_round_ = true;
+  time_before_ = trace_.empty() ? 0 : trace_.back().time;
   best_energy_ = best_residual_ = kInfinity;
   last_gain_ = last_residual_gain_ = iterations_;
 }
@@ -84,7 +85,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.residual = objective_.relative_residual(g);
   now.step = last_.size() == q.size() && q.size() > 0 ? (q - last_).lpNorm<Eigen::Infinity>() : 0;
   now.seconds = seconds();
-  now.time = time;
+  now.time = time_before_ + time;
   now.evaluations = objective_.counts().gradient + objective_.counts().hessian;
   last_ = q;
   objective_.advance(q);

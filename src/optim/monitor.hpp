@@ -30,7 +30,7 @@ class Monitor {
 
   // Call once per accepted iterate, the start included. Returns why to stop, or nothing to go on: among
   // the reasons that many iterates in a row have lowered neither the energy nor the residual.
-  // time: simulated, of a method that has one [s].
+  // time: simulated since the round began, of a method that has one [s].
   std::optional<Status> accept(const Vector& q, double energy, const Vector& g, double time = 0);
 
   // For methods that hide their iterates: call it at every evaluation; true = stop now.
@@ -58,6 +58,7 @@ class Monitor {
   double tolerance_;
   double start_;
   int round_ = 0;
+  double time_before_ = 0;  // simulated, before this round [s]
   int iterations_ = 0;
   bool is_first_of_round_ = true;
   double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round

@@ -62,14 +62,14 @@ bool feels_no_force(const Result& result) {
 }
 
 // The verdict is the objective's, whatever the solver thinks.
-void judge(const Outcome& outcome, const Problem& problem, const StopRule& stop, Monitor& monitor,
-           Result& result) {
+void judge(const Outcome& outcome, const Solver& solver, const Problem& problem, const StopRule& stop,
+           Monitor& monitor, Result& result) {
   Objective& objective = problem.objective;
   std::string note = outcome.note;
   result.status = outcome.status;
   result.residual = objective.true_residual(result.q);
   if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
-      result.status != Status::NoEquilibrium && !outcome.is_on_the_way)
+      result.status != Status::NoEquilibrium && !outcome.is_on_the_way && solver.is_at_rest())
     result.status = Status::Converged;
   else if (result.status == Status::Converged || result.status == Status::LineSearchFailed)
     result.status = Status::Stalled;
@@ -151,10 +151,11 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   Objective& objective = problem.objective;
   if (const EnergyTerm* term = objective.step_limiting_term();
       term != nullptr && !solver.honours_step_limits())
-    throw InputError("solver \"" + std::string(solver.name()) +
-                     "\" chooses its steps itself and cannot keep them free of collisions, which term \"" +
-                     term->name() + "\" (" + std::string(term->type()) +
-                     ") needs; use \"newton\", \"lbfgs\", \"bfgs\" or \"dynamic\", or \"contact_facet\"");
+    throw InputError(
+        "solver \"" + std::string(solver.name()) +
+        "\" chooses its steps itself and cannot keep them free of collisions, which term \"" + term->name() +
+        "\" (" + std::string(term->type()) +
+        ") needs; use \"newton\", \"lbfgs\", \"bfgs\", \"dynamic\" or \"xpbd\", or \"contact_facet\"");
   const double cpu_start = cpu_seconds();
   const EvaluationCounts counts_before = objective.counts();
   Monitor monitor(objective, stop, observer);
@@ -174,11 +175,11 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
                        ? "exact force, with its work along the path as merit"
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
                              std::to_string(result.rounds) + " rounds";
-  judge(outcome, problem, stop, monitor, result);
+  judge(outcome, solver, problem, stop, monitor, result);
   for (int saddle = 0; saddle < kMostSaddles && leave_saddle(problem.objective, monitor, result); ++saddle) {
     monitor.begin_round(monitor.round() + 1, stop.tolerance);
     const Status status = solver.minimize(objective, result.q, monitor);
-    judge({status, "a saddle was left on the way"}, problem, stop, monitor, result);
+    judge({status, "a saddle was left on the way"}, solver, problem, stop, monitor, result);
   }
 
   result.evaluations = {objective.counts().value - counts_before.value,

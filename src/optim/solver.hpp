@@ -45,7 +45,7 @@ struct Iteration {
   double residual = 0;   // relative, of that potential
   double step = 0;       // largest change of an unknown [length]
   double seconds = 0;    // wall time since the start
-  double time = 0;       // simulated, of a method that follows the motion of masses [s]
+  double time = 0;       // simulated since the start, of a method that follows the motion of masses [s]
   long evaluations = 0;  // of the gradient so far
 };
 
@@ -68,6 +68,10 @@ class Solver {
   // Whether the method asks Monitor::step_limit before every step. One that does not is refused terms that
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
+
+  // Whether the last minimize() ended without motion. What passes through an equilibrium at speed has no
+  // residual there and is on its way to another state.
+  virtual bool is_at_rest() const { return true; }
 
   // What there is to say of how the last minimize() ended, for the message of the result; may be empty.
   virtual std::string remark() const { return {}; }

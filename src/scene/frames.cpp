@@ -48,10 +48,12 @@ FrameWriter::FrameWriter(const fs::path& folder, int every, const Model& model)
 
 void FrameWriter::see(const Iteration& iteration, const Vector& q) {
   if (q.size() != model_.objective->unknown_count() || seen_++ % every_ != 0) return;
+  const double time = iteration.time > 0 ? iteration.time : static_cast<double>(seen_ - 1);
+  if (count_ > 0 && time <= last_time_) return;  // a round of a motion begins where the one before ended
+  last_time_ = time;
   char name[32], entry[128];
   std::snprintf(name, sizeof name, "frames/frame_%06d.vtp", count_++);
   write_vtp(folder_ / name, frame(model_, model_.objective->positions(q)));
-  const double time = iteration.time > 0 ? iteration.time : static_cast<double>(seen_ - 1);
   std::snprintf(entry, sizeof entry, "    <DataSet timestep=\"%.9g\" file=\"%s\"/>\n", time, name);
   entries_ += entry;
 }

@@ -33,6 +33,7 @@ class FrameWriter {
   const Model& model_;
   long seen_ = 0;
   int count_ = 0;
+  double last_time_ = 0;
   std::string entries_;
 };
 

@@ -2,6 +2,7 @@
 
 Usage: command_test.py COAPT_BINARY RESULT_SCHEMA [unittest arguments]
 """
+import csv
 import json
 import os
 import pathlib
@@ -13,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+from xml.etree import ElementTree
 
 try:
     import jsonschema
@@ -100,6 +102,20 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.result()["counters"]["pressure_facets"], 0)
         self.assertEqual(self.result()["counters"]["membrane_elements"], 0)
         self.assertEqual(self.result()["counters"]["cable_elements"], 40)
+
+    def test_frames_of_a_motion_share_one_time(self):
+        scene = self.generate("mitral", "--triangles", 200, "--contact", "none")
+        scene.write_text(scene.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))
+        run = coapt("solve", scene, "--solver", "dynamic", "--frames", "1", "--tolerance", "1e-4")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        frames = list(ElementTree.parse(self.folder / "result" / "frames.pvd").iter("DataSet"))
+        times = [float(frame.get("timestep")) for frame in frames]
+        self.assertGreater(len(times), 10)
+        self.assertEqual(times, sorted(set(times)))
+        with open(self.folder / "result" / "trace.csv") as trace:
+            self.assertAlmostEqual(times[-1], float(list(csv.DictReader(trace))[-1]["time_s"]), delta=1e-6 * times[-1])
+        for frame in frames:
+            self.assertTrue((self.folder / "result" / frame.get("file")).exists())
 
     def test_a_run_out_of_time_writes_its_result_and_returns_1(self):
         scene = self.generate("mitral", "--triangles", 2500)

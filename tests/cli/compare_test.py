@@ -58,6 +58,33 @@ class CompareTest(unittest.TestCase):
         for word in ["newton", "lbfgs", "same equilibrium", "orifice", "compare.html"]:
             self.assertIn(word, text)
 
+    def test_static_dynamic_and_other_models_side_by_side(self):
+        text, found, rows = self.compare(self.valve(), "--tolerance", "1e-8", code=1)  # xpbd finds no equilibrium
+        methods = {method["name"]: method for method in found["methods"]}
+        self.assertEqual(set(methods), {"newton", "lbfgs", "dynamic", "mass-spring", "xpbd"}, text)
+        self.assertEqual({name: method["verdict"] for name, method in methods.items()},
+                         {"newton": "reference", "lbfgs": "same equilibrium", "dynamic": "same equilibrium",
+                          "mass-spring": "model gap", "xpbd": "model gap"}, text)
+        self.assertEqual([methods[name]["model"] for name in ("dynamic", "mass-spring", "xpbd")],
+                         ["scene", "springs", "constraints"])
+        self.assertTrue(all(methods[name]["converged"] for name in methods if name != "xpbd"), text)
+        for name in ("mass-spring", "xpbd"):
+            gap = methods[name]["distance_to_reference_method"]
+            self.assertGreater(gap["mean_mm"], 1e-3, name)
+            self.assertLess(gap["mean_mm"], 5, name)
+            self.assertIn(f"mean {gap['mean_mm']:.3g}", methods[name]["message"])
+            self.assertIn(b"distance_to_reference_method", (self.out / name / "closed.vtp").read_bytes())
+        for name in ("dynamic", "mass-spring", "xpbd"):
+            self.assertGreater(methods[name]["simulated_s"], 0, name)
+        self.assertIsNone(methods["newton"]["simulated_s"])
+        self.assertEqual([row["verdict"] for row in rows], [m["verdict"] for m in found["methods"]])
+
+    def test_springs_alone_are_one_model(self):
+        scene = self.valve("--model", "hammer-2011")
+        text, found, _ = self.compare(scene, "--methods", "dynamic,mass-spring", "--tolerance", "1e-6")
+        self.assertEqual([m["verdict"] for m in found["methods"]], ["reference", "same equilibrium"], text)
+        self.assertEqual(found["methods"][1]["distance_to_reference_method"]["same_vertex"]["max_mm"], 0)
+
     def test_results_are_those_of_solve(self):
         scene = self.valve()
         _, found, _ = self.compare(scene, "--methods", "newton,lbfgs", "--reference", "lbfgs")

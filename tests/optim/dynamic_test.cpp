@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -182,8 +183,6 @@ TEST(TimeIntegrators, SwingAPendulumInItsPeriod) {
   double last = 0, crossing = 0;
   for (int k = 0; k < 3000 && crossing == 0; ++k) {
     ASSERT_TRUE(integrator->step(h, at));
-    if (last > 0 && at.q[0] <= 0 && at.time > 0.5 * period)
-      crossing = at.time;  // never: the second zero comes from below
     if (last < 0 && at.q[0] >= 0) crossing = at.time - h * at.q[0] / (at.q[0] - last);
     last = at.q[0];
   }
@@ -315,18 +314,24 @@ TEST(Dynamic, ComesToRestAtTheEquilibriumOfNewton) {
 
 TEST(Dynamic, IsNotConvergedWhileItMoves) {
   // Through the equilibrium at full speed: the force vanishes there, the velocity does not.
-  Bob bob;
   SolverOptions options;
   options.dynamic = {.time_step = 1e-3, .adapts_steps = false, .relaxation_time = 0};
   options.masses = [] { return Bob::kMasses; };
   StopRule stop;
   stop.tolerance = 1e-2;
   stop.max_iterations = 900;
-  const Result result =
-      solve(*make_dynamic(options), {bob.objective, bob.objective.unknowns(Bob::rest())}, stop);
-  double least = kInfinity;
-  for (const Iteration& it : result.trace) least = std::min(least, it.residual);
-  EXPECT_LT(least, stop.tolerance);
+  const auto swing = [&] {
+    Bob bob;
+    return solve(*make_dynamic(options), {bob.objective, bob.objective.unknowns(Bob::rest())}, stop);
+  };
+  const std::vector<Iteration> trace = swing().trace;
+  const auto least = std::min_element(trace.begin(), trace.end(), [](const Iteration& a, const Iteration& b) {
+    return a.residual < b.residual;
+  });
+  ASSERT_LT(least->residual, stop.tolerance);
+  stop.max_iterations = least->iteration;  // stopped there, with no force and all the speed
+  const Result result = swing();
+  EXPECT_LT(result.residual, stop.tolerance);
   EXPECT_EQ(result.status, Status::IterationLimit) << result.message;
 }
 

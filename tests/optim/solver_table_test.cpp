@@ -21,11 +21,15 @@
 namespace coapt {
 namespace {
 
-// Without those that move masses, which need a body: dynamic_test.cpp and xpbd_test.cpp have them.
-SolverTable all_solvers() {
+// Without xpbd, which needs a body of constraints (xpbd_test.cpp). masses: of the nodes, for dynamic.
+SolverTable all_solvers(int node_count = 0) {
   SolverTable table = built_in_solvers();
-  table.erase("dynamic");
   table.erase("xpbd");
+  table["dynamic"] = [node_count, make = table.at("dynamic")](SolverOptions options) {
+    options.masses = [node_count] { return Vector(Vector::Constant(node_count, 0.01)); };
+    options.dynamic = {.time_step = 0.05, .relaxation_time = 0.1};
+    return make(options);
+  };
 #ifdef COAPT_HAS_CERES
   add_ceres_solver(table);
 #endif
@@ -142,7 +146,8 @@ Result run(Scene& scene, const std::string& solver, double tolerance = 1e-8) {
   StopRule stop;
   stop.tolerance = tolerance;
   stop.max_seconds = 60;
-  return solve(*all_solvers().at(solver)({}), {*scene.objective, scene.q0, {}}, stop);
+  return solve(*all_solvers(scene.objective->node_count()).at(solver)({}), {*scene.objective, scene.q0, {}},
+               stop);
 }
 
 class SolverOnScene : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -183,7 +188,7 @@ TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, SolverOnScene,
-    testing::Combine(testing::Values("newton", "lbfgs", "bfgs", "ceres", "nlopt"),
+    testing::Combine(testing::Values("newton", "lbfgs", "bfgs", "dynamic", "ceres", "nlopt"),
                      testing::Values("disc_frozen", "disc_volume", "disc_follower", "sail_follower",
                                      "catenary", "prestressed_square", "sphere")),
     [](const auto& instance) { return std::get<0>(instance.param) + "_on_" + std::get<1>(instance.param); });
@@ -222,7 +227,8 @@ TEST(SolverTable, SaysSoWhenThereIsNothingToDo) {
                           terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
       StopRule stop;
       stop.max_seconds = 5;
-      const Result result = solve(*make({}), {objective, objective.unknowns(mesh.vertices), {}}, stop);
+      const auto method = all_solvers(objective.node_count()).at(solver)({});
+      const Result result = solve(*method, {objective, objective.unknowns(mesh.vertices), {}}, stop);
       EXPECT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
       EXPECT_EQ(result.iterations, 0) << solver;
       EXPECT_FALSE(result.message.empty()) << solver;

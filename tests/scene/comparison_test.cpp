@@ -177,9 +177,10 @@ TEST_F(ComparisonTest, ALooseToleranceIsNoBranch) {
 }
 
 TEST_F(ComparisonTest, NamesTwoBranchesAndTheirEnergies) {
-  const Comparison found = compare(arch_scene(), {"newton", "lbfgs", "mirrored"});
+  const Comparison found = compare(arch_scene(), {"newton", "lbfgs", "mirrored", "dynamic"});
   ASSERT_TRUE(found.has_converged());
-  EXPECT_EQ(found.methods[1].verdict, Verdict::SameEquilibrium) << found.methods[1].message;
+  for (const size_t same : {1U, 3U})
+    EXPECT_EQ(found.methods[same].verdict, Verdict::SameEquilibrium) << found.methods[same].message;
   const ComparedMethod& down = found.methods[2];
   EXPECT_EQ(down.verdict, Verdict::AnotherBranch) << down.message;
   EXPECT_GT(down.gap->same_vertex.max, 0.2);  // of a strip of 1.2

@@ -11,6 +11,24 @@ namespace {
 
 // --- Cascades --------------------------------------------------------------------------------------------
 
+// --- Motion in time ---------------------------------------------------------------------------------------
+
+// Follower pressure on free edges, the barrier and an annulus that moves, all at once.
+TEST_F(ContactSceneTest, AValveClosesInTimeWithoutAnIntersectionAtAnyStep) {
+  for (const char* integration : {"backward_differences", "semi_implicit_euler"}) {
+    const bool is_explicit = integration[0] == 's';
+    if (is_explicit && is_sanitized()) continue;  // tens of thousands of steps
+    write_valve_scene(mitral_valve({.triangles = is_explicit ? 150 : 300}), folder_.path(),
+                      {.contact = "barrier", .tolerance = is_explicit ? 1e-4 : 1e-6});
+    Scene scene = load_scene(folder_.path() / "scene.json");
+    scene.solver.type = "dynamic";
+    if (is_explicit) scene.solver.dynamic.integration = TimeIntegration::SemiImplicitEuler;
+    const JudgedScene judged = solve_judged(scene);
+    expect_contact_without_intersection(std::string("valve in time, ") + integration, judged);
+    EXPECT_LT(judged.metrics.orifice_area_mm2.value(), 0.03 * judged.metrics.annulus_area_mm2.value());
+  }
+}
+
 class ContactCascadeTest : public ContactSceneTest {
  protected:
   Scene valve(const std::string& contact) const {

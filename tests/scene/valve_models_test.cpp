@@ -6,8 +6,10 @@
 #include "mesh/generators/mitral.hpp"
 #include "scene/build.hpp"
 #include "scene/import.hpp"
+#include "scene/judged_scene.hpp"
 #include "scene/run.hpp"
 #include "scene/temporary_folder.hpp"
+#include "support/sanitized.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,34 +19,66 @@
 namespace coapt {
 namespace {
 
-class ValveModels : public testing::TestWithParam<std::string> {};
+class ValveModels : public testing::TestWithParam<std::string> {
+ protected:
+  // The generated valve with the springs of the model.
+  Scene valve(const std::string& contact, const std::string& solver, double tolerance, int triangles = 625) {
+    Valve valve = mitral_valve({.triangles = triangles});
+    ImportOptions options;
+    options.contact = contact;
+    options.tolerance = tolerance;
+    apply_valve_model(GetParam(), valve, options);
+    write_valve_scene(valve, folder_.path(), options);
+    Scene scene = load_scene(folder_.path() / "scene.json");
+    scene.solver.type = solver;
+    return scene;
+  }
 
-// The generated valve with the springs of a model, without contact, by both solvers.
-TEST_P(ValveModels, Closes) {
-  const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 625});
-  ImportOptions options;
-  options.contact = "none";
-  apply_valve_model(GetParam(), valve, options);
-  write_valve_scene(valve, folder.path(), options);
-  const Scene scene = load_scene(folder.path() / "scene.json");
-  RunOptions how;
-  how.writes = false;
-  std::vector<Points> shapes;
-  for (const char* solver : {"newton", "lbfgs"}) {
-    how.solver = solver;
-    how.tolerance = 1e-8;
-    const RunReport done = run(scene, built_in_solvers(), how);
+  TemporaryFolder folder_;
+};
+
+TEST_P(ValveModels, HasTheParametersOfItsSource) {
+  const Scene scene = valve("none", "newton", 1e-8);
+  const Model model = build(scene);
+  EXPECT_NEAR(model.applied_pressure, GetParam() == "hammer-2008" ? 0.016 : 0.013, 1e-12);
+  EXPECT_EQ(model.membrane[0].thickness, 1);
+  EXPECT_EQ(std::count_if(scene.terms.begin(), scene.terms.end(),
+                          [](const TermSpec& t) { return t.type == "spring"; }),
+            2);
+}
+
+TEST_P(ValveModels, ClosesInTimeAsWithoutIt) {
+  struct Closed {
+    std::string solver;
+    Points x;
+    double energy;
+    const Metrics metrics;
+  };
+  std::vector<Closed> closed;
+  for (const char* solver : {"newton", "lbfgs", "dynamic"}) {
+    RunOptions how;
+    how.writes = false;
+    const RunReport done = run(valve("none", solver, 1e-8), built_in_solvers(), how);
     const Result& result = done.report.result;
-    std::printf("%s, %s: %d iterations, residual %.1e\n", GetParam().c_str(), solver, result.iterations,
-                result.residual);
-    EXPECT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
-    EXPECT_NEAR(done.model.applied_pressure, GetParam() == "hammer-2008" ? 0.016 : 0.013, 1e-12);
-    EXPECT_EQ(done.model.membrane[0].thickness, 1);
-    EXPECT_EQ(std::count_if(scene.terms.begin(), scene.terms.end(),
-                            [](const TermSpec& t) { return t.type == "spring"; }),
-              2);
-    shapes.push_back(done.report.fields.x);
+    std::printf("%s, %s: %d iterations, residual %.1e, energy %.6f mJ, orifice %.2f of %.1f mm2\n",
+                GetParam().c_str(), solver, result.iterations, result.residual, result.energy,
+                done.report.metrics.orifice_area_mm2.value(), done.report.metrics.annulus_area_mm2.value());
+    ASSERT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
+    EXPECT_LT(done.report.metrics.orifice_area_mm2.value(),
+              0.02 * done.report.metrics.annulus_area_mm2.value())
+        << solver;
+    closed.push_back({solver, done.report.fields.x, result.energy, done.report.metrics});
+  }
+  for (const Closed& other : closed)
+    EXPECT_NEAR(other.energy, closed[0].energy, 0.02 * std::abs(closed[0].energy)) << other.solver;
+}
+
+TEST_P(ValveModels, ClosesBehindTheBarrierWithoutAnIntersectionOnTheWay) {
+  for (const char* solver : {"newton", "dynamic"}) {
+    const JudgedScene judged = solve_judged(valve("barrier", solver, 1e-6, is_sanitized() ? 200 : 625));
+    expect_contact_without_intersection(GetParam() + ", " + solver, judged);
+    EXPECT_LT(judged.metrics.orifice_area_mm2.value(), 0.02 * judged.metrics.annulus_area_mm2.value())
+        << solver;
   }
 }
 

@@ -76,22 +76,20 @@ class BackwardDifferences final : public TimeIntegrator {
            std::max(kEnough * objective_.relative_residual(now_.g), 0.1 * monitor_.tolerance());
   }
 
+  // From the symmetric part of the tangent, corrected for the skew one where that leads downhill too.
   bool find_direction() {
-    if (uses_conjugate_gradients_) return find_by_conjugate_gradients();
-    double shift = inertia_;
-    if (!hessian_.factorise(objective_, monitor_, now_.q, work_, shift)) return false;
-    PhaseTimer timer(monitor_.phases(), "direction");
-    work_ = -imbalance_;
-    hessian_.solve(work_, symmetric_);
+    if (!(uses_conjugate_gradients_ ? iterate_symmetric() : factorise_symmetric())) return false;
     direction_ = symmetric_;
-    if (objective_.has_skew_tangent())
+    if (objective_.has_skew_tangent()) {
+      PhaseTimer timer(monitor_.phases(), "direction");
       gmres_.solve(
           [this](const Vector& v, Vector& out) {
             work_.setZero();
             objective_.add_skew_product(v, work_);
-            hessian_.solve(work_, out);
+            solve_symmetric(work_, out);
           },
           symmetric_, kForcing, direction_);
+    }
     slope_ = imbalance_.dot(direction_);
     if (slope_ < 0) return true;
     direction_ = symmetric_;
@@ -99,16 +97,37 @@ class BackwardDifferences final : public TimeIntegrator {
     return slope_ < 0;
   }
 
-  // Of the projected Hessian, which is never indefinite, without its skew part.
-  bool find_by_conjugate_gradients() {
-    monitor_.hessian(now_.q, work_, matrix_, Projection::PositiveSemidefinite);
+  bool factorise_symmetric() {
+    double shift = inertia_;
+    if (!hessian_.factorise(objective_, monitor_, now_.q, work_, shift)) return false;
     PhaseTimer timer(monitor_.phases(), "direction");
-    matrix_.diagonal() += inertia_ * mass_;
-    conjugate_gradients_.setTolerance(kForcing);
-    conjugate_gradients_.compute(matrix_);
-    direction_ = conjugate_gradients_.solve(-imbalance_);
-    slope_ = imbalance_.dot(direction_);
-    return direction_.allFinite() && slope_ < 0;
+    work_ = -imbalance_;
+    solve_symmetric(work_, symmetric_);
+    return true;
+  }
+
+  // With the exact Hessian, unless it shows that it is not positive definite; then with the projected one.
+  bool iterate_symmetric() {
+    for (const Projection projection : {Projection::None, Projection::PositiveSemidefinite}) {
+      if (!std::isfinite(monitor_.hessian(now_.q, work_, matrix_, projection))) return false;
+      PhaseTimer timer(monitor_.phases(), "direction");
+      matrix_.diagonal() += inertia_ * mass_;
+      conjugate_gradients_.setTolerance(kForcing);
+      conjugate_gradients_.compute(matrix_);
+      work_ = -imbalance_;
+      solve_symmetric(work_, symmetric_);
+      if (symmetric_.allFinite() && imbalance_.dot(symmetric_) < 0 &&
+          conjugate_gradients_.info() == Eigen::Success)
+        return true;
+    }
+    return symmetric_.allFinite();
+  }
+
+  void solve_symmetric(const Vector& b, Vector& x) {
+    if (uses_conjugate_gradients_)
+      x = conjugate_gradients_.solve(b);
+    else
+      hessian_.solve(b, x);
   }
 
   // The potential of the step, whose gradient is imbalance_.

@@ -16,7 +16,14 @@ namespace {
 
 constexpr double kShorter = 0.25;    // after a step that failed
 constexpr double kShortest = 1e-12;  // of the first step
+constexpr double kMostApproach =
+    0.5;                        // of the distance of collisions, that a step may bring two nodes closer
 constexpr int kRestSteps = 50;  // at rest in a row, after which collisions hold what the objective does not
+
+// The largest of the nodes' vectors.
+double fastest(const Vector& unknowns) {
+  return unknowns.size() == 0 ? 0 : unknowns.reshaped(3, unknowns.size() / 3).colwise().norm().maxCoeff();
+}
 
 // The seeds' collisions, over unknowns.
 class CollisionHandling {
@@ -71,6 +78,7 @@ class SolverDynamic final : public Solver {
 
   std::string_view name() const override { return "dynamic"; }
   bool follows_path() const override { return true; }
+  bool is_at_rest() const override { return is_at_rest_; }
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
     const Vector mass = objective.unknowns(masses_.transpose().replicate<3, 1>());
@@ -79,7 +87,7 @@ class SolverDynamic final : public Solver {
     std::optional<CollisionHandling> collisions;
     if (surface_) collisions.emplace(options_, *surface_, objective, masses_);
     const double extent = objective.extent(q);
-    Motion at{q, Vector::Zero(q.size()), 0, Vector(), 0}, last;
+    Motion at{q, Vector::Zero(q.size()), 0, Vector(), 0};
     at.energy = monitor.gradient(at.q, at.g);
     double kinetic = 0, h = options_.time_step;
     int rest_steps = 0;
@@ -87,19 +95,13 @@ class SolverDynamic final : public Solver {
       h = std::min(h, integrator->next_step(h, at));
     while (true) {
       // The work that the tolerated force does along the scene.
-      const bool is_at_rest = kinetic <= monitor.tolerance() * objective.reference_force() * extent;
+      is_at_rest_ = kinetic <= monitor.tolerance() * objective.reference_force() * extent;
       const auto status = monitor.accept(at.q, at.energy + kinetic, at.g, at.time);
       if (status != Status::NonFinite) q = at.q;
-      if (status && (*status != Status::Converged || is_at_rest)) return *status;
-      rest_steps = is_at_rest && at.time > 0 ? rest_steps + 1 : 0;
+      if (status && (*status != Status::Converged || is_at_rest_)) return *status;
+      rest_steps = is_at_rest_ && at.time > 0 ? rest_steps + 1 : 0;
       if (collisions && rest_steps >= kRestSteps) return Status::Stalled;
-      if (options_.has_kinetic_damping) last = at;
-      while (!integrator->step(h, at)) {
-        if (monitor.is_out_of_time()) return Status::TimeLimit;
-        if (!options_.adapts_steps || h < kShortest * options_.time_step) return Status::LineSearchFailed;
-        h *= kShorter;
-      }
-      if (options_.adapts_steps) h = std::min(integrator->next_step(h, at), options_.longest_step);
+      if (const Status step = advance(*integrator, monitor, h, at); step != Status::Converged) return step;
       if (collisions) {
         if (collisions->act(at)) integrator->restart();
         collisions->press_back(at, applied);
@@ -109,9 +111,9 @@ class SolverDynamic final : public Solver {
       if (options_.has_kinetic_damping && before > 0 && kinetic <= before) {
         // Back to the peak: velocities are half a step ahead of positions, and stopping them beyond it would
         // keep what fast oscillations have.
-        at.q = last.q;
-        at.g = last.g;
-        at.energy = last.energy;
+        at.q = last_.q;
+        at.g = last_.g;
+        at.energy = last_.energy;
         at.v.setZero();
         kinetic = 0;
         integrator->restart();
@@ -126,10 +128,36 @@ class SolverDynamic final : public Solver {
                : make_semi_implicit_euler(context, options_);
   }
 
+  // One step of h, or of the greatest shorter length that leads anywhere; h becomes that of the next.
+  // Converged: it was done.
+  Status advance(TimeIntegrator& integrator, Monitor& monitor, double& h, Motion& at) {
+    if (surface_ || options_.has_kinetic_damping) last_ = at;
+    while (true) {
+      if (integrator.step(h, at)) {
+        if (!surface_ || !options_.adapts_steps || approach(at) <= options_.collision_distance) break;
+        at = last_;  // what was far apart may have passed through each other
+        integrator.restart();
+      }
+      if (monitor.is_out_of_time()) return Status::TimeLimit;
+      if (!options_.adapts_steps || h < kShortest * options_.time_step) return Status::LineSearchFailed;
+      h *= kShorter;
+    }
+    if (options_.adapts_steps) h = std::min(integrator.next_step(h, at), options_.longest_step);
+    const double speed = surface_ ? 2 * fastest(at.v) : 0;
+    if (speed > 0 && options_.adapts_steps)
+      h = std::min(h, kMostApproach * options_.collision_distance / speed);
+    return Status::Converged;
+  }
+
+  // The most that two nodes can have come closer in the last step.
+  double approach(const Motion& at) const { return 2 * fastest(at.q - last_.q); }
+
   DynamicOptions options_;
   FactorisationFactory factorisation_;
   Vector masses_;                        // of each node
   std::optional<TriangleMesh> surface_;  // where collisions are looked for
+  Motion last_;                          // before the last step; only of those who look back
+  bool is_at_rest_ = true;
 };
 
 }  // namespace
