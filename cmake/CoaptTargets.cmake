@@ -35,3 +35,13 @@ function(coapt_precompile target)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
 endfunction()
+
+# Target docs: the site in docs/html of the build tree, by the same script as without CMake.
+function(coapt_docs_target)
+  find_program(COAPT_DOXYGEN doxygen)
+  if(COAPT_DOXYGEN)
+    add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E env COAPT_DOCS_INSTALLED=yes
+                           ${PROJECT_SOURCE_DIR}/scripts/docs ${PROJECT_BINARY_DIR}/docs
+                      USES_TERMINAL VERBATIM)
+  endif()
+endfunction()
