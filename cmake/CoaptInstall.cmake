@@ -69,4 +69,6 @@ if(TARGET coapt_command)
   install(FILES ${PROJECT_SOURCE_DIR}/schema/scene.schema.json ${PROJECT_SOURCE_DIR}/schema/result.schema.json
           DESTINATION ${CMAKE_INSTALL_DATADIR}/coapt/schema COMPONENT command)
 endif()
-include(CoaptDebian)
+if(coapt_type STREQUAL "STATIC_LIBRARY")
+  include(CoaptDebian)  # a shared library would want a package of its own beside the one for development
+endif()

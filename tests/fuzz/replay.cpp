@@ -1,7 +1,7 @@
 // Runs a target on every file of its corpus and on damaged copies of them, without a fuzzing engine.
 //   fuzz_NAME FOLDER COUNT [FIRST]     COUNT damaged copies, from number FIRST on
 //   fuzz_NAME FILE                     one input, as an engine left it
-// The input that is running lies in fuzz_NAME.input; it stays there when the process dies of it.
+// The input that is running lies in fuzz_NAME.FIRST.input; it stays there when the process dies of it.
 #include "core/error.hpp"
 #include "fuzz/damage.hpp"
 #include "fuzz/fuzz_target.hpp"
@@ -90,5 +90,6 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto number = [&](int k) { return argc > k ? std::strtoul(argv[k], nullptr, 10) : 0; };
-  return replay(fs::path(argv[0]).filename().string() + ".input", argv[1], number(2), number(3));
+  const std::string keep = fs::path(argv[0]).filename().string() + "." + std::to_string(number(3)) + ".input";
+  return replay(keep, argv[1], number(2), number(3));
 }
