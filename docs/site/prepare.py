@@ -93,6 +93,13 @@ def anchor(path: pathlib.Path, slug: str) -> str:
     return f"{page}-{slug}"
 
 
+def plain(line: str) -> str:
+    """A line of a page in which nothing outside of backticks is a command or a tag to Doxygen."""
+    parts = line.split("`")
+    parts[::2] = [re.sub(r"(?=[@\\]\w|</?\w)", r"\\", part) for part in parts[::2]]
+    return "`".join(parts)
+
+
 def page_text(path: pathlib.Path, text: str) -> str:
     names = iter(headings(text))
 
@@ -112,7 +119,7 @@ def page_text(path: pathlib.Path, text: str) -> str:
         if is_code:
             out.append(line)
             continue
-        line = LINK.sub(rewritten, line)
+        line = LINK.sub(rewritten, plain(line))
         if re.match(r"#{1,6} ", line):
             slug = next(names)
             line = f"{line} {{#{anchor(path, 'page' if first else slug)}}}"

@@ -67,5 +67,14 @@ class Headers(unittest.TestCase):
         self.assertIn("/// @code{.unparsed}\n///   W = a_b\n/// @endcode\n/// of it.", text)
 
 
+class Pages(unittest.TestCase):
+    def test_links_lead_to_anchors_of_the_site_and_nothing_else_is_a_command(self):
+        page = prepare.ROOT / "docs/units.md"
+        text = prepare.page_text(page, "# Units @x\n[s](scene.md#mesh) [l](../LICENSE) <b> `<c> @d`\n```\n@e <f>\n```\n")
+        self.assertIn("# Units \\@x {#docs-units-page}", text)
+        self.assertIn("[s](@ref docs-scene-mesh) l (<tt>LICENSE</tt>) \\<b> `<c> @d`", text)
+        self.assertIn("```\n@e <f>\n```", text)
+
+
 if __name__ == "__main__":
     unittest.main()
