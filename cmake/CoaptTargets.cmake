@@ -14,7 +14,9 @@ function(coapt_library target)
   cmake_parse_arguments(ARG "" "EXPORT_AS" "" ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${ARG_EXPORT_AS}
-                                             POSITION_INDEPENDENT_CODE ON)
+                                             POSITION_INDEPENDENT_CODE ON
+                                             VERSION ${PROJECT_VERSION}
+                                             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src)
   coapt_warnings(${target})
 endfunction()
@@ -33,5 +35,15 @@ endfunction()
 function(coapt_precompile target)
   if(COAPT_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# Target docs: the site in docs/html of the build tree, by the same script as without CMake.
+function(coapt_docs_target)
+  find_program(COAPT_DOXYGEN doxygen)
+  if(COAPT_DOXYGEN)
+    add_custom_target(docs COMMAND ${CMAKE_COMMAND} -E env COAPT_DOCS_INSTALLED=yes
+                           ${PROJECT_SOURCE_DIR}/scripts/docs ${PROJECT_BINARY_DIR}/docs
+                      USES_TERMINAL VERBATIM)
   endif()
 endfunction()

@@ -214,6 +214,23 @@ TEST(OffReader, RefusesLinesBehindItsCounts) {
   EXPECT_TRUE(defects_of(scratch.file("b.off", "OFF\n4 1 0\n" + vertices + "3 0 1 2\n\n# end\n")).empty());
 }
 
+TEST(PlyReader, RefusesWhatStandsBehindItsCounts) {
+  const ScratchFolder scratch;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(read_mesh(scratch.file("a.ply", head + "\n \n")).mesh.triangle_count(), 1);
+  EXPECT_TRUE(mentions(defects_of(scratch.file("a.ply", head + "\n3 0 2 1\n")),
+                       "line 15: stands behind the elements announced"));
+  TriangleMesh mesh = read_mesh(scratch.file("a.ply", head)).mesh;
+  write_mesh(scratch.path("b.ply"), mesh, MeshCoding::Binary);
+  std::ifstream file(scratch.path("b.ply"), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(read_mesh(scratch.file("c.ply", bytes + "\n")).mesh.triangle_count(), 1);
+  EXPECT_TRUE(mentions(defects_of(scratch.file("c.ply", bytes + std::string(13, 'x'))),
+                       "13 bytes stand behind the elements announced"));
+}
+
 TEST(PlyReader, RefusesCornersThatAreNoWholeNumbers) {
   const ScratchFolder scratch;
   const std::string head =

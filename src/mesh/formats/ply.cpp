@@ -36,6 +36,7 @@ class PlyReader {
         if (is_face && ok_) add_face(i);
       }
     }
+    check_end();
     if (!has_regions_) return builder_.finish();
     std::vector<std::string> names = header_.region_names;
     for (const int region : regions_)
@@ -141,6 +142,20 @@ class PlyReader {
   [[noreturn]] void fail_at_end(const PlyElement& element, long long i) {
     defects_.fail("the file ends in " + element.name + " " + std::to_string(i) + " of " +
                   std::to_string(element.count));
+  }
+
+  // What is left over belongs to no element: the counts are wrong. Blanks mean nothing.
+  void check_end() {
+    if (header_.coding != PlyCoding::Ascii) {
+      if (!trimmed(rest_).empty())
+        defects_.add(std::to_string(rest_.size()) +
+                     " bytes stand behind the elements announced; correct the counts");
+      return;
+    }
+    for (std::string_view line; lines_.next(line);)
+      if (!trimmed(line).empty())
+        return defects_.add("line", header_.line_count + lines_.number(),
+                            "stands behind the elements announced; correct the counts");
   }
 
   static constexpr double kMostRegions = 10000;

@@ -1,0 +1,173 @@
+"""The Debian packages of a build tree, installed into an empty root and used there.
+
+    debian_test.py BUILD CPACK CONSUMER.cpp COMPILER
+
+Proved: CPack packs what the build tree holds without building; dpkg itself unpacks and configures the packages in
+a fresh root, where the database of this machine stands for the dependencies, so that an unmet one is an error;
+licences are apart; every library that the command loads belongs to a package that it depends on; the command
+generates and solves a valve with no files but those (as root: in a chroot); a project is compiled by pkg-config alone.
+"""
+import functools
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD, CPACK, CONSUMER, COMPILER = (pathlib.Path(p) for p in sys.argv[1:5])
+IS_ROOT = os.geteuid() == 0
+STATUS = pathlib.Path("/var/lib/dpkg/status")
+
+
+def run(*command, **options) -> str:
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def names_in(relation: str) -> list[str]:
+    return [re.split(r"[ (:]", choice.strip())[0] for part in relation.split(",") for choice in part.split("|")
+            if choice.strip()]
+
+
+@functools.cache
+def installed() -> dict[str, list[str]]:
+    """Package -> what it depends on, of this machine; names that others provide count as packages too."""
+    table: dict[str, list[str]] = {}
+    lines = run("dpkg-query", "-W", "-f", "${Package}\t${Depends}, ${Pre-Depends}\t${Provides}\n").splitlines()
+    for package, depends, provides in (line.split("\t") for line in lines):
+        table[package] = names_in(depends)
+        for name in names_in(provides):
+            table.setdefault(name, []).append(package)
+    return table
+
+
+def closure(packages: list[str]) -> set[str]:
+    found, wanted = set(), list(packages)
+    while wanted:
+        name = wanted.pop()
+        if name not in found:
+            found.add(name)
+            wanted += installed().get(name, [])
+    return found
+
+
+def owner(library: str) -> str:
+    """The package of a library; merged /usr has two names for one file."""
+    real = os.path.realpath(library)
+    for path in (library, real, real.removeprefix("/usr"), library.removeprefix("/usr"), "/usr" + library):
+        found = subprocess.run(["dpkg-query", "-S", path], capture_output=True, text=True)
+        if found.returncode == 0:
+            return found.stdout.split(":")[0]
+    raise AssertionError(f"{library} belongs to no package")
+
+
+class DebianPackages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="coapt-packages-")
+        folder = pathlib.Path(cls.folder.name)
+        before = (BUILD / "bin/coapt").stat().st_mtime
+        run(CPACK, "-G", "DEB", "--config", BUILD / "CPackConfig.cmake", "-B", folder / "packages")
+        assert (BUILD / "bin/coapt").stat().st_mtime == before, "packing has built something"
+        cls.files = {p.name.split("_")[0]: p for p in (folder / "packages").glob("*.deb")}
+        cls.root = folder / "root"
+        database = cls.root / "var/lib/dpkg"
+        for name in ("info", "updates", "triggers"):
+            (database / name).mkdir(parents=True)
+        shutil.copy(STATUS, database / "status")
+        as_user = [] if IS_ROOT else ["--force-not-root"]
+        # Not the lists of files: the database says that dependencies are there, the root does not hold them.
+        environment = os.environ | {"PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
+        run("dpkg", f"--root={cls.root}", "--log=/dev/null", *as_user, "--install", *cls.files.values(),
+            env=environment)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_is_installed_and_configured(self):
+        for package in self.files:
+            state = run("dpkg-query", f"--admindir={self.root}/var/lib/dpkg", "-W", "-f", "${Status}", package)
+            self.assertEqual(state, "install ok installed", package)
+
+    def test_licences_are_apart(self):
+        for package, file in self.files.items():
+            depends = run("dpkg-deb", "-f", file, "Depends")
+            copyright_text = (self.root / "usr/share/doc" / package / "copyright").read_text()
+            licence = re.search(r"Licence of this package: (.*)\.", copyright_text)[1]
+            self.assertIn("Redistribution and use in source and binary forms", copyright_text)
+            if package == "libcoapt-dev":
+                self.assertEqual(licence, "BSD-3-Clause")
+                self.assertIsNone(re.search("ceres|cgal|nlopt|suitesparse|cholmod", depends), depends)
+            elif package == "coapt":
+                self.assertIn(f"Licence: {licence}\n", run(self.root / "usr/bin/coapt", "--version") + "\n")
+            else:
+                self.assertRegex(licence, r"^(GPL-.* as a whole|BSD-3-Clause \(with LGPL-)")
+                self.assertIn("libcoapt-dev (= ", depends)
+
+    def test_no_file_is_in_two_packages_and_none_outside_usr(self):
+        seen: dict[str, str] = {}
+        for package, file in self.files.items():
+            for line in run("dpkg-deb", "-c", file).splitlines():
+                mode, path = line.split()[0], line.split()[5]
+                if mode.startswith("d"):
+                    continue
+                self.assertTrue(path.startswith("./usr/"), path)
+                self.assertNotIn(path, seen)
+                seen[path] = package
+
+    def libraries(self) -> list[str]:
+        found = []
+        for line in run("ldd", self.root / "usr/bin/coapt").splitlines():
+            path = re.search(r"(/\S+) \(0x", line)
+            if path:
+                found.append(path[1])
+        return found
+
+    def test_every_library_comes_from_a_dependency(self):
+        allowed = closure(names_in(run("dpkg-deb", "-f", self.files["coapt"], "Depends")))
+        for library in self.libraries():
+            self.assertIn(owner(library), allowed, library)
+        self.assertNotRegex(run("readelf", "-d", self.root / "usr/bin/coapt"), "R(UN)?PATH")
+
+    def test_solves_a_generated_valve_in_the_clean_root(self):
+        coapt = [self.root / "usr/bin/coapt"]
+        place = self.root / "valve"
+        inside = place
+        if IS_ROOT:
+            for library in self.libraries():
+                copy = self.root / library.lstrip("/")
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(library, copy)
+            coapt, inside = ["chroot", self.root, "/usr/bin/coapt"], pathlib.Path("/valve")
+        run(*coapt, "generate", "mitral", "--triangles", "300", "-o", inside)
+        run(*coapt, "solve", inside / "scene.json", "--max-seconds", "100")
+        result = json.loads((place / "result/result.json").read_text())
+        self.assertEqual(result["status"], "converged")
+        self.assertLess(result["residual"], 1e-8)
+        self.assertGreater(result["metrics"]["annulus_area_mm2"], 10 * result["metrics"]["orifice_area_mm2"])
+
+    def test_serves_a_project_through_pkg_config(self):
+        if not shutil.which("pkg-config"):
+            self.skipTest("pkg-config is not installed")
+        paths = [str(p) for p in self.root.glob("usr/lib/**/pkgconfig")]
+        environment = os.environ | {"PKG_CONFIG_PATH": ":".join(paths)}
+        flags = run("pkg-config", "--cflags", "--libs", "coapt", env=environment).split()
+        self.assertIn("-lcoapt", flags)
+        program = pathlib.Path(self.folder.name) / "consumer"
+        run(COMPILER, "-std=c++20", "-O1", CONSUMER, "-o", program, *flags)
+        self.assertIn("theory", run(program))
+        for package in self.files:
+            if match := re.fullmatch(r"lib(coapt-\w+)-dev", package):
+                libraries = run("pkg-config", "--libs", match[1], env=environment).split()
+                self.assertLess(libraries.index(f"-l{match[1].replace('-', '_')}"), libraries.index("-lcoapt"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
