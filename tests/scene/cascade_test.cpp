@@ -9,6 +9,7 @@
 #include "scene/run.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/thinning.hpp"
+#include "support/sanitized.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,7 @@ class CascadeTest : public testing::Test {
 };
 
 TEST_F(CascadeTest, FindsTheEquilibriumOfTheDirectSolve) {
+  if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
   Scene scene = this->scene();
   RunOptions options;
   options.writes = false;
@@ -72,6 +74,7 @@ TEST_F(CascadeTest, FindsTheEquilibriumOfTheDirectSolve) {
 }
 
 TEST_F(CascadeTest, ItsMotionEndsWhereTheDirectOneEnds) {
+  if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
   const std::string lifted = R"([{"nodes": "boundary", "move_to": {"translate": [0, 1, 3]}}])";
   const Scene scene = this->scene(R"({"type": "load_pressure", "value": "1 kPa"})", lifted);
   const CascadeOutcome moved = solve(scene, lbfgs);
