@@ -40,10 +40,12 @@ double tighter(double tolerance, double error_mm, double wanted_mm) {
 
 class Search {
  public:
-  Search(const Scene& scene, const SolverTable& solvers, double wanted_mm, const RunOptions& options)
+  Search(const Scene& scene, const SolverTable& solvers, double wanted_mm, const RunOptions& options,
+         int most_triangles)
       : scene_(scene),
         setup_(solve_setup(scene, solvers, options)),
         going_on_(solve_setup(scene, solvers, refining(solvers, options))),
+        most_triangles_(most_triangles),
         most_seconds_(setup_.stop.max_seconds) {
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
     estimate.wanted_mm = wanted_mm;
@@ -57,7 +59,7 @@ class Search {
     SolvedMesh mesh = tightened(solved(0));
     std::vector<DistanceFigures> distances;
     while (mesh.has_converged() && estimate.algebraic_mm) {
-      if (4L * mesh.model.mesh.triangle_count() > kMostTriangles) break;
+      if (4L * mesh.model.mesh.triangle_count() > most_triangles_) break;
       const TriangleMesh coarser = mesh.closed();
       SolvedMesh finer = solved(mesh.cuts + 1);
       if (!finer.has_converged()) return finer;
@@ -140,6 +142,7 @@ class Search {
 
   const Scene& scene_;
   SolveSetup setup_, going_on_;
+  int most_triangles_;
   double most_seconds_, start_ = wall_seconds();
   std::list<Groundwork> grounds_;  // the scene's own first; the others refer to it
 };
@@ -171,9 +174,9 @@ std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) 
 }  // namespace
 
 RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
-                          const RunOptions& options) {
+                          const RunOptions& options, int most_triangles) {
   check(scene, wanted_mm, options);
-  Search search(scene, solvers, wanted_mm, options);
+  Search search(scene, solvers, wanted_mm, options, most_triangles);
   RunReport run;
   if (options.writes) {
     run.folder = options.folder.empty() ? result_folder(scene) : options.folder;

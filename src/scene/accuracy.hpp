@@ -15,7 +15,6 @@ namespace coapt {
 // InputError for bad input as run() does: a wanted accuracy that is no positive number, a scene without a
 // mesh, options that choose a tolerance or frames.
 RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
-                          const RunOptions& options);
-inline constexpr int kMostTriangles = 200000;
+                          const RunOptions& options, int most_triangles = 200000);
 
 }  // namespace coapt
