@@ -22,6 +22,7 @@ constexpr double kGoingOn = 1e-2;        // of the residual, to see how far the 
 constexpr double kRoundOff = 1e-12;      // residual below which nothing is gained
 constexpr double kClearlySmaller = 0.5;  // a residual that tells how far the shape still goes
 constexpr int kMostTightenings = 4;
+constexpr int kMostRefinements = 200;  // iterates of newton; at round-off it would go on for long
 
 struct SolvedMesh {
   size_t cuts = 0;
@@ -47,6 +48,8 @@ class Search {
         going_on_(solve_setup(scene, solvers, refining(solvers, options))),
         most_triangles_(most_triangles),
         most_seconds_(setup_.stop.max_seconds) {
+    if (going_on_.solver == kRefiningSolver)
+      going_on_.stop.max_iterations = std::min(going_on_.stop.max_iterations, kMostRefinements);
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
     estimate.wanted_mm = wanted_mm;
     estimate.tolerance = kFirstTolerance;

@@ -11,6 +11,9 @@
 namespace coapt {
 namespace {
 
+// Iterates of newton from a method's last shape to the equilibrium; at round-off it would go on for long.
+constexpr int kMostRefinements = 200;
+
 // Of all that errors are measured on: the mesh, or all nodes where there is none.
 Points measured(const Groundwork& ground, const Points& x) {
   const Model& model = ground.model;
@@ -44,26 +47,25 @@ RunOptions run_options(const BenchCourse& course, const std::string& solver, dou
   return options;
 }
 
-SolveSetup refining_setup(const BenchCourse& course, const Scene& scene, const std::string& method) {
-  const bool has_newton = course.solvers.contains(kRefiningSolver);
-  return solve_setup(scene, course.solvers,
-                     run_options(course, has_newton ? kRefiningSolver : solver_of(method), kEquilibrium));
+std::string refining_solver(const BenchCourse& course, const std::string& method) {
+  return course.solvers.contains(kRefiningSolver) ? kRefiningSolver : solver_of(method);
 }
 
-Equilibrium judged(const Result& result, const Model& model, Benchmark& found) {
-  found.is_cancelled = result.status == Status::Cancelled;
-  const bool is_found = result.status != Status::Cancelled &&
-                        result.residual <= std::max(kEquilibrium, found.tolerances.back());
-  return {is_found, model.objective->positions(result.q), result.residual};
-}
-
-// Where newton goes on to from a shape; from a saddle it stays at the saddle.
+// Where newton, or where the build has none the method, goes on to from a shape; from a saddle it stays
+// there.
 Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const Groundwork& ground,
                              const Points& x, const std::string& method, Benchmark& found) {
-  SolveSetup setup = refining_setup(course, scene, method);
+  const std::string solver = refining_solver(course, method);
+  SolveSetup setup = solve_setup(scene, course.solvers, run_options(course, solver, kEquilibrium));
   setup.stability = {};
+  if (solver == kRefiningSolver)
+    setup.stop.max_iterations = std::min(setup.stop.max_iterations, kMostRefinements);
   Model model = build(scene, ground);
-  return judged(solve_again(x, model, setup), model, found);
+  const Result result = solve_again(x, model, setup);
+  found.is_cancelled = result.status == Status::Cancelled;
+  const bool is_found =
+      !found.is_cancelled && result.residual <= std::max(kEquilibrium, found.tolerances.back());
+  return {is_found, model.objective->positions(result.q), result.residual};
 }
 
 BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tolerance) {
@@ -160,9 +162,16 @@ Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size
 
 Equilibrium equilibrium_from_start(const BenchCourse& course, const Groundwork& ground, Benchmark& found) {
   try {
-    const SolveSetup setup = refining_setup(course, course.scene, found.methods.front().name);
+    const std::string& method = found.methods.front().name;
+    const SolveSetup setup =
+        solve_setup(course.scene, course.solvers,
+                    run_options(course, refining_solver(course, method), found.tolerances.back()));
     Model model = build(course.scene, ground);
-    return judged(solve_scene(course.scene, ground, model, setup).result, model, found);
+    const Result result = solve_scene(course.scene, ground, model, setup).result;
+    found.is_cancelled = result.status == Status::Cancelled;
+    if (result.status != Status::Converged) return {};
+    return equilibrium_near(course, course.scene, ground, model.objective->positions(result.q), method,
+                            found);
   } catch (const InputError&) {
     return {};  // a finer mesh that cannot be solved leaves the errors of the others unknown
   }
