@@ -18,15 +18,14 @@ constexpr int kMostLevels = 4;
 void check_options(const Scene& scene, const SolverTable& solvers, const BenchOptions& options) {
   std::vector<std::string> defects;
   check_methods(scene, solvers, {options.methods, options.reference, options.closed}, defects);
-  if (options.tolerances.empty()) defects.emplace_back("--tolerances: none is named");
-  for (const double tolerance : options.tolerances) {
-    if (!(tolerance > 0 && tolerance <= 1))
-      defects.emplace_back(
-          "--tolerances: each must be above 0 and at most 1, a residual relative to the largest force");
-    if (std::count(options.tolerances.begin(), options.tolerances.end(), tolerance) > 1)
-      defects.emplace_back("--tolerances: one is named twice");
-  }
-  defects.erase(std::unique(defects.begin(), defects.end()), defects.end());
+  const std::vector<double>& tolerances = options.tolerances;
+  if (tolerances.empty()) defects.emplace_back("--tolerances: none is named");
+  if (!std::all_of(tolerances.begin(), tolerances.end(), [](double t) { return t > 0 && t <= 1; }))
+    defects.emplace_back(
+        "--tolerances: each must be above 0 and at most 1, a residual relative to the largest force");
+  if (std::any_of(tolerances.begin(), tolerances.end(),
+                  [&](double t) { return std::count(tolerances.begin(), tolerances.end(), t) > 1; }))
+    defects.emplace_back("--tolerances: one is named twice");
   if (options.repeats < 1) defects.emplace_back("--repeats: each run is made at least once");
   if (options.levels < 0 || options.levels > kMostLevels)
     defects.push_back("--levels: between 0 and " + std::to_string(kMostLevels));
