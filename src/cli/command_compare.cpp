@@ -3,7 +3,6 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "mesh/formats/text.hpp"
 #include "scene/comparison_report.hpp"
 
 #include <CLI/CLI.hpp>
@@ -26,17 +25,6 @@ std::vector<std::string> usual_methods(const std::vector<std::string>& known) {
   for (const char* name : {"newton", "lbfgs", "dynamic", "mass-spring", "xpbd"})
     if (std::find(known.begin(), known.end(), name) != known.end()) methods.emplace_back(name);
   return methods;
-}
-
-// "newton, lbfgs" as a list.
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> all;
-  for (size_t from = 0; from != std::string::npos;) {
-    const size_t comma = names.find(',', from);
-    all.emplace_back(formats::trimmed(std::string_view(names).substr(from, comma - from)));
-    from = comma == std::string::npos ? comma : comma + 1;
-  }
-  return all;
 }
 
 void print_cell(const std::optional<double>& value, const char* format, int width) {
@@ -93,7 +81,7 @@ void compare(const Arguments& arguments, int& exit_code) {
   run.folder = arguments.folder;
   ComparisonOptions options;
   options.methods =
-      arguments.methods.empty() ? usual_methods(known_methods(solvers)) : split(arguments.methods);
+      arguments.methods.empty() ? usual_methods(known_methods(solvers)) : comma_list(arguments.methods);
   options.reference = arguments.reference;
   options.closed = arguments.closed;
   const bool has_closed = scene.closed_surface.has_value() || !arguments.closed.empty();

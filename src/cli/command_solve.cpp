@@ -3,7 +3,9 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "scene/run.hpp"
+#include "core/error.hpp"
+#include "scene/accuracy.hpp"
+#include "scene/units.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -17,7 +19,7 @@ namespace coapt::cli {
 namespace {
 
 struct Arguments {
-  std::string scene, folder, solver;
+  std::string scene, folder, solver, accuracy;
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
 };
@@ -41,6 +43,15 @@ void print_certificate(const Certificate& certificate) {
   std::printf("  %-22s", "smallest eigenvalues");
   for (const double value : certificate.stability.smallest) std::printf(" %.4g", value);
   std::printf(" N/mm\n");
+}
+
+// A length as the user wrote it, "0.1mm" [mm].
+double wanted_accuracy(const std::string& text) {
+  try {
+    return quantity_value(text, kLength);
+  } catch (const InputError& error) {
+    throw InputError("--accuracy: " + std::string(error.what()));
+  }
 }
 
 void print_summary(const RunReport& run) {
@@ -72,6 +83,7 @@ void print_summary(const RunReport& run) {
   print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
   if (report.reference) print_reference(both_directions(*report.reference));
+  if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::string files;
   for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;
@@ -90,6 +102,9 @@ void add_solve_command(CLI::App& app, int& exit_code) {
   const auto* tolerance =
       command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
           ->check(positive_defect);
+  command->add_option("--accuracy", arguments->accuracy,
+                      "Choose mesh and tolerance for this error of the closed shape, such as 0.1mm: cuts the "
+                      "triangles into four until the estimate is small enough");
   const auto* seconds =
       command
           ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")
@@ -114,10 +129,16 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     options.factorisations = all_factorisations();
     options.judge = intersection_judge();
     options.observer = make_observer();
-    const RunReport report = run(load_scene(arguments->scene), all_solvers(), options);
+    const Scene scene = load_scene(arguments->scene);
+    const RunReport report =
+        arguments->accuracy.empty()
+            ? run(scene, all_solvers(), options)
+            : run_to_accuracy(scene, all_solvers(), wanted_accuracy(arguments->accuracy), options);
     end_progress();
     print_summary(report);
-    exit_code = report.report.result.status == Status::Converged ? kConverged : kNotConverged;
+    const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
+    const bool is_good = is_reached && report.report.result.status == Status::Converged;
+    exit_code = is_good ? kConverged : kNotConverged;
   });
 }
 

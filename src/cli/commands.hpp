@@ -19,5 +19,6 @@ void add_sensitivity_command(CLI::App& app, int& exit_code);
 void add_mesh_study_command(CLI::App& app, int& exit_code);
 void add_tune_regions_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
+void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace coapt::cli

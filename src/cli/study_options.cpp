@@ -31,6 +31,16 @@ std::string positive_defect(const std::string& text) {
   return number > 0 ? "" : "expected a number above 0, read " + text;
 }
 
+std::vector<std::string> comma_list(const std::string& text) {
+  std::vector<std::string> all;
+  for (size_t from = 0; from != std::string::npos;) {
+    const size_t comma = text.find(',', from);
+    all.emplace_back(formats::trimmed(std::string_view(text).substr(from, comma - from)));
+    from = comma == std::string::npos ? comma : comma + 1;
+  }
+  return all;
+}
+
 void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
   command.add_option("-o,--output", arguments.folder,

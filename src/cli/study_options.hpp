@@ -4,6 +4,7 @@
 #include "scene/run.hpp"
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -22,6 +23,9 @@ struct StudyArguments {
 
 // For a number given as an option: empty, or what is wrong with it. CLI11's own checks let NaN pass.
 std::string positive_defect(const std::string& text);
+
+// "newton, lbfgs" as a list.
+std::vector<std::string> comma_list(const std::string& text);
 
 // SCENE, -o, --tolerance, --max-seconds.
 void add_run_arguments(CLI::App& command, StudyArguments& arguments);

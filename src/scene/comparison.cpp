@@ -3,11 +3,9 @@
 #include "core/error.hpp"
 #include "mesh/vtp_writer.hpp"
 #include "scene/build.hpp"
+#include "scene/detail/method_list.hpp"
 #include "scene/detail/method_verdict.hpp"
-#include "scene/mass_spring_scene.hpp"
 #include "scene/result_surfaces.hpp"
-#include "scene/suggestion.hpp"
-#include "scene/term_types.hpp"
 
 #include <algorithm>
 #include <system_error>
@@ -17,62 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMassSpring = "mass-spring";
-constexpr const char* kMassSpringSolver = "dynamic";
-constexpr const char* kConstraintSolver = "xpbd";
-constexpr const char* kRefiningSolver = "newton";
 constexpr double kRefinement = 1e-3;       // of the tolerance, to tell two branches from a loose tolerance
 constexpr double kLeastTolerance = 1e-10;  // that refining asks for
-
-MethodModel model_of(const std::string& method, const Scene& scene) {
-  if (method == kMassSpring) return has_springs_alone(scene) ? MethodModel::Scene : MethodModel::Springs;
-  return method == kConstraintSolver ? MethodModel::Constraints : MethodModel::Scene;
-}
-
-// Defects of the list of methods, each method once.
-void check_methods(const std::vector<std::string>& methods, const std::vector<std::string>& known,
-                   std::vector<std::string>& defects) {
-  if (methods.empty()) defects.push_back("--methods: none is named; there are: " + listed(known));
-  for (size_t k = 0; k < methods.size(); ++k) {
-    if (std::find(known.begin(), known.end(), methods[k]) == known.end())
-      defects.push_back("--methods: \"" + methods[k] + "\" is not known" + suggestion(methods[k], known) +
-                        "; this build has: " + listed(known));
-    const auto here = methods.begin() + static_cast<std::ptrdiff_t>(k);
-    if (std::find(methods.begin(), here, methods[k]) != here)
-      defects.push_back("--methods: \"" + methods[k] + "\" is named twice");
-  }
-}
-
-void check_closed(const Scene& scene, const fs::path& closed, std::vector<std::string>& defects) {
-  std::error_code error;
-  if (closed.empty()) return;
-  if (!fs::is_regular_file(closed, error))
-    defects.push_back("--closed: file " + closed.string() + " not found; give a surface (.obj, .ply, ...)");
-  if (!scene.mesh)
-    defects.push_back("--closed: " + scene.file.string() + " has no mesh that could be compared with it");
-}
-
-// The methods in the order in which they are solved. Throws InputError.
-std::vector<std::string> reference_first(const Scene& scene, const SolverTable& solvers,
-                                         const ComparisonOptions& options) {
-  std::vector<std::string> methods = options.methods, defects;
-  check_methods(methods, known_methods(solvers), defects);
-  const std::string wanted = options.reference.empty() ? kRefiningSolver : options.reference;
-  const auto reference = std::find(methods.begin(), methods.end(), wanted);
-  if (reference == methods.end() && !options.reference.empty())
-    defects.push_back("--reference: \"" + wanted + "\" is not among the methods: " + listed(methods));
-  check_closed(scene, options.closed, defects);
-  if (!defects.empty()) throw InputError(defects);
-  if (reference != methods.end()) std::rotate(methods.begin(), reference, reference + 1);
-  return methods;
-}
-
-Scene with_closed_surface(Scene scene, const fs::path& closed) {
-  if (closed.empty()) return scene;
-  scene.closed_surface = closed;
-  scene.closed_surface_scale = scene.mesh->scale;
-  return scene;
-}
 
 double extent_of(const Model& model) {
   return bounding_box_diagonal(model.mesh.triangle_count() > 0 ? model.mesh.vertices : model.X);
@@ -81,12 +25,12 @@ double extent_of(const Model& model) {
 // Solves, measures and writes as `run` does for any scene.
 RunReport run_method(const Scene& scene, const std::string& method, const SolverTable& solvers,
                      RunOptions options) {
-  options.solver = method == kMassSpring ? kMassSpringSolver : method;
+  options.solver = solver_of(method);
   options.folder /= method;
   std::error_code ignored;
   // Where this one fails, that of an earlier comparison would be taken for its own.
   if (options.writes) fs::remove(options.folder / "result.json", ignored);
-  return run(method == kMassSpring ? mass_spring_scene(scene) : scene, solvers, options);
+  return run(scene_of(method, scene), solvers, options);
 }
 
 // How newton goes on from two shapes that a loose tolerance may have kept apart.
@@ -97,12 +41,6 @@ std::optional<SolveSetup> refining_setup(const Scene& scene, const SolverTable& 
   options.tolerance = std::min(tolerance, std::max(kRefinement * tolerance, kLeastTolerance));
   options.modes = 0;
   return solve_setup(scene, solvers, options);
-}
-
-std::string joined(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-  return all;
 }
 
 }  // namespace
@@ -146,17 +84,12 @@ bool Comparison::has_converged() const {
   });
 }
 
-std::vector<std::string> known_methods(const SolverTable& solvers) {
-  std::vector<std::string> known;
-  for (const auto& [name, factory] : solvers) known.push_back(name);
-  if (solvers.contains(kMassSpringSolver) && find_term_type("spring") != nullptr)
-    known.emplace_back(kMassSpring);
-  return known;
-}
-
 Comparison compare_methods(const Scene& given, const SolverTable& solvers, const ComparisonOptions& options,
                            const RunOptions& wanted) {
-  const std::vector<std::string> names = reference_first(given, solvers, options);
+  std::vector<std::string> defects;
+  check_methods(given, solvers, {options.methods, options.reference, options.closed}, defects);
+  if (!defects.empty()) throw InputError(defects);
+  const std::vector<std::string> names = reference_first(options.methods, options.reference);
   const Scene scene = with_closed_surface(given, options.closed);
   RunOptions run = wanted;
   if (run.folder.empty()) run.folder = result_folder(scene);
@@ -183,7 +116,7 @@ Comparison compare_methods(const Scene& given, const SolverTable& solvers, const
                   closed_surface(method.run->model, method.run->report.fields));
       judge_method(reference, method, kSameShape * found.extent_mm, refining);
     } catch (const InputError& error) {
-      method.message = joined(error.defects());
+      method.message = in_one_line(error);
     } catch (const std::exception& error) {
       method.message = error.what();
     }

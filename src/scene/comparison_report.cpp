@@ -3,29 +3,13 @@
 #include "core/components.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "scene/detail/comparison_json.hpp"
-#include "scene/detail/csv_text.hpp"
+#include "scene/detail/csv_row.hpp"
 #include "scene/detail/json_text.hpp"
 
 #include <cmath>
 
 namespace coapt {
 namespace {
-
-Json distance_json(const ReferenceDistance& distance) {
-  Json json = distances_json(both_directions(distance));
-  json["to_reference"] = distances_json(distance.to_reference);
-  json["from_reference"] = distances_json(distance.from_reference);
-  if (const auto& same = distance.same_vertex)
-    json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
-  return json;
-}
-
-Json gap_json(const MethodGap& gap) {
-  Json json = gap.surfaces ? distance_json(*gap.surfaces) : Json::object();
-  json["same_vertex"] = {{"mean_mm", number_json(gap.same_vertex.mean)},
-                         {"max_mm", number_json(gap.same_vertex.max)}};
-  return json;
-}
 
 Json refined_json(const RefinedPair& refined) {
   return {{"tolerance", refined.tolerance},
@@ -88,32 +72,6 @@ Json method_json(const ComparedMethod& method) {
   return json;
 }
 
-// A line of numbers, some of them not there.
-class Row {
- public:
-  explicit Row(std::ostream& out) : out_(out) {}
-  void text(const std::string& text) { cell() << csv_text(text); }
-  void count(long number) { cell() << number; }
-  void number(const std::optional<double>& value) {
-    cell();
-    if (value && std::isfinite(*value)) out_ << *value;
-  }
-  void distance(const DistanceFigures* figures) {
-    number(figures ? std::optional(figures->mean) : std::nullopt);
-    number(figures ? std::optional(figures->p95) : std::nullopt);
-    number(figures ? std::optional(figures->max) : std::nullopt);
-  }
-
- private:
-  std::ostream& cell() {
-    if (!is_first_) out_ << ',';
-    is_first_ = false;
-    return out_;
-  }
-  std::ostream& out_;
-  bool is_first_ = true;
-};
-
 constexpr const char* kHeader =
     "method,model,verdict,status,residual,energy_mj,iterations,gradients,factorisations,simulated_s,wall_s,"
     "cpu_s,intersections,mean_to_reference_mm,p95_to_reference_mm,max_to_reference_mm,same_vertex_mean_mm,"
@@ -147,6 +105,22 @@ void add_figures(const ComparedMethod& method, Row& row) {
 }
 
 }  // namespace
+
+Json distance_json(const ReferenceDistance& distance) {
+  Json json = distances_json(both_directions(distance));
+  json["to_reference"] = distances_json(distance.to_reference);
+  json["from_reference"] = distances_json(distance.from_reference);
+  if (const auto& same = distance.same_vertex)
+    json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
+  return json;
+}
+
+Json gap_json(const MethodGap& gap) {
+  Json json = gap.surfaces ? distance_json(*gap.surfaces) : Json::object();
+  json["same_vertex"] = {{"mean_mm", number_json(gap.same_vertex.mean)},
+                         {"max_mm", number_json(gap.same_vertex.max)}};
+  return json;
+}
 
 Json comparison_as_json(const Comparison& comparison) {
   Json json = {{"version", version()},

@@ -162,6 +162,30 @@ Json branch_changes() {
               "equilibria; told from the third step on");
 }
 
+Json accuracy(const Json& statuses) {
+  const Json solve =
+      object({{"triangles", count("of its mesh")},
+              {"tolerance", number("on the residual")},
+              {"status", described({{"enum", statuses}}, "how it ended")},
+              {"iterations", count("accepted iterates")},
+              {"wall_s", number("wall time [s]")},
+              {"cpu_s", number("CPU time [s]")},
+              {"distance_to_previous",
+               described({{"type", Json::array({"object", "null"})}},
+                         "from the closed surface on the mesh before: mean_mm, p95_mm, max_mm")}},
+             "one solve");
+  return object({{"wanted_mm", number("by --accuracy [mm]")},
+                 {"reached", flag("the estimate is no greater")},
+                 {"message", text("the same in one sentence")},
+                 {"total_mm", number("both errors together [mm]")},
+                 {"discretisation_mm", number("what the mesh leaves, for 95 % of the surface [mm]")},
+                 {"algebraic_mm", number("what the tolerance leaves, of the farthest vertex [mm]")},
+                 {"order", number("observed from mesh to mesh")},
+                 {"cuts", count("of every triangle of the scene's mesh into four")},
+                 {"solves", list(solve, "in the order in which they were made")}},
+                "mesh and tolerance that a wanted accuracy led to; errors of the model are not known to it");
+}
+
 Json counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
                  {"spring_elements", count("edge springs of membranes")},
@@ -212,6 +236,7 @@ std::string result_schema() {
               {"judge", text("who counted the intersections: cgal, or own exact predicates")},
               {"leaflets", leaflets(), Need::Optional},
               {"distance_to_reference", reference_distance(), Need::Optional},
+              {"accuracy", accuracy(statuses), Need::Optional},
               {"counters", counters()},
               {"solver", object({{"type", text("name of the solver")},
                                  {"tolerance", number("on the residual")},

@@ -143,6 +143,31 @@ Json levels_json(const std::vector<CascadeLevel>& levels) {
   return json;
 }
 
+Json accuracy_json(const AccuracyEstimate& accuracy) {
+  const auto optional = [](const std::optional<double>& value) {
+    return value ? number(*value) : Json(nullptr);
+  };
+  Json levels = Json::array();
+  for (const AccuracyLevel& level : accuracy.levels)
+    levels.push_back(
+        {{"triangles", level.triangles},
+         {"tolerance", number(level.tolerance)},
+         {"status", status_name(level.status)},
+         {"iterations", level.iterations},
+         {"wall_s", number(level.wall_s)},
+         {"cpu_s", number(level.cpu_s)},
+         {"distance_to_previous", level.to_previous ? figures_json(*level.to_previous) : Json(nullptr)}});
+  return {{"wanted_mm", number(accuracy.wanted_mm)},
+          {"reached", accuracy.is_reached},
+          {"message", accuracy.message},
+          {"total_mm", optional(accuracy.total_mm())},
+          {"discretisation_mm", optional(accuracy.discretisation_mm)},
+          {"algebraic_mm", optional(accuracy.algebraic_mm)},
+          {"order", optional(accuracy.order)},
+          {"cuts", accuracy.cuts},
+          {"solves", levels}};
+}
+
 Json branch_changes_json(const std::vector<BranchChange>& changes) {
   Json json = Json::array();
   for (const BranchChange& change : changes)
@@ -241,6 +266,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"judge", report.metrics.intersection_judge}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
+  if (report.accuracy) json["accuracy"] = accuracy_json(*report.accuracy);
   json["counters"] = counters_json(model, result);
   json["solver"] = {
       {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};

@@ -2,6 +2,7 @@
 // coaptation_line.vtp and orifice.vtp.
 #pragma once
 
+#include "scene/accuracy_estimate.hpp"
 #include "scene/cascade.hpp"
 #include "scene/metrics.hpp"
 #include "scene/reference_distance.hpp"
@@ -23,6 +24,7 @@ struct Report {
   Fields fields;
   Metrics metrics;
   std::optional<ReferenceDistance> reference;
+  std::optional<AccuracyEstimate> accuracy;  // where one was wanted
   std::vector<std::string> warnings;
   bool has_frames = false;  // of an animation, in the result folder
 };

@@ -2,6 +2,7 @@
 
 #include "optim/smallest_modes.hpp"
 #include "scene/build.hpp"
+#include "scene/detail/finish_run.hpp"
 #include "scene/frames.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/solve_scene.hpp"
@@ -12,6 +13,37 @@ namespace coapt {
 
 std::filesystem::path result_folder(const Scene& scene) {
   return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
+}
+
+void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, Report& report) {
+  report.scene_file = scene.file.filename().string();
+  report.solver = setup.solver;
+  report.tolerance = setup.stop.tolerance;
+  report.warnings = model.warnings;
+}
+
+void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run) {
+  const Model& model = run.model;
+  Report& report = run.report;
+  report.result = std::move(outcome.result);
+  report.levels = std::move(outcome.levels);
+  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+
+  const Result& result = report.result;
+  report.pressure_route = pressure_route(model, result);
+  report.fields = compute_fields(model, model.objective->positions(result.q));
+  report.metrics = measure(model, result.q, report.fields, options.judge);
+  report.reference = compare_with_reference(model, report.fields);
+  if (setup.stability.modes > 0 && !has_smallest_modes())
+    report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
+  const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);
+  if (2 * slack > lines)
+    report.warnings.push_back(std::to_string(slack) + " of " + std::to_string(lines) +
+                              " chords and cables are slack in the result: are their rest lengths right?");
+  if (report.metrics.intersections > 0)
+    report.warnings.push_back(std::to_string(report.metrics.intersections) +
+                              " pairs of facets pass through each other in the result.");
+  if (options.writes) write_results(run.folder, model, report);
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
@@ -38,32 +70,11 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
       };
     }
   }
-  report.scene_file = scene.file.filename().string();
-  report.solver = setup.solver;
-  report.tolerance = setup.stop.tolerance;
-  report.warnings = model.warnings;
+  begin_report(scene, setup, model, report);
   CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
   if (frames) frames->finish();
   report.has_frames = frames.has_value();
-  report.result = std::move(outcome.result);
-  report.levels = std::move(outcome.levels);
-  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
-
-  const Result& result = report.result;
-  report.pressure_route = pressure_route(model, result);
-  report.fields = compute_fields(model, model.objective->positions(result.q));
-  report.metrics = measure(model, result.q, report.fields, options.judge);
-  report.reference = compare_with_reference(model, report.fields);
-  if (setup.stability.modes > 0 && !has_smallest_modes())
-    report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
-  const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);
-  if (2 * slack > lines)
-    report.warnings.push_back(std::to_string(slack) + " of " + std::to_string(lines) +
-                              " chords and cables are slack in the result: are their rest lengths right?");
-  if (report.metrics.intersections > 0)
-    report.warnings.push_back(std::to_string(report.metrics.intersections) +
-                              " pairs of facets pass through each other in the result.");
-  if (options.writes) write_results(run.folder, model, report);
+  finish_run(setup, std::move(outcome), options, run);
   return run;
 }
 

@@ -1,10 +1,15 @@
-// The JSON of a comparison, for its file and for its page. Private to this room.
+// The JSON of a comparison, for its file and for its page, and of what a benchmark shares with it. Private to
+// this room.
 #pragma once
 
 #include "scene/comparison_report.hpp"
 #include "scene/detail/study_files.hpp"
 
 namespace coapt {
+
+// Both directions together, each by itself and, where it makes sense, between vertices of the same number.
+Json distance_json(const ReferenceDistance& distance);
+Json gap_json(const MethodGap& gap);
 
 Json comparison_as_json(const Comparison& comparison);
 

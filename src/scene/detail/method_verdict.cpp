@@ -28,12 +28,6 @@ Points compared_points(const Model& model, const Points& x) {
   return x.leftCols(count).colwise() + model.origin;
 }
 
-VertexDistance apart(const Points& a, const Points& b) {
-  if (a.cols() == 0) return {};
-  const Eigen::RowVectorXd distances = (a - b).colwise().norm();
-  return {distances.mean(), distances.maxCoeff()};
-}
-
 std::string energy_text(const Result& result) {
   return digits(result.energy, "%.9g") + " mJ (" +
          spaced(stability_name(result.certificate.stability.verdict)) + ")";
@@ -124,6 +118,12 @@ std::string gap_text(const MethodGap& gap) {
 }
 
 }  // namespace
+
+VertexDistance apart(const Points& a, const Points& b) {
+  if (a.cols() == 0) return {};
+  const Eigen::RowVectorXd distances = (a - b).colwise().norm();
+  return {distances.mean(), distances.maxCoeff()};
+}
 
 void measure_gap(const ComparedMethod& reference, ComparedMethod& method) {
   const Model &there = reference.run->model, &here = method.run->model;

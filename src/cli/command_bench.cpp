@@ -1,0 +1,169 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "core/error.hpp"
+#include "mesh/formats/text.hpp"
+#include "scene/benchmark_report.hpp"
+#include "scene/benchmark_summary.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : StudyArguments {
+  std::string methods = "newton,lbfgs,dynamic", tolerances = "1e-2,1e-4,1e-6,1e-8", reference, closed;
+  int levels = 1, repeats = 3;
+  bool prints_json = false;
+};
+
+std::vector<double> tolerance_list(const std::string& text) {
+  std::vector<double> tolerances;
+  std::vector<std::string> defects;
+  for (const std::string& word : comma_list(text)) {
+    double number = 0;
+    if (const auto reason = formats::read_number(word, number))
+      defects.push_back("--tolerances: " + *reason + "; give numbers with commas between them, 1e-2,1e-6");
+    tolerances.push_back(number);
+  }
+  if (!defects.empty()) throw InputError(defects);
+  return tolerances;
+}
+
+void print_number(const std::optional<double>& value) {
+  if (value)
+    std::printf(" %10.2e", *value);
+  else
+    std::printf(" %10s", "-");
+}
+
+void print_progress(const Benchmark& bench, const BenchRun& run) {
+  std::printf("  %-12s %-18s %8.0e  %-16s %10.4f s %6d iterations\n", bench.methods[run.method].name.c_str(),
+              mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance,
+              std::string(status_name(run.status)).c_str(), run.wall.median, run.iterations);
+  std::fflush(stdout);
+}
+
+void print_runs(const Benchmark& bench) {
+  std::printf("\n  %-12s %-18s %8s %10s %10s %10s %10s %10s %10s %8s\n", "errors in mm", "mesh", "tol.",
+              "algebraic", "mesh", "method", "model", "total", "CPU s", "MB");
+  for (const BenchRun& run : bench.runs) {
+    const RunErrors& errors = run.errors;
+    std::printf("  %-12s %-18s %8.0e", bench.methods[run.method].name.c_str(),
+                mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance);
+    print_number(error_of(run, ErrorKind::Algebraic));
+    print_number(errors.discretisation);
+    print_number(errors.method);
+    print_number(errors.model ? std::optional(errors.model->mean) : std::nullopt);
+    print_number(errors.total);
+    std::printf(" %10.4f", run.cpu.median);
+    if (run.peak_memory_mb) std::printf(" %8.1f", *run.peak_memory_mb);
+    std::printf("%s\n", run.status == Status::Converged ? "" : "  stopped early");
+  }
+}
+
+void print_times(const Benchmark& bench) {
+  std::printf("\n  %-12s %-18s", "seconds to", "");
+  for (const double mm : kAlgebraicAccuracies) std::printf(" %7g mm", mm);
+  std::printf("\n");
+  for (size_t method = 0; method < bench.methods.size(); ++method) {
+    const auto print = [&](const std::string& what, ErrorKind kind, const RunFilter& filter,
+                           auto accuracies) {
+      std::printf("  %-12s %-18s", bench.methods[method].name.c_str(), what.c_str());
+      for (const double mm : accuracies) {
+        const BenchRun* run = fastest_run(bench, kind, mm, filter);
+        print_number(run != nullptr ? std::optional(run->wall.median) : std::nullopt);
+      }
+      std::printf("\n");
+    };
+    print("in all", ErrorKind::Total, {.method = method}, kTotalAccuracies);
+    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh)
+      if (bench.meshes[mesh].is_benchmarked)
+        print(mesh_text(bench.meshes[mesh]), ErrorKind::Algebraic, {method, mesh}, kAlgebraicAccuracies);
+  }
+}
+
+void print_summary(const Benchmark& bench) {
+  print_runs(bench);
+  for (const BenchEnd& end : bench.ends)
+    if (!end.failure.empty())
+      std::printf("  %s failed: %s\n", bench.methods[end.method].name.c_str(), end.failure.c_str());
+  print_times(bench);
+  std::printf("\n");
+  for (const BenchMesh& mesh : bench.meshes)
+    if (mesh.order) std::printf("  observed order at %s: %.2f\n", mesh_text(mesh).c_str(), *mesh.order);
+  for (size_t method = 0; method < bench.methods.size(); ++method)
+    if (const auto found = growth(bench, method))
+      std::printf("  %s: time grows with triangles^%.2f (tolerance %g)\n", bench.methods[method].name.c_str(),
+                  found->exponent, found->tolerance);
+  for (const double mm : kTotalAccuracies) std::printf("%s\n", recommendation(bench, mm).c_str());
+}
+
+void bench_scene(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  const Scene scene = load_scene(arguments.scene);
+  RunOptions run = arguments.options();
+  run.folder = arguments.folder;
+  BenchOptions options;
+  options.methods = comma_list(arguments.methods);
+  options.reference = arguments.reference;
+  options.tolerances = tolerance_list(arguments.tolerances);
+  options.levels = arguments.levels;
+  options.repeats = arguments.repeats;
+  options.closed = arguments.closed;
+  options.report = [&](const Benchmark& bench, const BenchRun& done) {
+    end_progress();
+    if (!arguments.prints_json) print_progress(bench, done);
+  };
+  const Benchmark found = run_benchmark(scene, all_solvers(), options, run);
+  end_progress();
+  write_benchmark(found.folder, found);
+  if (arguments.prints_json) {
+    std::fputs(benchmark_json(found).c_str(), stdout);
+  } else {
+    print_summary(found);
+    std::printf("written to %s (bench.json, bench.csv, bench.html)\n", found.folder.string().c_str());
+  }
+  exit_code = found.has_converged() ? kConverged : kNotConverged;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "bench",
+      "Error against run time: methods, tolerances and meshes on one scene, and what to take for it");
+  command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("-o,--output", arguments->folder,
+                      "Folder of the files (default: the scene's result folder)");
+  command->add_option("--methods", arguments->methods,
+                      "Names of solvers, and mass-spring, with commas between them (default: "
+                      "newton,lbfgs,dynamic)");
+  command->add_option("--tolerances", arguments->tolerances,
+                      "On the residual, with commas between them (default: 1e-2,1e-4,1e-6,1e-8)");
+  command
+      ->add_option(
+          "--levels", arguments->levels,
+          "How often the mesh is cut into four and benchmarked again (default: 1); one more is solved "
+          "once")
+      ->check(CLI::Range(0, 4));
+  command->add_option("--repeats", arguments->repeats, "Of each run, for its time (default: 3)")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--reference", arguments->reference,
+                      "That of the methods which the others are compared with (default: newton, else the "
+                      "first)");
+  command->add_option("--closed", arguments->closed,
+                      "Given closed surface, in the unit of the scene's mesh (default: the scene's)");
+  command->add_option("--max-seconds", arguments->max_seconds, "Of each solve (default: the scene's)")
+      ->check(positive_defect);
+  command->add_flag("--json", arguments->prints_json, "Print bench.json instead of the tables");
+  command->callback([arguments, &exit_code] { bench_scene(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

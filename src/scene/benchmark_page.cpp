@@ -1,0 +1,221 @@
+// The page of a benchmark.
+#include "scene/benchmark_report.hpp"
+#include "scene/benchmark_summary.hpp"
+#include "scene/report_page.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+PageCell number_cell(const std::optional<double>& value, int digits = 3) {
+  return {value ? page_number(*value, digits) : ""};
+}
+
+std::string words(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+// Error over time: a line for every method and mesh, from the loosest tolerance to the tightest.
+PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& title, const std::string& axis,
+                    const std::string& note) {
+  PagePlot plot;
+  plot.title = title;
+  plot.x = {"wall time [s], median", Scale::Logarithmic};
+  plot.y = {axis, Scale::Logarithmic};
+  plot.note = note;
+  for (size_t method = 0; method < bench.methods.size(); ++method)
+    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh) {
+      PageSeries series{.name = bench.methods[method].name + ", " + mesh_text(bench.meshes[mesh])};
+      for (const BenchRun& run : bench.runs)
+        if (const auto error = error_of(run, kind); error && run.method == method && run.mesh == mesh)
+          series.points.push_back(
+              {run.wall.median, *error, run.status != Status::Converged,
+               "tolerance " + page_number(run.tolerance) + ", " + words(status_name(run.status))});
+      if (!series.points.empty()) plot.series.push_back(std::move(series));
+    }
+  return plot;
+}
+
+PageSection recommendation_section(const Benchmark& bench) {
+  PageList list;
+  for (const double mm : kTotalAccuracies) {
+    const bool is_reached = fastest_run(bench, ErrorKind::Total, mm) != nullptr;
+    list.items.push_back({recommendation(bench, mm), is_reached ? Tone::Good : Tone::Caution});
+  }
+  PageSection section{.title = "Which method on which mesh"};
+  section.blocks.emplace_back(list);
+  return section;
+}
+
+PageSection plots_section(const Benchmark& bench) {
+  PageSection section{.title = "Error against time"};
+  section.blocks.emplace_back(error_plot(
+      bench, ErrorKind::Total, "Total error against wall time", "total error [mm]",
+      "Greatest algebraic error, discretisation error of 95 % of the surface and method error together. "
+      "Hollow and crossed: the run stopped before its tolerance."));
+  section.blocks.emplace_back(error_plot(
+      bench, ErrorKind::Algebraic, "Algebraic error against wall time", "algebraic error [mm]",
+      "Of the vertex farthest from the equilibrium on the same mesh. Without the error of the mesh."));
+  return section;
+}
+
+PageTable times_table(const Benchmark& bench) {
+  PageTable table{.caption = "Median wall time to an accuracy [s]"};
+  table.columns = {{"method", true}, {"error", true}};
+  for (const double mm : kAlgebraicAccuracies) table.columns.push_back({page_number(mm) + " mm"});
+  for (size_t method = 0; method < bench.methods.size(); ++method) {
+    std::vector<PageCell> total = {{bench.methods[method].name}, {"total"}};
+    for (const double mm : kTotalAccuracies) {
+      const BenchRun* run = fastest_run(bench, ErrorKind::Total, mm, {.method = method});
+      PageCell cell = number_cell(run ? std::optional(run->wall.median) : std::nullopt);
+      if (run != nullptr) cell.remark = mesh_text(bench.meshes[run->mesh]);
+      total.push_back(std::move(cell));
+    }
+    table.rows.push_back(std::move(total));
+    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh) {
+      if (!bench.meshes[mesh].is_benchmarked) continue;
+      std::vector<PageCell> row = {{bench.methods[method].name},
+                                   {"algebraic, " + mesh_text(bench.meshes[mesh])}};
+      for (const double mm : kAlgebraicAccuracies) {
+        const BenchRun* run = fastest_run(bench, ErrorKind::Algebraic, mm, {method, mesh});
+        row.push_back(number_cell(run ? std::optional(run->wall.median) : std::nullopt));
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.note = "Of the tolerances that were run the fastest that is good enough. Empty: none of them.";
+  return table;
+}
+
+PageTable meshes_table(const Benchmark& bench) {
+  PageTable table{.caption = "Equilibria from mesh to mesh"};
+  table.columns = {{"mesh", true},     {"mean distance to the next [mm]"}, {"95 % [mm]"}, {"greatest [mm]"},
+                   {"observed order"}, {"discretisation error [mm]"}};
+  using Figures = std::optional<DistanceFigures>;
+  const auto figure = [](const Figures& to_next, double DistanceFigures::*member) {
+    return number_cell(to_next ? std::optional((*to_next).*member) : std::nullopt);
+  };
+  for (const BenchMesh& mesh : bench.meshes) {
+    const Figures& to_next = mesh.to_next;
+    table.rows.push_back({{mesh_text(mesh)},
+                          figure(to_next, &DistanceFigures::mean),
+                          figure(to_next, &DistanceFigures::p95),
+                          figure(to_next, &DistanceFigures::max),
+                          number_cell(mesh.order),
+                          number_cell(mesh.error_mm)});
+  }
+  table.note = "Beyond the last mesh distances are taken to fall with order " +
+               page_number(bench.assumed_order, 3) + ".";
+  return table;
+}
+
+PageTable growth_table(const Benchmark& bench) {
+  PageTable table{.caption = "Growth of the wall time with the number of triangles"};
+  table.columns = {{"method", true}, {"exponent"}, {"tolerance"}, {"meshes"}};
+  for (size_t method = 0; method < bench.methods.size(); ++method)
+    if (const auto found = growth(bench, method))
+      table.rows.push_back({{bench.methods[method].name},
+                            number_cell(found->exponent),
+                            number_cell(found->tolerance),
+                            {std::to_string(found->meshes)}});
+  return table;
+}
+
+PageTable ends_table(const Benchmark& bench) {
+  PageTable table{.caption = "Where each method ends, beside " + bench.methods.front().name};
+  table.columns = {{"method", true}, {"mesh", true}, {"verdict", true}, {"95 % [mm]"}, {"same vertex [mm]"}};
+  for (const BenchEnd& end : bench.ends) {
+    const bool has_surfaces = end.gap && end.gap->surfaces;
+    const bool is_good = end.verdict == Verdict::Reference || end.verdict == Verdict::SameEquilibrium;
+    PageCell verdict{std::string(verdict_name(end.verdict)), is_good ? Tone::Good : Tone::Caution,
+                     end.failure};
+    table.rows.push_back(
+        {{bench.methods[end.method].name},
+         {mesh_text(bench.meshes[end.mesh])},
+         std::move(verdict),
+         number_cell(has_surfaces ? std::optional(both_directions(*end.gap->surfaces).p95) : std::nullopt),
+         number_cell(end.gap ? std::optional(end.gap->same_vertex.max) : std::nullopt)});
+  }
+  return table;
+}
+
+PageTable runs_table(const Benchmark& bench) {
+  PageTable table{.caption = "Every run"};
+  table.columns = {{"method", true}, {"mesh", true},     {"tolerance"},   {"status", true},
+                   {"residual"},     {"wall [s]"},       {"best"},        {"CPU [s]"},
+                   {"iterations"},   {"gradients"},      {"Hessians"},    {"factorisations"},
+                   {"memory [MB]"},  {"algebraic [mm]"}, {"method [mm]"}, {"to the closed surface [mm]"},
+                   {"total [mm]"}};
+  for (const BenchRun& run : bench.runs) {
+    const bool is_good = run.status == Status::Converged;
+    const RunErrors& errors = run.errors;
+    table.rows.push_back({{bench.methods[run.method].name},
+                          {mesh_text(bench.meshes[run.mesh])},
+                          number_cell(run.tolerance),
+                          {words(status_name(run.status)), is_good ? Tone::Plain : Tone::Caution},
+                          number_cell(run.residual, 2),
+                          number_cell(run.wall.median),
+                          number_cell(run.wall.best),
+                          number_cell(run.cpu.median),
+                          {std::to_string(run.iterations)},
+                          {std::to_string(run.evaluations.gradient)},
+                          {std::to_string(run.evaluations.hessian)},
+                          {std::to_string(run.factorisations)},
+                          number_cell(run.peak_memory_mb),
+                          number_cell(error_of(run, ErrorKind::Algebraic), 2),
+                          number_cell(errors.method, 2),
+                          number_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt),
+                          number_cell(errors.total, 2)});
+  }
+  table.note =
+      "Wall and CPU time are medians over the repeats; memory is what terms and solve add to the process; "
+      "distances to the closed surface are means of both directions.";
+  return table;
+}
+
+PageTable phases_table(const Benchmark& bench) {
+  PageTable table{.caption = "Wall time by phase, of the fastest repeat at the tightest tolerance run [s]"};
+  std::vector<const BenchRun*> last;
+  std::vector<std::string> phases;
+  for (size_t k = 0; k < bench.runs.size(); ++k) {
+    const BenchRun& run = bench.runs[k];
+    if (k + 1 < bench.runs.size() && bench.runs[k + 1].method == run.method &&
+        bench.runs[k + 1].mesh == run.mesh)
+      continue;
+    last.push_back(&run);
+    for (const auto& [phase, seconds] : run.phase_s)
+      if (std::find(phases.begin(), phases.end(), phase) == phases.end()) phases.push_back(phase);
+  }
+  table.columns = {{"method", true}, {"mesh", true}};
+  for (const std::string& phase : phases) table.columns.push_back({words(phase)});
+  for (const BenchRun* run : last) {
+    std::vector<PageCell> row = {{bench.methods[run->method].name}, {mesh_text(bench.meshes[run->mesh])}};
+    for (const std::string& phase : phases) {
+      const auto found = run->phase_s.find(phase);
+      row.push_back(number_cell(found == run->phase_s.end() ? std::nullopt : std::optional(found->second)));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string benchmark_page(const Benchmark& bench) {
+  Page page{.title = "Benchmark of " + bench.scene_file};
+  page.lead = recommendation(bench, kTotalAccuracies[1]);
+  if (bench.is_cancelled) page.lead += " (cancelled before the end)";
+  page.tone = bench.is_cancelled ? Tone::Caution : Tone::Plain;
+  page.sections.push_back(recommendation_section(bench));
+  page.sections.push_back(plots_section(bench));
+  page.sections.push_back({"Time to an accuracy", {times_table(bench), growth_table(bench)}});
+  page.sections.push_back({"What the mesh leaves", {meshes_table(bench)}});
+  page.sections.push_back({"Methods", {ends_table(bench)}});
+  page.sections.push_back({"Runs", {runs_table(bench), phases_table(bench)}});
+  return report_page(page);
+}
+
+}  // namespace coapt

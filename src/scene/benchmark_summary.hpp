@@ -1,0 +1,51 @@
+// What a user wants to know of a benchmark: how long it takes to a wanted accuracy, by which method on which
+// mesh, and how the time grows with the mesh.
+#pragma once
+
+#include "scene/benchmark.hpp"
+
+#include <array>
+
+namespace coapt {
+
+enum class ErrorKind {
+  Algebraic,  // the greatest, on the run's own mesh
+  Total       // see RunErrors
+};
+
+// Accuracies that times are given for [mm]. The last of the algebraic ones is far below what a mesh leaves.
+inline constexpr std::array kTotalAccuracies{1.0, 0.1, 0.01};
+inline constexpr std::array kAlgebraicAccuracies{1.0, 0.1, 0.01, 1e-6};
+
+// Empty where it is not known [mm].
+std::optional<double> error_of(const BenchRun& run, ErrorKind kind);
+
+// Which runs are asked; empty: all.
+struct RunFilter {
+  std::optional<size_t> method = {}, mesh = {};
+};
+
+// Of the converged runs whose error is at most `mm` the one with the least median wall time; null where there
+// is none. A run that stopped early is never it: without the benchmark nobody would know its error.
+const BenchRun* fastest_run(const Benchmark& bench, ErrorKind kind, double mm, const RunFilter& filter = {});
+
+// Of the converged runs the one with the least error; null where none is known.
+const BenchRun* most_exact_run(const Benchmark& bench, ErrorKind kind);
+
+// p of time ~ triangles^p, of the best wall times at the tightest tolerance that the method reached on the
+// most meshes; least squares over the meshes. Empty with fewer than two.
+struct Growth {
+  double exponent = 0;
+  double tolerance = 0;
+  int meshes = 0;
+};
+std::optional<Growth> growth(const Benchmark& bench, size_t method);
+
+// "for 0.1 mm on this scene: newton, 2,500 triangles, 0.3 s (tolerance 1e-04, error 0.062 mm)"; where no run
+// is that exact the most exact one, and whether a finer mesh or a tighter tolerance is what it lacks.
+std::string recommendation(const Benchmark& bench, double mm);
+
+// "2,500 triangles", or nodes in a scene without a mesh.
+std::string mesh_text(const BenchMesh& mesh);
+
+}  // namespace coapt

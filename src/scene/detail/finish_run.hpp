@@ -1,0 +1,16 @@
+// From what a solve found to its report and files. Private to this room.
+#pragma once
+
+#include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
+
+namespace coapt {
+
+// What is known of a report before the solve.
+void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, Report& report);
+
+// Measures the shape of the outcome on run.model and writes run.report into run.folder where the options want
+// files.
+void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run);
+
+}  // namespace coapt

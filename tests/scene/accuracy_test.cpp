@@ -1,0 +1,91 @@
+// A solve to a wanted accuracy: its estimate against a truth that is computed later.
+#include "scene/accuracy.hpp"
+
+#include "scene/bench_fixture.hpp"
+#include "scene/mesh_study.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace coapt {
+namespace {
+
+using AccuracyTest = BenchFixture;
+
+TEST_F(AccuracyTest, KeepsWhatItPromises) {
+  const Scene scene = disc_scene();
+  run_.writes = false;
+  run_.tolerance = 1e-11;
+  const MeshStudy study = study_mesh(scene, solvers(), 3, run_);
+  const TriangleMesh& truth = study.levels.back().closed;
+  run_.tolerance.reset();
+  int last_triangles = 0;
+  for (const double wanted : {0.3, 0.05, 0.015}) {
+    SCOPED_TRACE(wanted);
+    const RunReport found = run_to_accuracy(scene, solvers(), wanted, run_);
+    const AccuracyEstimate& estimate = found.report.accuracy.value();
+    ASSERT_TRUE(estimate.is_reached) << estimate.message;
+    EXPECT_LE(estimate.total_mm().value(), wanted);
+    EXPECT_EQ(found.report.result.status, Status::Converged);
+    EXPECT_EQ(found.report.tolerance, estimate.tolerance);
+
+    const auto& level = study.levels[static_cast<size_t>(estimate.cuts)];
+    const TriangleMesh closed = surface_at(found.model, found.report.fields.x);
+    ASSERT_EQ(closed.triangle_count(), level.triangles);
+    const double later = distance_between(closed, truth).p95;
+    std::printf("  wanted %g mm: %s; later %.4f mm, order %.2f\n", wanted, estimate.message.c_str(), later,
+                estimate.order.value_or(-1));
+    EXPECT_LE(later, wanted);
+    EXPECT_LT(later, 1.2 * *estimate.total_mm());
+    EXPECT_GT(later, 0.25 * *estimate.total_mm());
+    const double algebraic = (closed.vertices - level.closed.vertices).colwise().norm().maxCoeff();
+    EXPECT_NEAR(*estimate.algebraic_mm, algebraic, 0.05 * algebraic + 1e-9);
+    EXPECT_LE(algebraic, 0.1 * wanted);
+    EXPECT_GT(closed.triangle_count(), last_triangles);
+    last_triangles = closed.triangle_count();
+  }
+}
+
+TEST_F(AccuracyTest, IsASolveOfThatMeshToThatTolerance) {
+  run_.folder = folder_.path() / "result";
+  const RunReport found = run_to_accuracy(disc_scene(), solvers(), 0.3, run_);
+  ASSERT_EQ(found.report.accuracy->cuts, 0);
+  run_.tolerance = found.report.tolerance;
+  run_.writes = false;
+  EXPECT_EQ(run(disc_scene(), solvers(), run_).report.fields.x, found.report.fields.x);
+  const auto json = nlohmann::json::parse(result_json(found.model, found.report)).at("accuracy");
+  EXPECT_EQ(json.at("wanted_mm"), 0.3);
+  EXPECT_TRUE(json.at("reached").get<bool>());
+  EXPECT_EQ(json.at("total_mm").get<double>(), *found.report.accuracy->total_mm());
+  EXPECT_GE(json.at("solves").size(), 2u);
+  EXPECT_TRUE(std::filesystem::exists(found.folder / "result.json"));
+}
+
+TEST_F(AccuracyTest, SaysWhatItDidNotReach) {
+  run_.writes = false;
+  const RunReport found = run_to_accuracy(disc_scene(), solvers(), 1e-3, run_, 300);
+  EXPECT_FALSE(found.report.accuracy->is_reached);
+  EXPECT_EQ(found.report.accuracy->cuts, 1);
+  EXPECT_GT(found.report.accuracy->total_mm().value(), 1e-3);
+  ASSERT_FALSE(found.report.warnings.empty());
+  EXPECT_NE(found.report.warnings.back().find("not reached"), std::string::npos);
+
+  run_.solver = "idle";
+  const RunReport idle = run_to_accuracy(disc_scene(), solvers(), 0.1, run_);
+  EXPECT_EQ(idle.report.result.status, Status::Stalled);
+  EXPECT_FALSE(idle.report.accuracy->is_reached);
+  EXPECT_FALSE(idle.report.accuracy->total_mm());
+}
+
+TEST_F(AccuracyTest, RefusesAllBadInputAtOnce) {
+  const Scene chain = load_scene(std::filesystem::path(COAPT_SOURCE_DIR) / "examples/03_catenary/scene.json");
+  run_.tolerance = 1e-3;
+  run_.frame_interval = 1;
+  run_.writes = false;
+  const std::string defects = refusal([&] { run_to_accuracy(chain, solvers(), -1, run_); });
+  for (const char* piece :
+       {"a length above 0", "no mesh that could be refined", "leave --tolerance out", "leave --frames out"})
+    EXPECT_NE(defects.find(piece), std::string::npos) << piece << " in " << defects;
+}
+
+}  // namespace
+}  // namespace coapt

@@ -1,0 +1,290 @@
+// Methods x tolerances x meshes on one scene: each error against a truth that is known otherwise, and what is
+// recommended against the table that it comes from.
+#include "scene/bench_fixture.hpp"
+#include "scene/benchmark_report.hpp"
+#include "scene/benchmark_summary.hpp"
+#include "scene/mesh_study.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace coapt {
+namespace {
+
+class BenchmarkTest : public BenchFixture {
+ protected:
+  Benchmark bench(const Scene& scene, const BenchOptions& options) {
+    run_.folder = folder_.path() / "result";
+    return run_benchmark(scene, solvers(), options, run_);
+  }
+};
+
+constexpr double kTolerances[] = {1e-2, 1e-4, 1e-7};
+
+BenchOptions two_methods() {
+  BenchOptions options;
+  options.methods = {"lbfgs", "newton"};
+  options.tolerances = {1e-4, 1e-7, 1e-2};  // in any order
+  options.repeats = 2;
+  return options;
+}
+
+TEST_F(BenchmarkTest, MeasuresEachErrorAgainstATruthOfItsOwn) {
+  const Scene scene = disc_scene();
+  const Benchmark found = bench(scene, two_methods());
+  ASSERT_EQ(found.meshes.size(), 3u);
+  ASSERT_EQ(found.runs.size(), 12u);
+  EXPECT_EQ(found.methods.front().name, "newton");
+  EXPECT_TRUE(found.has_converged());
+
+  // Algebraic: to the same mesh solved to 1e-12, and it falls with the tolerance.
+  run_.writes = false;
+  run_.tolerance = 1e-12;
+  const Points truth = run(scene, solvers(), run_).report.fields.x;
+  for (size_t k = 0; k < found.runs.size(); ++k) {
+    const BenchRun& timed = found.runs[k];
+    SCOPED_TRACE(found.methods[timed.method].name + ", mesh " + std::to_string(timed.mesh) + ", tolerance " +
+                 std::to_string(timed.tolerance));
+    EXPECT_EQ(timed.tolerance, kTolerances[k % 3]);
+    EXPECT_LE(timed.residual, timed.tolerance);
+    ASSERT_TRUE(timed.errors.algebraic && timed.errors.discretisation && timed.errors.total);
+    const NodeError& algebraic = *timed.errors.algebraic;
+    EXPECT_LE(algebraic.rms, algebraic.max);
+    EXPECT_EQ(timed.errors.method.has_value(), timed.method == 1);
+    EXPECT_NEAR(*timed.errors.total,
+                algebraic.max + *timed.errors.discretisation + timed.errors.method.value_or(0), 1e-15);
+    if (k % 3 > 0) {
+      EXPECT_LE(algebraic.max, found.runs[k - 1].errors.algebraic->max);
+    }
+    EXPECT_LT(algebraic.max, 100 * timed.tolerance);  // mm, of a rise of 1.4
+    EXPECT_EQ(timed.repeats, 2);
+    EXPECT_LE(timed.wall.best, timed.wall.median);
+    EXPECT_GT(timed.cpu.best, 0);
+    EXPECT_GT(timed.evaluations.gradient, 0);
+    EXPECT_GT(timed.phase_s.at("gradient"), 0);
+    EXPECT_GE(timed.peak_memory_mb.value_or(0), 0);
+    if (timed.mesh > 0 || timed.method > 0) continue;
+    run_.tolerance = timed.tolerance;
+    const Points x = run(scene, solvers(), run_).report.fields.x;
+    EXPECT_NEAR(algebraic.max, (x - truth).colwise().norm().maxCoeff(), 1e-9);
+  }
+  for (const BenchEnd& end : found.ends) {
+    EXPECT_EQ(end.verdict, end.method == 0 ? Verdict::Reference : Verdict::SameEquilibrium);
+    EXPECT_LE(end.residual.value(), 1e-12);
+  }
+}
+
+TEST_F(BenchmarkTest, EstimatesTheErrorOfTheMesh) {
+  const Scene scene = disc_scene();
+  BenchOptions options;
+  options.methods = {"newton"};
+  options.tolerances = {1e-8};
+  options.repeats = 1;
+  const Benchmark found = bench(scene, options);
+  ASSERT_EQ(found.meshes.size(), 3u);
+  EXPECT_EQ(found.meshes[1].triangles, 4 * found.meshes[0].triangles);
+  EXPECT_FALSE(found.meshes[2].is_benchmarked);
+  ASSERT_TRUE(found.meshes[1].order);
+  EXPECT_NEAR(*found.meshes[1].order, 2, 0.2);  // smooth
+
+  // The later truth: another mesh, four times finer than any that the benchmark saw.
+  run_.tolerance = 1e-10;
+  const MeshStudy study = study_mesh(scene, solvers(), 3, run_);
+  for (const size_t k : {size_t{0}, size_t{1}}) {
+    const double later = distance_between(study.levels[k].closed, study.levels[3].closed).p95;
+    EXPECT_NEAR(*found.meshes[k].error_mm, later, 0.25 * later) << "mesh " << k;
+  }
+}
+
+TEST_F(BenchmarkTest, AMethodThatStopsEarlyIsNeverRecommended) {
+  BenchOptions options;
+  options.methods = {"idle", "newton", "broken"};
+  options.tolerances = {1e-2, 1e-6};
+  options.levels = 0;
+  options.repeats = 1;
+  const Benchmark found = bench(disc_scene(), options);
+  EXPECT_FALSE(found.has_converged());
+  ASSERT_EQ(found.runs.size(), 3u);  // a tighter tolerance is not tried
+  const BenchRun& idle = found.runs.back();
+  EXPECT_EQ(idle.status, Status::Stalled);
+  // It stands where it started, flat: its vertices are as far from the equilibrium as that has risen.
+  EXPECT_NEAR(idle.errors.algebraic->max, 1.35, 0.15);
+  EXPECT_EQ(fastest_run(found, ErrorKind::Algebraic, 10, {.method = idle.method}), nullptr);
+  EXPECT_EQ(found.ends[1].verdict, Verdict::SameEquilibrium);  // newton goes on from there
+  EXPECT_EQ(found.ends[2].verdict, Verdict::Failed);
+  EXPECT_NE(found.ends[2].failure.find("it is broken"), std::string::npos);
+  const std::string page = benchmark_page(found);
+  EXPECT_NE(page.find("stalled"), std::string::npos);
+  EXPECT_EQ(page.find("<b>really"), std::string::npos);
+  for (const double mm : kTotalAccuracies)
+    EXPECT_EQ(recommendation(found, mm).find("idle"), std::string::npos);
+}
+
+TEST_F(BenchmarkTest, MeasuresAGivenClosedSurface) {
+  const Scene scene = disc_scene();
+  run_.tolerance = 1e-12;
+  run_.folder = folder_.path() / "truth";
+  run(scene, solvers(), run_);
+  run_.tolerance.reset();
+  BenchOptions options;
+  options.methods = {"newton"};
+  options.tolerances = {1e-1, 1e-9};
+  options.levels = 0;
+  options.repeats = 1;
+  options.closed = folder_.path() / "truth" / "closed.obj";
+  const Benchmark found = bench(scene, options);
+  ASSERT_TRUE(found.runs.front().errors.model && found.runs.back().errors.model);
+  EXPECT_LT(found.runs.back().errors.model->max, 1e-6);
+  EXPECT_GT(found.runs.front().errors.model->max, 1e-3);
+  EXPECT_LE(found.runs.front().errors.model->max, found.runs.front().errors.algebraic->max * (1 + 1e-6));
+}
+
+TEST_F(BenchmarkTest, AChainHasNoErrorOfAMesh) {
+  const Scene scene = load_scene(std::filesystem::path(COAPT_SOURCE_DIR) / "examples/03_catenary/scene.json");
+  BenchOptions options;
+  options.methods = {"newton"};
+  options.tolerances = {1e-3};
+  EXPECT_NE(refusal([&] { bench(scene, options); }).find("use --levels 0"), std::string::npos);
+  options.levels = 0;
+  options.repeats = 1;
+  const Benchmark found = bench(scene, options);
+  ASSERT_EQ(found.runs.size(), 1u);
+  EXPECT_FALSE(found.runs[0].errors.discretisation);
+  EXPECT_EQ(found.runs[0].errors.total.value(), found.runs[0].errors.algebraic->max);
+  EXPECT_NE(recommendation(found, 1).find("nodes"), std::string::npos);
+}
+
+TEST_F(BenchmarkTest, ACancelledOneKeepsWhatThereIs) {
+  int solves = 0;
+  run_.observer = [&](const Iteration& it, const Vector&) {
+    if (it.iteration == 0) ++solves;
+    return solves < 4;
+  };
+  const Benchmark found = bench(disc_scene(), two_methods());
+  EXPECT_TRUE(found.is_cancelled);
+  EXPECT_FALSE(found.has_converged());
+  EXPECT_EQ(found.runs.size(), 1u);  // of two repeats; the next was in its second
+  EXPECT_TRUE(nlohmann::json::parse(benchmark_json(found)).at("cancelled").get<bool>());
+}
+
+TEST_F(BenchmarkTest, RefusesAllBadInputAtOnce) {
+  const Scene scene = disc_scene();
+  BenchOptions options;
+  options.methods = {"newtn"};
+  options.reference = "bfgs";
+  options.tolerances = {1e-2, 2, std::nan(""), 1e-2};
+  options.levels = 7;
+  options.repeats = 0;
+  options.closed = folder_.path() / "nowhere.obj";
+  const std::string defects = refusal([&] { bench(scene, options); });
+  for (const char* piece :
+       {"did you mean \"newton\"", "\"bfgs\" is not among", "above 0 and at most 1", "one is named twice",
+        "--levels: between 0 and 4", "--repeats", "nowhere.obj not found"})
+    EXPECT_NE(defects.find(piece), std::string::npos) << piece << " in " << defects;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "result"));
+}
+
+TEST_F(BenchmarkTest, TellsTheSameInJsonRowsAndPage) {
+  const Benchmark found = bench(disc_scene(), two_methods());
+  write_benchmark(found.folder, found);
+  for (const char* file : {"bench.json", "bench.csv", "bench.html"})
+    EXPECT_TRUE(std::filesystem::exists(found.folder / file)) << file;
+  const nlohmann::json json = nlohmann::json::parse(benchmark_json(found));
+  ASSERT_EQ(json.at("runs").size(), found.runs.size());
+  EXPECT_EQ(json.at("runs").at(3).at("errors").at("total_mm").get<double>(), *found.runs[3].errors.total);
+  EXPECT_EQ(json.at("runs").at(3).at("wall_s").at("median").get<double>(), found.runs[3].wall.median);
+  EXPECT_EQ(json.at("time_to").size(), 2u * (2 * 4 + 3));  // methods x (meshes x accuracies + accuracies)
+  EXPECT_EQ(json.at("growth").size(), 2u);
+  std::istringstream csv(benchmark_csv(found));
+  std::string line;
+  std::getline(csv, line);
+  const auto columns = std::count(line.begin(), line.end(), ',');
+  size_t rows = 0;
+  for (; std::getline(csv, line); ++rows)
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
+  EXPECT_EQ(rows, found.runs.size());
+  const std::string page = benchmark_page(found);
+  EXPECT_NE(page.find(json.at("recommendations").at(0).get<std::string>()), std::string::npos);
+  EXPECT_EQ(page.find("<script src"), std::string::npos);
+}
+
+// --- what follows from a table, without a solve
+
+TEST(DiscretisationEstimate, IsExactForAGeometricSequence) {
+  // Errors of 4^-k at mesh k, all on one side of the limit.
+  const std::vector<DistanceFigures> distances = {{0.75, 0.75, 0.75}, {0.1875, 0.1875, 0.1875}};
+  const DiscretisationEstimate found = estimate_discretisation(distances);
+  EXPECT_NEAR(found.order.value(), 2, 1e-12);
+  ASSERT_EQ(found.error_mm.size(), 3u);
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found.error_mm[k], std::pow(0.25, k), 1e-12);
+}
+
+TEST(DiscretisationEstimate, IsCautiousWhereNoOrderIsSeen) {
+  const DiscretisationEstimate one = estimate_discretisation({{0.2, 0.5, 0.9}});
+  EXPECT_FALSE(one.order);
+  EXPECT_NEAR(one.error_mm[0], 1.0, 1e-12);  // as if distances halved
+  EXPECT_NEAR(one.error_mm[1], 0.5, 1e-12);
+  const DiscretisationEstimate rising = estimate_discretisation({{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}});
+  EXPECT_NEAR(rising.order.value(), -1, 1e-12);
+  EXPECT_EQ(rising.assumed_order, 0.5);
+  EXPECT_GT(rising.error_mm[2], 0.4);
+  EXPECT_EQ(estimate_discretisation({{0, 0, 0}, {0, 0, 0}}).error_mm[0], 0);
+}
+
+// Two methods on two meshes: times grow with triangles^1.3, errors of the mesh fall by four.
+Benchmark table() {
+  Benchmark bench;
+  bench.methods = {{"newton"}, {"hasty"}};
+  bench.meshes = {{.triangles = 1000, .error_mm = 0.2}, {.triangles = 4000, .error_mm = 0.05}};
+  bench.tolerances = {1e-2, 1e-6};
+  for (const size_t method : {size_t{0}, size_t{1}})
+    for (const size_t mesh : {size_t{0}, size_t{1}})
+      for (const double tolerance : bench.tolerances) {
+        BenchRun run{.method = method, .mesh = mesh, .tolerance = tolerance, .status = Status::Converged};
+        const double seconds = std::pow(bench.meshes[mesh].triangles / 1000.0, 1.3) *
+                               (tolerance < 1e-3 ? 2 : 1) * (method == 0 ? 1 : 0.1);
+        run.wall = run.cpu = {seconds, 0.9 * seconds};
+        run.errors.algebraic = NodeError{30 * tolerance, 10 * tolerance};
+        run.errors.total = run.errors.algebraic->max + *bench.meshes[mesh].error_mm;
+        if (method == 1) run.status = Status::Stalled;
+        bench.runs.push_back(run);
+      }
+  return bench;
+}
+
+TEST(BenchmarkSummary, RecommendsTheFastestOfThoseThatAreGoodEnough) {
+  const Benchmark bench = table();
+  for (const double mm : {10.0, 1.0, 0.3, 0.1, 0.06}) {
+    const BenchRun* found = fastest_run(bench, ErrorKind::Total, mm);
+    ASSERT_NE(found, nullptr) << mm;
+    EXPECT_LE(*found->errors.total, mm);
+    for (const BenchRun& run : bench.runs)
+      EXPECT_FALSE(run.status == Status::Converged && *run.errors.total <= mm &&
+                   run.wall.median < found->wall.median)
+          << mm;
+  }
+  EXPECT_EQ(recommendation(bench, 0.1),
+            "for 0.1 mm on this scene: newton, 4,000 triangles, 12 s (tolerance 1e-06, error 0.05 mm)");
+  const std::string none = recommendation(bench, 0.01);
+  for (const char* piece : {"none of these runs", "newton, 4,000 triangles", "--levels"})
+    EXPECT_NE(none.find(piece), std::string::npos) << none;
+  EXPECT_EQ(fastest_run(bench, ErrorKind::Total, 1, {.method = 1}), nullptr);
+  EXPECT_EQ(fastest_run(bench, ErrorKind::Algebraic, 1e-3, {0, 0})->tolerance, 1e-6);
+}
+
+TEST(BenchmarkSummary, SeesHowTimeGrows) {
+  Benchmark bench = table();
+  const auto found = growth(bench, 0);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->exponent, 1.3, 1e-12);
+  EXPECT_EQ(found->tolerance, 1e-6);
+  EXPECT_FALSE(growth(bench, 1));          // it never converged
+  bench.runs[3].status = Status::Stalled;  // the tightest on the second mesh
+  EXPECT_EQ(growth(bench, 0)->tolerance, 1e-2);
+}
+
+}  // namespace
+}  // namespace coapt
