@@ -4,6 +4,8 @@
 #include "scene/build.hpp"
 #include "scene/frames.hpp"
 #include "scene/groundwork.hpp"
+#include "scene/shape_view.hpp"
+#include "scene/solve_page.hpp"
 #include "scene/solve_scene.hpp"
 
 #include <iterator>
@@ -38,6 +40,15 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
       };
     }
   }
+  std::optional<ShapeRecord> record;
+  report.has_page = options.writes && options.writes_page.value_or(scene.writes_page);
+  if (report.has_page && has_shape_view()) {
+    record.emplace(model, page_shapes(model));
+    setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
+      record->see(iteration, q);
+      return !next || next(iteration, q);
+    };
+  }
   report.scene_file = scene.file.filename().string();
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
@@ -52,6 +63,7 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   const Result& result = report.result;
   report.pressure_route = pressure_route(model, result);
   report.fields = compute_fields(model, model.objective->positions(result.q));
+  if (record) report.way = record->shapes(report.fields.x);
   report.metrics = measure(model, result.q, report.fields, options.judge);
   report.reference = compare_with_reference(model, report.fields);
   if (setup.stability.modes > 0 && !has_smallest_modes())
