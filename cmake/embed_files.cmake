@@ -1,19 +1,21 @@
 # Writes a C++ source in which each file is a text of the library.
-#   cmake -DOUT=<source> -DHEADER=<include> -DSPACE=<namespace> "-DFILES=<name>=<path>,..." -P embed_files.cmake
-# The files are UTF-8 without the sequence `)embedded"`.
-set(text "// Written by the build from the files of the repository and of its packages.\n#include \"${HEADER}\"\n\nnamespace ${SPACE} {\n")
+#   cmake -DOUT=<source> -DHEADER=<include> -DSPACE=<namespace> -DNAMES=<name>,... -DFILES=<path>,...
+#         -P embed_files.cmake
+# The files are UTF-8 without the sequence `)embedded"`. A name without a file is an empty text.
+set(text "// Written by the build from the files of the repository and of its packages.\n")
+string(APPEND text "#include \"${HEADER}\"\n\nnamespace ${SPACE} {\n")
+string(REPLACE "," ";" names "${NAMES}")
 string(REPLACE "," ";" files "${FILES}")
-foreach(entry IN LISTS files)
-  string(REGEX MATCH "^([^=]*)=(.*)$" ignored "${entry}")
-  set(name "${CMAKE_MATCH_1}")
-  if("${CMAKE_MATCH_2}" STREQUAL "")
+foreach(name IN LISTS names)
+  if(files STREQUAL "")
     string(APPEND text "\nconst std::string_view ${name};\n")
     continue()
   endif()
-  file(READ "${CMAKE_MATCH_2}" content)
+  list(POP_FRONT files path)
+  file(READ "${path}" content)
   string(FIND "${content}" ")embedded\"" end)
   if(NOT end EQUAL -1)
-    message(FATAL_ERROR "${CMAKE_MATCH_2}: holds the mark that ends an embedded text")
+    message(FATAL_ERROR "${path}: holds the mark that ends an embedded text")
   endif()
   string(APPEND text "\nconst std::string_view ${name} = R\"embedded(${content})embedded\";\n")
 endforeach()

@@ -99,7 +99,7 @@ void compare(const Arguments& arguments, int& exit_code) {
     std::fputs(comparison_json(found).c_str(), stdout);
   else
     std::printf(
-        "distances in mm to %s; written to %s (compare.json, compare.csv, compare.html and a folder "
+        "distances in mm to %s; written to %s (compare.json, compare.csv, report.html and a folder "
         "for each method)\n",
         found.reference().name.c_str(), found.folder.string().c_str());
   exit_code = found.has_converged() ? kConverged : kNotConverged;

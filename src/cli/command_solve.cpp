@@ -22,6 +22,7 @@ struct Arguments {
   std::string scene, folder, solver, accuracy;
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
+  bool has_no_report = false;
 };
 
 void print_value(const char* label, const std::optional<double>& value, const char* unit,
@@ -117,6 +118,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                            ->add_option("--frames", arguments->frames,
                                         "Write every N-th iterate as a frame of an animation (frames.pvd)")
                            ->check(CLI::Range(1, 1000000000));
+  command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
   command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
     listen_for_interrupts();
     RunOptions options;
@@ -126,6 +128,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
     if (modes->count() > 0) options.modes = arguments->modes;
     if (frames->count() > 0) options.frame_interval = arguments->frames;
+    if (arguments->has_no_report) options.writes_page = false;
     options.factorisations = all_factorisations();
     options.judge = intersection_judge();
     options.observer = make_observer();

@@ -196,7 +196,7 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
 
   SolveSetup setup = search.setup();
   setup.stop.tolerance = estimate.tolerance;
-  begin_report(scene, setup, mesh.model, run.report);
+  begin_report(scene, setup, mesh.model, options, run.report);
   if (!estimate.is_reached)
     run.report.warnings.push_back("The wanted accuracy was not reached: " + estimate.message + ".");
   if (scene.frame_interval > 0)

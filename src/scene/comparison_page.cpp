@@ -1,35 +1,117 @@
-// The numbers behind compare.html.
-#include "mesh/top_view.hpp"
-#include "scene/detail/comparison_json.hpp"
-#include "scene/detail/comparison_template.hpp"
-#include "scene/detail/json_text.hpp"
+// report.html of a comparison.
+#include "scene/comparison_report.hpp"
+#include "scene/solve_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace coapt {
 namespace {
 
-constexpr double kGrains = 20000;  // positions that the page tells apart along the extent
-constexpr int kShades = 255;       // distances that it does
-
-const RunReport* first_run(const Comparison& comparison) {
-  for (const ComparedMethod& method : comparison.methods)
-    if (method.run) return &*method.run;
-  return nullptr;
+bool has_converged(const ComparedMethod& method) {
+  return method.run && method.run->report.result.status == Status::Converged;
 }
 
-// As seen from the atrium; without an annulus from where most of the surface faces, else from above.
-ViewFrame frame_of(const RunReport& run) {
-  const Model& model = run.model;
-  const Fields& fields = run.report.fields;
-  if (const std::vector<int>* annulus = annulus_of(model)) return annulus_frame(model, fields, *annulus);
-  Vec3 facing = Vec3::Zero();
-  for (int t = 0; t < model.mesh.triangle_count(); ++t)
-    facing += area_vector(fields.x, model.mesh.triangles.col(t));
-  const double area = surface_area(fields.x, model.mesh.triangles);
-  const Vec3 centre = 0.5 * (fields.x.rowwise().minCoeff() + fields.x.rowwise().maxCoeff());
-  return view_frame(centre, facing.norm() > 0.01 * area ? facing : Vec3::UnitZ());
+std::optional<DistanceFigures> to_reference(const ComparedMethod& method) {
+  if (!method.gap || !method.gap->surfaces) return std::nullopt;
+  return both_directions(*method.gap->surfaces);
+}
+
+std::optional<DistanceFigures> to_closed(const ComparedMethod& method) {
+  if (!method.run || !method.run->report.reference) return std::nullopt;
+  return both_directions(*method.run->report.reference);
+}
+
+// Mean distance to the reference's shape: of the surfaces, or of the nodes where there are none [mm].
+std::optional<double> mean_gap(const ComparedMethod& method) {
+  if (const auto surfaces = to_reference(method)) return surfaces->mean;
+  return method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt;
+}
+
+PageCell cell(const std::optional<double>& value, int digits = 3) {
+  return {value ? page_number(*value, digits) : "–"};
+}
+
+void add_cells(const std::optional<DistanceFigures>& figures, std::vector<PageCell>& row) {
+  for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95, &DistanceFigures::max})
+    row.push_back(cell(figures ? std::optional((*figures).*figure) : std::nullopt));
+}
+
+PageTable distance_table(const Comparison& comparison) {
+  PageTable table{
+      .caption = "Distance of the closed surfaces to that of " + comparison.reference().name + " [mm]",
+      .columns = {{"method", true}, {"status", true}, {"verdict", true}, {"mean"}, {"95 %"}, {"greatest"}}};
+  table.columns.insert(table.columns.end(), {{"same vertex, mean"}, {"same vertex, greatest"}});
+  const bool has_closed = !comparison.closed_surface.empty();
+  if (has_closed)
+    for (const char* figure : {"mean", "95 %", "greatest"})
+      table.columns.push_back({"to " + comparison.closed_surface + ", " + figure});
+  for (const ComparedMethod& method : comparison.methods) {
+    const std::string status =
+        method.run ? std::string(status_name(method.run->report.result.status)) : std::string("failed");
+    std::vector<PageCell> row = {{method.name},
+                                 {status, has_converged(method) ? Tone::Good : Tone::Bad},
+                                 {std::string(verdict_name(method.verdict))}};
+    add_cells(to_reference(method), row);
+    row.push_back(cell(method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt));
+    row.push_back(cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt));
+    if (has_closed) add_cells(to_closed(method), row);
+    table.rows.push_back(row);
+  }
+  table.note =
+      "In both directions: mean of the means, greater 95th percentile, greater maximum. Same vertex: of each "
+      "vertex from itself. One equilibrium: no vertex farther than " +
+      page_number(kSameShape * comparison.extent_mm, 3) + " mm from itself.";
+  return table;
+}
+
+PageList messages(const Comparison& comparison) {
+  PageList list;
+  for (const ComparedMethod& method : comparison.methods)
+    list.items.push_back(
+        {method.name + ": " + method.message, has_converged(method) ? Tone::Plain : Tone::Bad});
+  return list;
+}
+
+PageTable figure_table(const Comparison& comparison) {
+  PageTable table{.caption = "Figures of each result, and what it took",
+                  .columns = {{"method", true}, {"orifice [mm²]"}, {"coaptation area [mm²]"}}};
+  for (const char* title : {"coaptation height [mm]", "intersections", "residual", "energy [mJ]", "iterates",
+                            "CPU time [s]", "wall time [s]"})
+    table.columns.push_back({title});
+  for (const ComparedMethod& method : comparison.methods) {
+    std::vector<PageCell> row = {{method.name}};
+    if (method.run) {
+      const Metrics& metrics = method.run->report.metrics;
+      const Result& result = method.run->report.result;
+      for (const auto& value :
+           {metrics.orifice_area_mm2, metrics.coaptation_area_mm2, metrics.coaptation_height_mm})
+        row.push_back(cell(value, 4));
+      row.push_back({std::to_string(metrics.intersections)});
+      row.push_back(cell(result.residual));
+      row.push_back(cell(result.energy, 8));
+      row.push_back({std::to_string(result.iterations)});
+      row.push_back(cell(result.cpu_s));
+      row.push_back(cell(result.wall_s));
+    }
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+PagePlot work_plot(const Comparison& comparison) {
+  PagePlot plot{.title = "Distance to " + comparison.reference().name + " against run time",
+                .x = {"CPU time of the solve [s]", Scale::Logarithmic},
+                .y = {"mean distance [mm]", Scale::Logarithmic}};
+  for (const ComparedMethod& method : comparison.methods)
+    if (const auto gap = mean_gap(method))
+      plot.series.push_back({.name = method.name,
+                             .points = {{method.run->report.result.cpu_s, *gap, !has_converged(method)}},
+                             .is_joined = false});
+  plot.note =
+      comparison.reference().name + " itself took " +
+      (comparison.reference().run ? page_number(comparison.reference().run->report.result.cpu_s, 3) + " s."
+                                  : "no time that means anything: it failed.");
+  return plot;
 }
 
 // The nodes that are drawn: obstacles, which come last, are not.
@@ -39,69 +121,66 @@ Eigen::Index drawn_nodes(const Model& model) {
   return last + 1;
 }
 
-Json whole_numbers(const Points& points, double unit) {
-  Json numbers = Json::array();
-  for (const double value : points.reshaped()) numbers.push_back(std::lround(value / unit));
-  return numbers;
+// Puts the fields of a state, the last so far, to those of the same title; others have no values in it.
+void add_fields(const std::vector<ViewField>& fields, size_t state_count, std::vector<ViewField>& all) {
+  for (const ViewField& field : fields) {
+    auto same =
+        std::find_if(all.begin(), all.end(), [&](const ViewField& f) { return f.title == field.title; });
+    if (same == all.end()) {
+      same = all.insert(all.end(), field);
+      same->values.clear();
+    }
+    same->values.resize(state_count - 1);
+    same->values.push_back(field.values.front());
+  }
+  for (ViewField& field : all) field.values.resize(state_count);
 }
 
-Json shades(const Vector& distance, double map_max) {
-  Json numbers = Json::array();
-  for (const double value : distance)
-    numbers.push_back(std::lround(kShades * std::min(1.0, value / map_max)));
-  return numbers;
-}
-
-// The greatest distance but for the outermost twentieth of some surface, and no less than what counts as
-// none.
-double map_end(const Comparison& comparison) {
-  double end = kSameShape * comparison.extent_mm;
-  for (const ComparedMethod& method : comparison.methods)
-    if (method.gap && method.gap->surfaces) end = std::max(end, method.gap->surfaces->to_reference.p95);
-  return end;
-}
-
-void add_shapes(const Comparison& comparison, const RunReport& first, Json& page) {
-  const ViewFrame frame = frame_of(first);
-  const double extent = comparison.extent_mm > 0 ? comparison.extent_mm : 1, unit = extent / kGrains,
-               map_max = map_end(comparison);
-  const Model& model = first.model;
-  page["unit_mm"] = unit;
-  page["map_max"] = map_max;
-  for (const int corner : model.mesh.triangles.reshaped()) page["triangles"].push_back(corner);
-  for (const Line& line : model.lines) page["lines"].insert(page["lines"].end(), {line.a, line.b});
+// Every method's shape; null where there is none.
+std::optional<ShapeView> shapes(const Comparison& comparison) {
+  std::optional<ShapeView> view;
+  Vec3 origin = Vec3::Zero();
+  Eigen::Index nodes = 0;
   for (const ComparedMethod& method : comparison.methods) {
     if (!method.run) continue;
-    const Points x = method.run->report.fields.x.leftCols(drawn_nodes(model)).colwise() +
-                     (method.run->model.origin - model.origin);
-    page["shapes"].push_back({{"name", method.name},
-                              {"points", whole_numbers(in_frame(x, frame), unit)},
-                              {"shades", shades(method.run->report.fields.method_distance, map_max)}});
+    const Model& model = method.run->model;
+    const Report& report = method.run->report;
+    if (!view) {
+      view = bare_view(model, report.fields);
+      view->name = "comparison";
+      view->slider = "Method";
+      view->obstacles.resize(3, 0);
+      origin = model.origin;
+      nodes = drawn_nodes(model);
+      if (!model.lines.empty())
+        view->line_force = {.title = "Force in chords and cables", .unit = "N", .place = ViewPlace::Line};
+    }
+    if (drawn_nodes(model) != nodes) continue;
+    const Points x = report.fields.x.leftCols(nodes).colwise() + (model.origin - origin);
+    view->states.push_back({method.name + ": " + std::string(verdict_name(method.verdict)), x});
+    add_fields(view_fields(model, report.fields), view->states.size(), view->fields);
+    if (view->line_force) view->line_force->values.push_back(report.fields.line_force);
   }
-}
-
-// A page's script ends at the first `</script`, wherever it stands: no `<` is left in the data.
-std::string without_tags(const std::string& json) {
-  std::string text;
-  for (const char c : json)
-    if (c == '<')
-      text += "\\u003c";
-    else
-      text += c;
-  return text;
+  if (!view) return view;
+  const auto is_distance = [](const ViewField& field) { return field.title.starts_with("Distance"); };
+  std::stable_partition(view->fields.begin(), view->fields.end(), is_distance);
+  return view;
 }
 
 }  // namespace
 
 std::string comparison_page(const Comparison& comparison) {
-  Json page = {{"study", comparison_as_json(comparison)},
-               {"unit_mm", 1.0},
-               {"map_max", 1.0},
-               {"triangles", Json::array()},
-               {"lines", Json::array()},
-               {"shapes", Json::array()}};
-  if (const RunReport* first = first_run(comparison)) add_shapes(comparison, *first, page);
-  return std::string(kPageBegin) + without_tags(json_text(page)) + std::string(kPageEnd);
+  Page page{.title = "Comparison of methods on " + comparison.scene_file};
+  page.lead = comparison.has_converged() ? "every method converged" : "not every method converged";
+  page.tone = comparison.has_converged() ? Tone::Good : Tone::Bad;
+  page.sections.push_back({"Distances", {distance_table(comparison), messages(comparison)}});
+  if (const std::optional<ShapeView> view = shapes(comparison))
+    page.sections.push_back({"Closed shapes", {shape_view_html(*view)}});
+  page.sections.push_back({"Figures", {figure_table(comparison)}});
+  page.sections.push_back({"Error and run time", {work_plot(comparison)}});
+  page.footer = "Residual wanted: " + page_number(comparison.tolerance) +
+                (comparison.is_cancelled ? "; cancelled before the last method." : ".");
+  return report_page(page);
 }
 
 }  // namespace coapt

@@ -162,7 +162,7 @@ std::string comparison_csv(const Comparison& comparison) {
 
 void write_comparison(const std::filesystem::path& folder, const Comparison& comparison) {
   write_study(folder, "compare", comparison_as_json(comparison), comparison_csv(comparison));
-  formats::write_whole(folder / "compare.html", comparison_page(comparison));
+  formats::write_whole(folder / "report.html", comparison_page(comparison));
 }
 
 }  // namespace coapt

@@ -283,6 +283,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
     if (output.has("folder"))
       scene.output_folder = (path.parent_path() / output.text("folder")).lexically_normal();
     if (output.has("frames")) scene.frame_interval = output.integer("frames");
+    scene.writes_page = output.flag("report");
   }
   check_generated(scene, file, reading);
   check_substance(scene, json, file, reading);

@@ -8,6 +8,7 @@
 #include "scene/detail/csv_text.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/result_surfaces.hpp"
+#include "scene/solve_page.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -283,6 +284,7 @@ std::vector<std::string> result_files(const Model& model, const Report& report) 
   files.insert(files.end(), {"trace.csv", "metrics.csv"});
   if (has_line(report)) files.push_back("coaptation_line.vtp");
   if (has_orifice(report)) files.push_back("orifice.vtp");
+  if (report.has_page) files.push_back("report.html");
   if (report.has_frames) files.push_back("frames.pvd");
   return files;
 }
@@ -306,7 +308,7 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
   prepare_result_folder(folder);
   write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
   const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
-                 mesh = folder / "closed.obj";
+                 mesh = folder / "closed.obj", page = folder / "report.html";
   write_or_remove(has_line(report), line,
                   [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
   write_or_remove(has_orifice(report), orifice,
@@ -316,6 +318,7 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
     closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
     write_mesh(mesh, closed);
   });
+  write_or_remove(report.has_page, page, [&] { formats::write_whole(page, solve_page(model, report)); });
   formats::write_whole(folder / "trace.csv", trace_csv(report.result));
   formats::write_whole(folder / "metrics.csv", metrics_csv(report));
   // Last: where it is, the others are.

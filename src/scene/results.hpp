@@ -1,11 +1,12 @@
 // Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv; for a valve also
-// coaptation_line.vtp and orifice.vtp.
+// coaptation_line.vtp and orifice.vtp; and report.html, where it is wanted.
 #pragma once
 
 #include "scene/accuracy_estimate.hpp"
 #include "scene/cascade.hpp"
 #include "scene/metrics.hpp"
 #include "scene/reference_distance.hpp"
+#include "scene/shape_record.hpp"
 
 #include <filesystem>
 #include <string>
@@ -26,7 +27,9 @@ struct Report {
   std::optional<ReferenceDistance> reference;
   std::optional<AccuracyEstimate> accuracy;  // where one was wanted
   std::vector<std::string> warnings;
-  bool has_frames = false;  // of an animation, in the result folder
+  bool has_frames = false;              // of an animation, in the result folder
+  bool has_page = false;                // report.html is written
+  std::vector<RecordedShape> way = {};  // to the result, for the page; empty without one
 };
 
 // How the pressure of the model was treated, in words.

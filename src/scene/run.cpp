@@ -5,6 +5,8 @@
 #include "scene/detail/finish_run.hpp"
 #include "scene/frames.hpp"
 #include "scene/groundwork.hpp"
+#include "scene/shape_view.hpp"
+#include "scene/solve_page.hpp"
 #include "scene/solve_scene.hpp"
 
 #include <iterator>
@@ -15,11 +17,13 @@ std::filesystem::path result_folder(const Scene& scene) {
   return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
 }
 
-void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, Report& report) {
+void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
+                  Report& report) {
   report.scene_file = scene.file.filename().string();
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
   report.warnings = model.warnings;
+  report.has_page = options.writes && options.writes_page.value_or(scene.writes_page);
 }
 
 void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run) {
@@ -70,10 +74,19 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
       };
     }
   }
-  begin_report(scene, setup, model, report);
+  begin_report(scene, setup, model, options, report);
+  std::optional<ShapeRecord> record;
+  if (report.has_page && has_shape_view()) {
+    record.emplace(model, page_shapes(model));
+    setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
+      record->see(iteration, q);
+      return !next || next(iteration, q);
+    };
+  }
   CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
   if (frames) frames->finish();
   report.has_frames = frames.has_value();
+  if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
   finish_run(setup, std::move(outcome), options, run);
   return run;
 }

@@ -14,6 +14,7 @@ struct RunOptions {
   std::optional<double> max_seconds;  // empty: the scene's
   std::optional<int> modes;           // smallest eigenvalues in the certificate; empty: the scene's
   std::optional<int> frame_interval;  // accepted iterates from frame to frame, at least 1; empty: the scene's
+  std::optional<bool> writes_page;    // report.html; empty: as the scene says
   std::filesystem::path folder;       // empty: the scene's, see result_folder()
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty

@@ -99,6 +99,7 @@ struct Scene {
   double closed_surface_scale = 1;                      // mm per unit of that file
   std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
   int frame_interval = 0;                               // accepted iterates from frame to frame; 0: no frames
+  bool writes_page = true;                              // report.html
 };
 
 // Reads and validates a scene file (docs/scene.md). Throws InputError with all defects, each as

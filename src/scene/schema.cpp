@@ -250,7 +250,12 @@ const ObjectSpec& scene_spec() {
                                 .kind = KeyKind::Integer,
                                 .min = 1,
                                 .doc = "Writes every so-many-th accepted iterate as a frame of an animation, "
-                                       "listed by `frames.pvd`; default: none."}}},
+                                       "listed by `frames.pvd`; default: none."},
+                               {.name = "report",
+                                .kind = KeyKind::Flag,
+                                .fallback = "true",
+                                .doc = "Writes `report.html`, a page with the shape, all figures and the "
+                                       "convergence; false: neither the page nor the iterates for it."}}},
            .doc = "Where results go."},
       }};
   return kSpec;

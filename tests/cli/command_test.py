@@ -22,7 +22,7 @@ except ImportError:
     jsonschema = None
 
 COAPT, SCHEMA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2])
-FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv"}
+FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv", "report.html"}
 VALVE_FILES = {"coaptation_line.vtp", "orifice.vtp"}
 
 
@@ -70,6 +70,23 @@ class CommandTest(unittest.TestCase):
                 self.assertTrue(result["converged"])
                 self.assertLessEqual(result["residual"], 1e-6)
                 self.assertLess(result["metrics"]["force_balance"], 1e-5)
+
+    def test_writes_a_page_unless_nobody_wants_it(self):
+        scene = self.generate("disc", "--triangles", 200)
+        page = self.folder / "result" / "report.html"
+        self.assertIn("report.html", coapt("solve", scene).stdout)
+        text = page.read_text()
+        self.assertTrue(text.startswith("<!DOCTYPE html>") and text.endswith("</html>\n"))
+        self.assertIn(self.result()["message"], text)
+        self.assertNotIn("http://", text.split("<script")[0])
+        coapt("solve", scene, "--no-report")
+        self.assertFalse(page.exists(), "one of an earlier solve would be taken for this one's")
+        self.assertNotIn("report.html", self.result()["files"])
+        text = scene.read_text()
+        scene.write_text(text.replace('"solver":', '"output": { "report": false }, "solver":'))
+        self.assertNotEqual(scene.read_text(), text)
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        self.assertFalse(page.exists())
 
     def test_generated_disc_has_the_known_deflection(self):
         scene = self.generate("disc", "--triangles", 2000)

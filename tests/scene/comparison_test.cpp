@@ -4,6 +4,7 @@
 #include "mesh/mesh_io.hpp"
 #include "optim/newton.hpp"
 #include "scene/comparison_report.hpp"
+#include "scene/shape_view.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -344,31 +345,37 @@ TEST_F(ComparisonTest, TellsItInRowsOfOneLength) {
 TEST_F(ComparisonTest, TellsItOnAPageThatNeedsNothingElse) {
   const Comparison found = compare(disc_scene(), {"newton", "idle", "broken"});
   write_comparison(found.folder, found);
-  std::string page = text_of(result("compare.html"));
-  const std::string svg_namespace = "http://www.w3.org/2000/svg";  // a name, nothing is fetched from there
-  page.erase(page.find(svg_namespace), svg_namespace.size());
-  for (const char* other : {"http:", "https:", "src=", "href=", "@import", "fetch("})
-    EXPECT_EQ(page.find(other), std::string::npos) << other;
-  const std::string opening = "type=\"application/json\">";
+  const std::string page = text_of(result("report.html"));
+  const std::string outside = page.substr(0, page.find("<script"));
+  for (const char* other : {"http:", "https:", "src=", "href=", "@import"})
+    EXPECT_EQ(outside.find(other), std::string::npos) << other;
+  EXPECT_EQ(page.find("<b>"), std::string::npos) << "a message is no markup";
+  EXPECT_NE(page.find("&lt;b&gt;"), std::string::npos);
+  for (const char* word :
+       {"newton", "idle", "broken", "not converged", "Distance to newton against run time"})
+    EXPECT_NE(page.find(word), std::string::npos) << word;
+}
+
+TEST_F(ComparisonTest, ShowsEveryShapeOnOneScale) {
+  if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
+  const Comparison found = compare(disc_scene(), {"newton", "idle", "broken"});
+  const std::string page = comparison_page(found), opening = "id=\"shape-data\">";
   const size_t from = page.find(opening) + opening.size(), to = page.find("</script>", from);
   const std::string data = page.substr(from, to - from);
   EXPECT_EQ(data.find('<'), std::string::npos) << "it could end the script";
   const nlohmann::json json = nlohmann::json::parse(data);
-  EXPECT_EQ(json.at("study"), nlohmann::json::parse(text_of(result("compare.json"))));
-  EXPECT_NE(json.at("study").at("methods").at(2).at("message").get<std::string>().find("<b>"),
-            std::string::npos);
+  ASSERT_EQ(json.at("states").size(), 2U);
   const Model& model = found.reference().run->model;
-  EXPECT_EQ(json.at("triangles").size(), static_cast<size_t>(model.mesh.triangles.size()));
-  ASSERT_EQ(json.at("shapes").size(), 2U);
-  EXPECT_EQ(json.at("shapes").at(0).at("shades").size(), 0U);
-  const nlohmann::json& idle = json.at("shapes").at(1);
-  EXPECT_EQ(idle.at("shades").size(), static_cast<size_t>(model.X.cols()));
-  EXPECT_EQ(*std::max_element(idle.at("shades").begin(), idle.at("shades").end()), 255);
-  // Towards the viewer is where the disc bulges to: the flat one lies below the one under pressure.
-  const double unit = json.at("unit_mm");
-  const double bulge = json.at("shapes").at(0).at("points").at(2).get<double>() -
-                       json.at("shapes").at(1).at("points").at(2).get<double>();
-  EXPECT_NEAR(std::abs(bulge) * unit, found.reference().run->report.metrics.max_displacement_mm, 2 * unit);
+  // Base64 of 4 bytes a number.
+  EXPECT_EQ(json.at("triangles").get<std::string>().size(),
+            static_cast<size_t>((4 * model.mesh.triangles.size() + 2) / 3 * 4));
+  const nlohmann::json& distance = json.at("fields").at(0);
+  EXPECT_EQ(distance.at("title"), "Distance to the reference method");
+  ASSERT_EQ(distance.at("values").size(), 2U);
+  EXPECT_TRUE(distance.at("values").at(0).is_null());
+  EXPECT_EQ(distance.at("values").at(1).get<std::string>().size(),
+            static_cast<size_t>((4 * model.mesh.vertex_count() + 2) / 3 * 4));
+  EXPECT_NE(json.at("states").at(0).at("nodes"), json.at("states").at(1).at("nodes"));
 }
 
 }  // namespace

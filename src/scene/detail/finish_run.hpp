@@ -7,7 +7,8 @@
 namespace coapt {
 
 // What is known of a report before the solve.
-void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, Report& report);
+void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
+                  Report& report);
 
 // Measures the shape of the outcome on run.model and writes run.report into run.folder where the options want
 // files.

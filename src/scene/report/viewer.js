@@ -1,0 +1,165 @@
+// The viewer: reads the data of the page, draws them, and answers to the controls.
+
+function readData() {
+  const data = JSON.parse(byId("shape-data").textContent), unpacked = values => values.map(each => each && floats(each));
+  for (const name of ["triangles", "lines", "obstacles"]) data[name] = integers(data[name]);
+  for (const state of data.states) state.nodes = floats(state.nodes);
+  for (const field of data.fields) field.values = unpacked(field.values);
+  if (data.line_force) data.line_force = { ...data.line_force, values: unpacked(data.line_force.values), map: "force" };
+  for (const outline of data.outlines) outline.points = floats(outline.points);
+  return data;
+}
+
+function makeViewer() {
+  const data = readData(), canvas = byId("canvas"), last = data.states.length - 1;
+  const bounds = boundsOf(data.states.map(state => state.nodes)), stage = makeStage(canvas, data.frame, bounds);
+  const viewer = { data, canvas, last, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {},
+                   shown: { state: last, field: data.fields[0], node: -1, triangle: -1 } };
+
+  viewer.redraw = () => {
+    placeParts(viewer.parts, data, viewer.shown, viewer.wanted);
+    paintParts(viewer.parts, data, viewer.shown);
+    stage.draw();
+  };
+
+  viewer.tell = () => {
+    const { shown } = viewer, box = byId("legends");
+    box.textContent = "";
+    if (shown.field) addLegend(box, shown.field);
+    if (data.line_force && viewer.wanted.chords) addLegend(box, data.line_force);
+    byId("carried").hidden = shown.state === last || !shown.field || shown.field.values.length > 1;
+    showValues(data, shown);
+    const sentence = spoken(data, shown);
+    if (byId("picked").textContent !== sentence) byId("picked").textContent = sentence;
+  };
+
+  viewer.show = what => {
+    Object.assign(viewer.shown, what);
+    viewer.redraw();
+    viewer.tell();
+  };
+  return viewer;
+}
+
+function connectSlider({ data, last, shown, show }) {
+  const slider = byId("state"), play = byId("play");
+  let timer = 0;
+  const go = state => {
+    slider.value = state;
+    slider.setAttribute("aria-valuetext", data.states[state].label);
+    byId("state-label").textContent = data.states[state].label;
+    show({ state });
+  };
+  const stop = () => {
+    clearInterval(timer);
+    timer = 0;
+    play.textContent = "Play";
+  };
+  slider.max = last;
+  slider.addEventListener("input", () => {
+    stop();
+    go(Number(slider.value));
+  });
+  play.addEventListener("click", () => {
+    if (timer) return stop();
+    if (shown.state === last) go(0);
+    play.textContent = "Stop";
+    timer = setInterval(() => shown.state === last ? stop() : go(shown.state + 1), 350);
+  });
+  byId("slider").hidden = last === 0;
+  go(last);
+}
+
+function connectColours({ data, show }) {
+  const select = byId("field");
+  data.fields.forEach((field, k) => select.appendChild(element("option", field.title)).value = k);
+  select.appendChild(element("option", "no colours")).value = -1;
+  select.addEventListener("change", () => show({ field: data.fields[select.value] }));
+}
+
+function connectSwitches({ data, parts, wanted, show }) {
+  const counts = { chords: data.lines.length, edges: data.triangles.length, obstacles: data.obstacles.length,
+                   orifice: parts.orifice.children.length, coaptation: parts.coaptation.children.length };
+  for (const [name, count] of Object.entries(counts)) {
+    const box = byId("show-" + name), apply = () => wanted[name] = box.checked && count > 0;
+    box.closest("label").hidden = count === 0;
+    box.addEventListener("change", () => {
+      apply();
+      show({});
+    });
+    apply();
+  }
+  if (data.orifice_text) byId("orifice-text").textContent = data.orifice_text;
+}
+
+function connectCut({ stage, bounds }) {
+  const normals = { towards: stage.towards, right: stage.right, up: stage.up }, slider = byId("cut-at");
+  const apply = () => {
+    const normal = normals[byId("cut").value], from = Number(slider.value) / 100 * bounds.radius;
+    const place = normal ? figure(from, 3) + " mm from the middle" : "";
+    slider.disabled = !normal;
+    slider.setAttribute("aria-valuetext", place);
+    byId("cut-label").textContent = place;
+    stage.renderer.clippingPlanes = normal ? [new THREE.Plane(normal.clone().negate(), normal.dot(stage.centre) + from)] : [];
+    stage.draw();
+  };
+  byId("cut").addEventListener("change", apply);
+  slider.addEventListener("input", apply);
+  apply();
+}
+
+function connectPicking({ data, canvas, stage, parts, shown, show }) {
+  const field = byId("node"), count = data.states[0].nodes.length / 3;
+  const pickAt = (x, y) => {
+    const picked = pickedAt(canvas, stage, parts, data, shown, x, y) || { node: -1, triangle: -1 };
+    field.value = picked.node < 0 ? "" : picked.node;
+    show(picked);
+  };
+  let down = null;
+  canvas.addEventListener("pointerdown", event => down = event);
+  canvas.addEventListener("pointerup", event => {
+    if (down && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 4) pickAt(event.clientX, event.clientY);
+    down = null;
+  });
+  canvas.addEventListener("keydown", event => {
+    const box = canvas.getBoundingClientRect();
+    if (event.key === "Enter") pickAt(box.left + box.width / 2, box.top + box.height / 2);
+  });
+  field.max = count - 1;
+  byId("node-range").textContent = "0 to " + (count - 1);
+  field.addEventListener("input", () => {
+    const node = field.value === "" ? -1 : Number(field.value);
+    if (Number.isInteger(node) && node >= -1 && node < count) show({ node, triangle: -1 });
+  });
+}
+
+function connectCamera({ canvas, stage, redraw }) {
+  const keys = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1],
+                 "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1.1] };
+  canvas.addEventListener("keydown", event => {
+    if (keys[event.key]) stage.turn(...keys[event.key]);
+    else if (event.key === "Home") stage.views.oblique();
+    else return;
+    event.preventDefault();
+  });
+  for (const button of document.querySelectorAll("[data-view]"))
+    button.addEventListener("click", () => stage.views[button.dataset.view]());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  stage.resize();
+  stage.views.oblique();
+}
+
+function canDraw() {
+  const canvas = document.createElement("canvas");
+  return Boolean(canvas.getContext("webgl2") || canvas.getContext("webgl"));
+}
+
+if (canDraw()) {
+  const viewer = makeViewer();
+  for (const connect of [connectSwitches, connectColours, connectCut, connectPicking, connectCamera, connectSlider]) connect(viewer);
+  byId("screenshot").addEventListener("click", () => saveScreenshot(viewer.canvas, viewer.data, viewer.shown));
+  byId("viewer").dataset.ready = "yes";
+} else {
+  byId("viewer").hidden = true;
+  byId("no-view").hidden = false;
+}

@@ -1,0 +1,230 @@
+#include "scene/solve_page.hpp"
+
+#include "core/components.hpp"
+#include "core/timing.hpp"
+#include "mesh/formats/xml_escaped.hpp"
+#include "scene/solve_view.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr size_t kMostShapes = 12;
+constexpr size_t kShapeBytes = 2'000'000;  // of all shapes in the page; a node takes 16 in each
+
+// "orifice_area_mm2" in words: "orifice area".
+std::string in_words(const MetricRow& row) {
+  std::string name = row.name;
+  if (!row.unit.empty() && name.ends_with("_" + row.unit)) name.resize(name.size() - row.unit.size() - 1);
+  if (row.unit == "N" && name.ends_with("_n")) name.resize(name.size() - 2);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string unit_sign(std::string unit) {
+  if (unit == "mm2") return "mm²";
+  if (unit == "mm3") return "mm³";
+  return unit;
+}
+
+std::string tile(const std::string& name, double value, const std::string& unit) {
+  return "<div><dt>" + formats::xml_escaped(name) + "</dt><dd>" + page_number(value) + " <small>" + unit +
+         "</small></dd></div>\n";
+}
+
+// The figures that a user looks at first.
+PageMarkup tiles(const Report& report) {
+  std::string html;
+  for (const MetricRow& row : metric_rows(report.metrics))
+    for (const char* name :
+         {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
+          "max_principal_strain", "max_chord_force_n", "max_displacement_mm"})
+      if (row.name == name && row.value) html += tile(in_words(row), *row.value, unit_sign(row.unit));
+  if (report.reference)
+    html += tile("mean distance to reference", both_directions(*report.reference).mean, "mm");
+  return {"<dl class=\"tiles\">\n" + html + tile("residual", report.result.residual, "") + "</dl>\n"};
+}
+
+PageTable metric_table(const Report& report) {
+  PageTable table{.caption = "All figures of the result, as in result.json and metrics.csv",
+                  .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
+  for (const MetricRow& row : metric_rows(report.metrics))
+    if (row.value)
+      table.rows.push_back(
+          {{in_words(row)}, {page_number(*row.value, 6)}, {unit_sign(row.unit)}, {row.meaning}});
+  table.note = "Intersections were counted by: " + report.metrics.intersection_judge +
+               ". Figures that the scene does not define are left out.";
+  return table;
+}
+
+PageTable leaflet_table(const std::vector<LeafletMetrics>& leaflets) {
+  PageTable table{.caption = "Leaflet by leaflet", .columns = {{"figure", true}}};
+  for (const MetricRow& row : leaflet_rows(leaflets.front()))
+    table.rows.push_back({{in_words(row) + (row.unit.empty() ? "" : " [" + unit_sign(row.unit) + "]")}});
+  for (const LeafletMetrics& leaflet : leaflets) {
+    table.columns.push_back({leaflet.name});
+    const std::vector<MetricRow> rows = leaflet_rows(leaflet);
+    for (size_t r = 0; r < rows.size(); ++r)
+      table.rows[r].push_back({rows[r].value ? page_number(*rows[r].value, 5) : "–"});
+  }
+  return table;
+}
+
+PageTable orifice_table(const std::vector<Orifice>& orifices) {
+  PageTable table{
+      .caption = "Open places seen from the atrium; a negative area is a covered island in one",
+      .columns = {{"orifice", true}, {"area [mm²]"}, {"regurgitant area [mm²]"}, {"perimeter [mm]"}}};
+  for (const Orifice& orifice : orifices)
+    table.rows.push_back({{std::to_string(table.rows.size() + 1)},
+                          {page_number(orifice.outline.area)},
+                          {page_number(orifice.regurgitant_area_mm2)},
+                          {page_number(orifice.outline.perimeter)}});
+  return table;
+}
+
+PageTable distance_table(const ReferenceDistance& distance) {
+  PageTable table{.caption = "Distance to the given closed surface [mm]",
+                  .columns = {{"direction", true}, {"mean"}, {"95 %"}, {"greatest"}}};
+  const auto add = [&table](const char* name, const DistanceFigures& figures) {
+    table.rows.push_back(
+        {{name}, {page_number(figures.mean)}, {page_number(figures.p95)}, {page_number(figures.max)}});
+  };
+  add("from the result to it", distance.to_reference);
+  add("from it to the result", distance.from_reference);
+  if (distance.same_vertex)
+    table.rows.push_back({{"each vertex from itself"},
+                          {page_number(distance.same_vertex->mean)},
+                          {""},
+                          {page_number(distance.same_vertex->max)}});
+  return table;
+}
+
+PageSection figures(const Report& report) {
+  PageSection section{"Figures", {metric_table(report)}};
+  if (report.metrics.closure && !report.metrics.closure->leaflets.empty())
+    section.blocks.emplace_back(leaflet_table(report.metrics.closure->leaflets));
+  if (report.metrics.closure && !report.metrics.closure->orifices.empty())
+    section.blocks.emplace_back(orifice_table(report.metrics.closure->orifices));
+  if (report.reference) section.blocks.emplace_back(distance_table(*report.reference));
+  return section;
+}
+
+PagePlot residual_plot(const Report& report, bool against_time) {
+  PageSeries series{.name = report.solver};
+  for (const Iteration& it : report.result.trace)
+    series.points.push_back({against_time ? it.seconds : it.iteration, it.residual, false,
+                             "iterate " + std::to_string(it.iteration)});
+  return {.title = against_time ? "Residual against wall time" : "Residual against iterates",
+          .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
+          .y = {"residual (largest out-of-balance force over the largest force)", Scale::Logarithmic},
+          .series = {series},
+          .levels = {{report.tolerance, "tolerance"}}};
+}
+
+PageSection convergence(const Report& report) {
+  PageSection section{"Convergence", {}};
+  if (report.result.trace.empty()) return {"Convergence", {PageText{"No iterate was accepted."}}};
+  section.blocks = {residual_plot(report, false), residual_plot(report, true)};
+  if (report.result.rounds > 0)
+    section.blocks.emplace_back(
+        PageText{"The residual of an iterate is that of the potential of its round; the "
+                 "verdict is that of the exact loads."});
+  return section;
+}
+
+// Name and value, one row each.
+PageTable listed_pairs(const std::string& caption,
+                       const std::vector<std::pair<std::string, std::string>>& pairs) {
+  PageTable table{.caption = caption, .columns = {{"", true}, {"", true}}};
+  for (const auto& [name, value] : pairs) table.rows.push_back({{name}, {value}});
+  return table;
+}
+
+PageTable solve_table(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  const auto count = [](auto number) { return std::to_string(number); };
+  return listed_pairs(
+      "What was solved, how, and at what cost",
+      {{"scene", report.scene_file},
+       {"version of coapt", version()},
+       {"licence of this build", combined_licence()},
+       {"mesh", count(model.mesh.vertex_count()) + " vertices, " + count(model.mesh.triangle_count()) +
+                    " triangles, " + count(model.lines.size()) + " chords and cables, " +
+                    count(model.objective->free_count()) + " unknowns"},
+       {"solver", report.solver},
+       {"tolerance on the residual", page_number(report.tolerance)},
+       {"pressure", report.pressure_route},
+       {"certificate", summary(result.certificate)},
+       {"energy", page_number(result.energy, 10) + " mJ"},
+       {"iterates", count(result.iterations)},
+       {"evaluations", count(result.evaluations.gradient) + " gradients, " + count(result.evaluations.value) +
+                           " values, " + count(result.evaluations.hessian) + " Hessians, " +
+                           count(result.factorisations) + " factorisations"},
+       {"time", page_number(result.wall_s, 3) + " s by the clock, " + page_number(result.cpu_s, 3) +
+                    " s of CPU time"},
+       {"peak memory", page_number(peak_memory_mb(), 3) + " MB"}});
+}
+
+PageTable term_table(const Result& result) {
+  PageTable table{.caption = "Energies and loads",
+                  .columns = {{"term", true}, {"type", true}, {"energy [mJ]"}, {"greatest nodal force [N]"}}};
+  for (const TermReport& term : result.terms)
+    table.rows.push_back(
+        {{term.name}, {term.type}, {page_number(term.energy, 6)}, {page_number(term.greatest_force)}});
+  return table;
+}
+
+PageTable phase_table(const Result& result) {
+  PageTable table{.caption = "Wall time by phase", .columns = {{"phase", true}, {"time [s]"}}};
+  for (const auto& [phase, seconds] : result.phase_s)
+    table.rows.push_back({{phase}, {page_number(seconds, 3)}});
+  return table;
+}
+
+PageTable level_table(const std::vector<CascadeLevel>& levels) {
+  PageTable table{
+      .caption = "Meshes of the cascade; the shapes in the view are those of the last",
+      .columns = {{"triangles", true}, {"iterates"}, {"status", true}, {"residual"}, {"CPU time [s]"}}};
+  for (const CascadeLevel& level : levels)
+    table.rows.push_back({{std::to_string(level.triangles)},
+                          {std::to_string(level.iterations)},
+                          {std::string(status_name(level.status))},
+                          {page_number(level.residual, 3)},
+                          {page_number(level.cpu_s, 3)}});
+  return table;
+}
+
+PageSection account(const Model& model, const Report& report) {
+  PageSection section{"What was solved", {solve_table(model, report), term_table(report.result)}};
+  if (!report.result.phase_s.empty()) section.blocks.emplace_back(phase_table(report.result));
+  if (!report.levels.empty()) section.blocks.emplace_back(level_table(report.levels));
+  return section;
+}
+
+}  // namespace
+
+size_t page_shapes(const Model& model) {
+  const auto bytes = 16 * static_cast<size_t>(std::max<Eigen::Index>(1, model.X.cols()));
+  return std::clamp<size_t>(kShapeBytes / bytes, 2, kMostShapes);
+}
+
+std::string solve_page(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  Page page;
+  page.title = "Result of " + (report.scene_file.empty() ? "a scene" : report.scene_file);
+  page.lead = result.message;
+  page.tone = result.status == Status::Converged ? Tone::Good : Tone::Bad;
+  PageSection shape{"Shape", {tiles(report)}};
+  if (!report.warnings.empty()) {
+    PageList list;
+    for (const std::string& warning : report.warnings)
+      list.items.push_back({"Warning: " + warning, Tone::Caution});
+    shape.blocks.emplace_back(list);
+  }
+  shape.blocks.emplace_back(shape_view_html(solved_view(model, report)));
+  page.sections = {shape, figures(report), convergence(report), account(model, report)};
+  return report_page(page);
+}
+
+}  // namespace coapt

@@ -1,0 +1,228 @@
+// Drives report.html in a headless Chromium as a user does: mouse, keyboard, screen reader names, printing.
+//   node report_test.mjs COAPT_BINARY SCRATCH_FOLDER
+// Exit code 77: skipped, with the reason. COAPT_UPDATE_REFERENCE=1 renews reference.png.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { readVtp } from "./vtp.mjs";
+
+const [coapt, scratch] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+
+function skip(reason) {
+  console.log("skipped: " + reason);
+  process.exit(77);
+}
+
+const browsers = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const executablePath = browsers.find(path => existsSync(path));
+if (!executablePath) skip("no Chromium; install the package chromium");
+const { chromium } = await import("playwright-core").catch(() => skip("no playwright-core; run npm ci in tests/report"));
+
+function solved(name, shape, ...options) {
+  const folder = join(scratch, name);
+  mkdirSync(folder, { recursive: true });
+  execFileSync(coapt, ["generate", ...shape, "-o", folder]);
+  try {
+    execFileSync(coapt, ["solve", join(folder, "scene.json"), ...options], { stdio: "pipe" });
+  } catch (error) {
+    if (error.status !== 1) throw error;  // 1: not converged, the result is there
+  }
+  return join(folder, "result");
+}
+
+const browser = await chromium.launch(
+    { executablePath, args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"] });
+
+// A page whose errors and requests are counted; closed() asserts that there were none.
+async function opened(folder, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 900, height: 760 }, ...options });
+  const errors = [], requests = [], url = pathToFileURL(join(folder, "report.html")).href;
+  page.on("console", message => message.type() === "error" && errors.push(message.text()));
+  page.on("pageerror", error => errors.push(error.message));
+  page.on("request", request => request.url() !== url && !request.url().startsWith("data:") && requests.push(request.url()));
+  await page.goto(url);
+  await page.waitForSelector("#viewer[data-ready=yes]", { timeout: 60000 });
+  const closed = async () => {
+    await page.close();
+    assert.deepEqual(errors, [], "errors on the console");
+    assert.deepEqual(requests, [], "requests");
+  };
+  return { page, closed };
+}
+
+const picture = page => page.locator("#canvas").screenshot();
+const shownValue = async (page, title) => {
+  const row = page.locator("#values tr", { has: page.locator("th", { hasText: title }) }).first();
+  return (await row.locator("td").textContent()).trim();
+};
+const near = (text, value, digits) =>
+    assert.ok(Math.abs(parseFloat(text) - value) <= 0.51 * 10 ** (Math.floor(Math.log10(Math.abs(value) || 1)) + 1 - digits),
+              `${text} against ${value}`);
+
+async function pick(page, node) {
+  await page.getByLabel("Node", { exact: true }).fill(String(node));
+  assert.match(await page.getByRole("status").textContent(), new RegExp(`^Node ${node}\\.`));
+}
+
+// The mean difference of two pictures on a coarse grid, 0 to 255: blind to what another machine rounds otherwise.
+async function difference(one, other) {
+  const page = await browser.newPage();
+  const result = await page.evaluate(async texts => {
+    const pixels = await Promise.all(texts.map(async text => {
+      const image = new Image();
+      image.src = "data:image/png;base64," + text;
+      await image.decode();
+      const canvas = new OffscreenCanvas(48, 36), pen = canvas.getContext("2d");
+      pen.imageSmoothingQuality = "high";
+      pen.drawImage(image, 0, 0, 48, 36);
+      return pen.getImageData(0, 0, 48, 36).data;
+    }));
+    return pixels[0].reduce((sum, value, k) => sum + Math.abs(value - pixels[1][k]), 0) / pixels[0].length;
+  }, [one.toString("base64"), other.toString("base64")]);
+  await page.close();
+  return result;
+}
+
+const tests = {
+  async "the slider leads through real iterates to the shape of closed.vtp"({ page, vtp }) {
+    const slider = page.getByRole("slider", { name: "Open ↔ closed" });
+    const last = Number(await slider.getAttribute("max"));
+    assert.ok(last >= 4, "iterates: " + last);
+    const node = vtp.points.displacement.reduce((best, _, k, all) =>
+        k % 3 === 0 && Math.hypot(...all.slice(k, k + 3)) > best.size ? { size: Math.hypot(...all.slice(k, k + 3)), at: k / 3 } : best,
+        { size: 0, at: -1 });
+    await pick(page, node.at);
+    const place = async () => (await shownValue(page, "Position")).replace(" mm", "").split(", ").map(Number);
+    const closed = await place(), closedPicture = await picture(page);
+    closed.forEach((value, c) => assert.ok(Math.abs(value - vtp.Points[3 * node.at + c]) < 1e-3));
+    const seen = new Set();
+    for (let state = last; state >= 0; --state) {
+      await slider.fill(String(state));
+      seen.add((await place()).join());
+    }
+    assert.equal(seen.size, last + 1, "every stop of the slider is another shape");
+    const open = await place();
+    closed.forEach((value, c) => assert.ok(
+        Math.abs(value - open[c] - vtp.points.displacement[3 * node.at + c]) < 1e-3, "the first is the start"));
+    assert.equal(await page.locator("#state-label").textContent(), "start, as given");
+    assert.ok(await difference(await picture(page), closedPicture) > 2, "the picture moves with the slider");
+    await slider.press("End");
+    assert.match(await slider.getAttribute("aria-valuetext"), /^result: converged/);
+  },
+
+  async "picking a node shows its values in closed.vtp"({ page, vtp }) {
+    const vertices = Math.max(...vtp.triangles) + 1;
+    const touching = vtp.points.gap.findIndex((gap, k) => k < vertices && gap > 0 && gap < 1);
+    assert.ok(touching >= 0);
+    await pick(page, touching);
+    near(await shownValue(page, "Gap"), vtp.points.gap[touching], 5);
+    near(await shownValue(page, "Displacement"), Math.hypot(...vtp.points.displacement.slice(3 * touching, 3 * touching + 3)), 5);
+    const around = vtp.triangles.flatMap((corner, k) => corner === touching ? [Math.floor(k / 3)] : []);
+    const strain = around.reduce((sum, t) => sum + vtp.cells.principal_strain_1[vtp.lineCount + t], 0) / around.length;
+    near(await shownValue(page, "Greater principal strain"), strain, 4);
+  },
+
+  async "a click picks what lies there, and nothing beside it"({ page, vtp }) {
+    await page.getByRole("button", { name: "From the atrium" }).click();
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height * 0.4);
+    const [, node, triangle] = /^Node (\d+), triangle (\d+)\./.exec(await page.getByRole("status").textContent());
+    assert.ok(vtp.triangles.slice(3 * triangle, 3 * triangle + 3).includes(Number(node)));
+    near(await shownValue(page, "Displacement"), Math.hypot(...vtp.points.displacement.slice(3 * node, 3 * node + 3)), 5);
+    await page.mouse.click(box.x + 3, box.y + 3);
+    assert.equal(await page.getByRole("status").textContent(), "Nothing picked.");
+  },
+
+  async "colours, cut and keys change the picture"({ page }) {
+    let before = await picture(page);
+    const changes = async what => {
+      const now = await picture(page);
+      assert.ok(!now.equals(before), what);
+      before = now;
+    };
+    const field = page.getByLabel("Colour by");
+    for (const title of (await field.locator("option").allTextContents()).slice(1)) {
+      await field.selectOption({ label: title });
+      await changes(title);
+    }
+    await page.getByLabel("Plane", { exact: true }).selectOption("right");
+    await changes("cut");
+    await page.getByLabel("Place of the cutting plane").fill("40");
+    await changes("place of the cut");
+    await page.getByLabel("chords and cables").uncheck();
+    await changes("chords");
+    await page.locator("#canvas").focus();
+    await page.keyboard.press("ArrowLeft");
+    await changes("arrow key");
+    await page.keyboard.press("+");
+    await changes("plus");
+    await page.getByLabel("Plane", { exact: true }).selectOption("");
+    await page.getByLabel("chords and cables").check();
+    await page.getByRole("button", { name: "Oblique" }).click();
+  },
+
+  async "figures are those of result.json"({ page, folder }) {
+    const result = JSON.parse(readFileSync(join(folder, "result.json")));
+    const table = page.getByRole("table", { name: /^All figures/ });
+    for (const [title, value] of [["orifice area", result.metrics.orifice_area_mm2],
+                                  ["max principal strain", result.metrics.max_principal_strain],
+                                  ["coaptation area", result.metrics.coaptation_area_mm2]]) {
+      const cell = table.getByRole("row", { name: title, exact: false }).first().getByRole("cell").first();
+      near(await cell.textContent(), value, 5);
+    }
+    assert.equal(await page.locator("header .lead").textContent(), result.message);
+    assert.ok(await page.getByText(result.certificate.summary).count() > 0);
+    assert.equal(await page.locator("figure.plot svg[role=img]").count(), 2);
+  },
+
+  async "a picture can be saved, and the page printed"({ page }) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save a picture" }).click()]);
+    assert.equal(readFileSync(await download.path()).subarray(1, 4).toString(), "PNG");
+    await page.emulateMedia({ media: "print" });
+    assert.ok(await page.locator("#slider").isHidden());
+    assert.ok(await page.locator("#canvas").isVisible());
+    await page.emulateMedia({ media: "screen" });
+  },
+
+  async "the picture is that of the reference"({ page }) {
+    await page.reload();
+    await page.waitForSelector("#viewer[data-ready=yes]");
+    const file = join(here, "reference.png"), now = await picture(page);
+    writeFileSync(join(scratch, "picture.png"), now);
+    if (process.env.COAPT_UPDATE_REFERENCE) writeFileSync(file, now);
+    const apart = await difference(now, readFileSync(file));
+    assert.ok(apart < 4, `${apart} of 255 from reference.png; the picture is ${join(scratch, "picture.png")}`);
+  },
+};
+
+let failures = 0;
+async function run(name, body) {
+  try {
+    await body();
+    console.log("ok      " + name);
+  } catch (error) {
+    ++failures;
+    console.log("FAILED  " + name + "\n" + error.stack);
+  }
+}
+
+const folder = solved("mitral", ["mitral", "--triangles", "400"]);
+const vtp = readVtp(join(folder, "closed.vtp"));
+const { page, closed } = await opened(folder);
+for (const [name, test] of Object.entries(tests)) await run(name, () => test({ page, vtp, folder }));
+await run("no errors and no requests on a valve", closed);
+await run("a chain without a sheet is drawn too, in the dark", async () => {
+  const chain = await opened(solved("chain", ["catenary"]), { colorScheme: "dark" });
+  await chain.page.getByRole("slider", { name: "Start ↔ result" }).fill("0");
+  await chain.closed();
+});
+await run("10,000 triangles take less than 5 MB", async () => {
+  const folder = solved("disc", ["disc", "--triangles", "10000"], "--max-seconds", "0.5");
+  const size = statSync(join(folder, "report.html")).size;
+  assert.ok(size < 5e6, size + " bytes");
+});
+await browser.close();
+process.exit(failures === 0 ? 0 : 1);
