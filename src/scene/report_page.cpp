@@ -111,7 +111,7 @@ std::string report_page(const Page& page) {
 std::string page_number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  char text[64];
+  char text[352];  // the longest that a format may ask for
   // Whole numbers with all their digits: counts are exact.
   if (size < 1e9 && value == std::round(value))
     std::snprintf(text, sizeof text, "%.0f", value);
