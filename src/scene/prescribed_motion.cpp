@@ -65,7 +65,7 @@ size_t station_count(const Prescribed& prescribed, const Points& X) {
   size_t count = 0;
   for (const auto& [node, path] : prescribed.paths) {
     const bool moves =
-        std::any_of(path.begin(), path.end(), [&](const Vec3& to) { return to != X.col(node); });
+        std::any_of(path.begin(), path.end(), [&, node = node](const Vec3& to) { return to != X.col(node); });
     if (moves) count = std::max(count, path.size());
   }
   return count;

@@ -40,7 +40,7 @@ struct KeyGroup {
 };
 
 struct ObjectSpec {
-  std::vector<KeySpec> keys = {};
+  std::vector<KeySpec> keys;
   std::vector<KeyGroup> groups = {};
 };
 

@@ -311,7 +311,8 @@ class ValveReader {
     for (const auto& [name, vertices] : file_.sets) {
       if (!json_.contains("sets") || !json_["sets"].is_object() || !json_["sets"].contains(name)) continue;
       const auto& supports = file_.valve.supports;
-      if (std::none_of(supports.begin(), supports.end(), [&](const Support& s) { return s.name == name; }))
+      if (std::none_of(supports.begin(), supports.end(),
+                       [&name = name](const Support& s) { return s.name == name; }))
         file_.valve.sets[name] = vertices;
     }
   }
