@@ -20,5 +20,6 @@ void add_mesh_study_command(CLI::App& app, int& exit_code);
 void add_tune_regions_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
+void add_stress_command(CLI::App& app, int& exit_code);
 
 }  // namespace coapt::cli

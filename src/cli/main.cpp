@@ -38,6 +38,7 @@ int run_command(int argc, char** argv) {
   add_tune_regions_command(app, exit_code);
   add_compare_command(app, exit_code);
   add_bench_command(app, exit_code);
+  add_stress_command(app, exit_code);
   app.footer("Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error.");
   try {
     app.parse(argc, argv);

@@ -28,6 +28,8 @@ void listen_for_interrupts() {
   }
 }
 
+bool is_interrupted() { return interrupted != 0; }
+
 Observer make_observer() {
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   const auto last_shown = std::make_shared<double>(-1.0);
@@ -38,7 +40,7 @@ Observer make_observer() {
                    it.residual, it.energy, it.seconds);
       std::fflush(stderr);
     }
-    return interrupted == 0;
+    return !is_interrupted();
   };
 }
 

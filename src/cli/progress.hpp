@@ -11,6 +11,9 @@ namespace coapt::cli {
 // call.
 void listen_for_interrupts();
 
+// Whether such a signal has come.
+bool is_interrupted();
+
 // Writes a progress line to the standard error stream when that is a terminal, and cancels the run after
 // an interrupt.
 Observer make_observer();

@@ -1,0 +1,133 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "core/error.hpp"
+#include "mesh/formats/text.hpp"
+#include "scene/stress/stress_report.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, folder, rows;
+  double row_seconds = 20;
+  bool is_quick = false, lists = false, prints_json = false;
+};
+
+// "S1, S4" as a list.
+std::vector<std::string> split(const std::string& names) {
+  std::vector<std::string> all;
+  for (size_t from = 0; from != std::string::npos;) {
+    const size_t comma = names.find(',', from);
+    all.emplace_back(formats::trimmed(std::string_view(names).substr(from, comma - from)));
+    from = comma == std::string::npos ? comma : comma + 1;
+  }
+  return all;
+}
+
+void print_list(const std::vector<StressRow>& rows) {
+  std::printf("  %-4s %-20s %-24s %-58s %s\n", "row", "topic", "scene", "what is varied", "quick");
+  for (const StressRow& row : rows)
+    std::printf("  %-4s %-20s %-24s %-58s %s\n", row.id.c_str(), std::string(stress_topic(row.id)).c_str(),
+                row.scene.c_str(), row.name.c_str(), row.is_quick ? "yes" : "");
+}
+
+void print_number(const std::optional<double>& value) {
+  if (value)
+    std::printf(" %9.2g", *value);
+  else
+    std::printf(" %9s", "-");
+}
+
+void print_header() {
+  std::printf("  %-4s %-24s %-58s %-7s %9s %9s %6s %8s\n", "row", "scene", "what is varied", "verdict",
+              "figure", "limit", "iter.", "wall s");
+}
+
+void print_row(const StressResult& result) {
+  const StressOutcome& outcome = result.outcome;
+  std::printf("  %-4s %-24s %-58s %-7s", result.row.id.c_str(), result.row.scene.c_str(),
+              result.row.name.c_str(), std::string(stress_verdict_name(outcome.verdict)).c_str());
+  print_number(outcome.figure);
+  print_number(outcome.limit);
+  if (outcome.iterations)
+    std::printf(" %6d", *outcome.iterations);
+  else
+    std::printf(" %6s", "-");
+  std::printf(" %8.2f\n", result.wall_s);
+  if (outcome.verdict != StressVerdict::Pass) std::printf("       %s\n", outcome.message.c_str());
+  std::fflush(stdout);
+}
+
+// Where the files go: `-o`, else the scene's result folder, else a folder here.
+std::filesystem::path folder_of(const Arguments& arguments, const std::optional<Scene>& scene) {
+  if (!arguments.folder.empty()) return arguments.folder;
+  return scene ? result_folder(*scene) : std::filesystem::path("stress");
+}
+
+void stress(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  std::optional<Scene> scene;
+  if (!arguments.scene.empty()) scene = load_scene(arguments.scene);
+  StressOptions options;
+  if (!arguments.rows.empty()) options.rows = split(arguments.rows);
+  options.is_quick = arguments.is_quick;
+  options.row_seconds = arguments.row_seconds;
+  options.folder = folder_of(arguments, scene);
+  options.solvers = all_solvers();
+  options.factorisations = all_factorisations();
+  options.judge = intersection_judge();
+  options.is_cancelled = is_interrupted;
+  bool has_header = false;
+  options.report = [&](const StressResult& result) {
+    if (arguments.prints_json) return;
+    if (!has_header) print_header();
+    has_header = true;
+    print_row(result);
+  };
+  const std::vector<StressRow> rows = scene ? stress_rows(*scene, options) : stress_rows(options);
+  if (arguments.lists) {
+    print_list(rows);
+    return;
+  }
+  prepare_result_folder(options.folder);
+  StressMatrix matrix = run_stress(rows, options);
+  if (scene) matrix.scene_file = scene->file.filename().string();
+  write_stress(options.folder, matrix);
+  if (arguments.prints_json)
+    std::fputs(stress_json(matrix).c_str(), stdout);
+  else
+    std::printf("%s\nwritten to %s (stress.json, stress.csv, stress.html%s)\n",
+                stress_summary(matrix).c_str(), options.folder.string().c_str(),
+                scene ? "" : ", and the scenes");
+  exit_code = matrix.has_failed() || matrix.is_cancelled ? kNotConverged : kConverged;
+}
+
+}  // namespace
+
+void add_stress_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "stress",
+      "Stability matrix: scenes at the end of what they can be asked for, and whether the answer holds");
+  command->add_option("SCENE", arguments->scene, "Scene file (JSON); without one the built-in scenes");
+  command->add_option("-o,--output", arguments->folder,
+                      "Folder of the files (default: the scene's result folder; without a scene: stress)");
+  command->add_option("--rows", arguments->rows,
+                      "Ids of rows with commas between them: S1,S4 (default: all)");
+  command->add_option("--time-limit", arguments->row_seconds, "Of each solve, in seconds (default: 20)")
+      ->check(positive_defect);
+  command->add_flag("--quick", arguments->is_quick, "Only the rows that take next to no time");
+  command->add_flag("--list", arguments->lists, "List the rows and run none");
+  command->add_flag("--json", arguments->prints_json, "Print stress.json instead of the table");
+  command->callback([arguments, &exit_code] { stress(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,39 @@
+// A scene in other units, elsewhere, turned, or with other numbers: what the rows of the stability matrix do
+// to it. Private to this room.
+#pragma once
+
+#include "scene/stress/bench.hpp"
+
+#include <functional>
+#include <string>
+
+namespace coapt {
+
+// x' = length * turn * x + shift; stresses are multiplied by `stress`, and whatever has a dimension follows.
+struct StressFrame {
+  double length = 1, stress = 1;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // a rotation
+  Vec3 shift = Vec3::Zero();                           // [mm]
+
+  Points back(const Points& x, const Vec3& origin_here, const Vec3& origin_there) const;
+};
+
+// Why the scene cannot be put into that frame as a whole: a file gives values that have to change with it.
+// Empty: it can.
+std::string frame_obstacle(const StressScene& subject, const StressFrame& frame);
+
+// The scene in that frame. Nodes far from zero are brought back, as when a scene is read.
+// Pre: frame_obstacle() is empty.
+StressScene in_frame(const StressScene& subject, const StressFrame& frame);
+
+// The scene with every number of some terms that has the dimension of mass in it (moduli, tensions,
+// pressures, forces) times `factor`: the energy of these terms times that factor.
+StressScene with_energy_scaled(const StressScene& subject, double factor,
+                               const std::function<bool(const TermSpec&)>& is_meant);
+
+// What a term is, by its keys.
+bool is_load(const TermSpec& term);
+bool is_line(const TermSpec& term);      // cables, chords, tethers
+bool is_membrane(const TermSpec& term);  // what is neither of these, no contact and no bending
+
+}  // namespace coapt

@@ -1,0 +1,57 @@
+// S1, S2, S7: the answer does not depend on units, place and point of view.
+#include "scene/stress/subject.hpp"
+
+#include <Eigen/Geometry>
+
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+StressOutcome in_another_frame(StressSubject& subject, const StressFrame& frame) {
+  if (const std::string obstacle = frame_obstacle(own_scene(subject), frame); !obstacle.empty())
+    return {StressVerdict::NotApplicable, {}, {}, obstacle};
+  const Stressed solved = subject.bench.solve(in_frame(own_scene(subject), frame));
+  const Points x = frame.back(solved.x, solved.model.origin, own_scene(subject).ground.model.origin);
+  StressOutcome outcome = same_shape_as_own(subject, solved, x);
+  if (outcome.verdict == StressVerdict::Pass)
+    outcome.message += "; " + std::to_string(solved.result.iterations) + " iterations, " +
+                       std::to_string(own_solution(subject).result.iterations) + " in the scene's own frame";
+  return outcome;
+}
+
+// frame: its shift is in extents of the scene.
+StressRow row(const SubjectPointer& subject, const char* id, const std::string& name,
+              const StressFrame& frame, bool is_quick) {
+  return {id,
+          subject->name,
+          name,
+          "greatest distance from the own solution, over the extent",
+          "",
+          is_quick,
+          [subject, frame] {
+            StressFrame absolute = frame;
+            absolute.shift *= extent_of(*subject);
+            return in_another_frame(*subject, absolute);
+          }};
+}
+
+}  // namespace
+
+std::vector<StressRow> frame_rows(const SubjectPointer& subject) {
+  const Vec3 axis = Vec3(1, 2, 3).normalized();
+  StressFrame far, renamed, turned;
+  far.shift = 1e7 * Vec3(1, -1, 0.5);
+  renamed.turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // x becomes y, y z, z x
+  turned.turn = Eigen::AngleAxisd(0.4 * std::numbers::pi, axis).toRotationMatrix();
+  return {row(subject, "S1", "m and Pa", {.length = 1e-3, .stress = 1e6}, true),
+          row(subject, "S1", "mm and kPa", {.length = 1, .stress = 1e3}, false),
+          row(subject, "S1", "um and Pa", {.length = 1e3, .stress = 1e6}, false),
+          row(subject, "S1", "lengths times 1e-6", {.length = 1e-6}, true),
+          row(subject, "S1", "lengths times 1e6", {.length = 1e6}, false),
+          row(subject, "S2", "1e7 extents away", far, true),
+          row(subject, "S7", "axes renamed", renamed, true),
+          row(subject, "S7", "turned by 72 degrees", turned, false)};
+}
+
+}  // namespace coapt

@@ -1,0 +1,46 @@
+// A scene under stress and its own solution, which the rows are compared with. Private to this room.
+#pragma once
+
+#include "scene/stress/changed_scene.hpp"
+
+#include <memory>
+
+namespace coapt {
+
+struct StressSubject {
+  std::string name;  // in the table
+  StressBench bench;
+  std::function<StressScene()> make;  // called once
+  double same_shape = 1e-6;           // distance that counts as none, over the extent
+  std::optional<StressScene> scene = {};
+  std::optional<Stressed> solution = {};
+};
+using SubjectPointer = std::shared_ptr<StressSubject>;
+
+// The scene as it is and its solution, each made when it is first asked for. The former throws InputError.
+const StressScene& own_scene(StressSubject& subject);
+Stressed& own_solution(StressSubject& subject);
+
+double extent_of(StressSubject& subject);  // diagonal of the box around all nodes at rest [mm]
+
+// Judges a solve that must end in the scene's own shape. x: its shape in the frame of the scene, relative to
+// the origin there [mm]. Figure: the largest distance of a node from where it is in the own solution, over
+// the extent. Where that is above the limit both are solved on to a smaller residual first, so that a loose
+// tolerance is not taken for another answer.
+StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x);
+
+// The outcome where the scene itself is no yardstick, as it does not converge.
+std::optional<StressOutcome> no_yardstick(StressSubject& subject);
+
+inline double tolerance_of(const StressScene& scene) { return scene.scene.solver.tolerance; }
+
+// The rows by family. Each row keeps the subject.
+std::vector<StressRow> frame_rows(const SubjectPointer& subject);       // S1, S2, S7
+std::vector<StressRow> number_rows(const SubjectPointer& subject);      // S3, S4, S6
+std::vector<StressRow> start_rows(const SubjectPointer& subject);       // S9, S10, S22
+std::vector<StressRow> failure_rows(const SubjectPointer& subject);     // S16
+std::vector<StressRow> interrupt_rows(const SubjectPointer& subject);   // S17
+std::vector<StressRow> repetition_rows(const SubjectPointer& subject);  // S18, S19, methods
+std::vector<StressRow> promise_rows(const SubjectPointer& subject);     // S13, S14, balance
+
+}  // namespace coapt

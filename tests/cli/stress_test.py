@@ -1,0 +1,106 @@
+"""Drives `coapt stress` as a user does.
+
+Usage: stress_test.py COAPT_BINARY [unittest arguments]
+"""
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+COAPT = os.path.abspath(sys.argv[1])
+
+
+def coapt(*arguments, **options):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=600, **options)
+
+
+class StressTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.out = self.folder / "out"
+
+    def disc(self):
+        run = coapt("generate", "disc", "--triangles", 100, "-o", self.folder)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.folder / "scene.json"
+
+    def test_the_quick_matrix_has_no_failure(self):
+        run = coapt("stress", "--quick", "-o", self.out)
+        found = json.loads((self.out / "stress.json").read_text())
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertEqual(run.stderr, "")
+        self.assertTrue(found["holds"], run.stdout)
+        self.assertEqual(found["counts"]["fail"], 0, run.stdout)
+        self.assertGreater(found["counts"]["pass"], 30, run.stdout)
+        self.assertLess(found["counts"]["stall"], 5, run.stdout)
+        self.assertTrue({"S1", "S3", "S5", "S9", "S10", "S12", "S14", "S16", "S17"} <= {r["id"] for r in found["rows"]})
+        rows = list(csv.DictReader((self.out / "stress.csv").read_text().splitlines()))
+        self.assertEqual([r["message"] for r in rows], [r["message"] for r in found["rows"]])
+        for row in found["rows"]:
+            self.assertIn(row["name"], run.stdout)
+            if row["verdict"] == "pass" and row["limit"] is not None:
+                self.assertLessEqual(row["figure"], row["limit"], row["name"])
+        page = (self.out / "stress.html").read_text()
+        self.assertIn("S12: snap-through", page)
+        self.assertIn("written to", run.stdout)
+        # Whoever wonders about a row can solve its scene.
+        solved = coapt("solve", self.out / "scenes" / "S11_knee" / "scene.json", "-o", self.folder / "solved")
+        self.assertEqual(solved.returncode, 0, solved.stdout + solved.stderr)
+
+    def test_a_scene_of_ones_own(self):
+        run = coapt("stress", self.disc(), "--rows", "S1, S7,S18", "--json", "-o", self.out)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        found = json.loads(run.stdout)
+        self.assertEqual(found, json.loads((self.out / "stress.json").read_text()))
+        self.assertEqual(found["scene"], "scene.json")
+        self.assertEqual({r["id"] for r in found["rows"]}, {"S1", "S7", "S18"})
+        self.assertEqual({r["verdict"] for r in found["rows"]}, {"pass"}, run.stdout)
+        self.assertFalse((self.out / "scenes").exists())
+
+    def test_stalls_are_no_failure(self):
+        scene = self.disc()
+        scene.write_text(scene.read_text().replace('"tolerance": 1e-8', '"tolerance": 1e-8, "max_iterations": 2'))
+        run = coapt("stress", scene, "--rows", "S1,S22", "--quick", "-o", self.out)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        found = json.loads((self.out / "stress.json").read_text())
+        self.assertEqual(found["counts"]["stall"], len(found["rows"]), run.stdout)
+        self.assertIn("iteration limit", run.stdout)
+
+    def test_lists_its_rows_and_writes_nothing(self):
+        run = coapt("stress", "--list", cwd=self.folder)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for word in ["S1 ", "S26", "valve with contact", "interrupts"]:
+            self.assertIn(word, run.stdout)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_what_was_found_before_an_interrupt_is_written(self):
+        with subprocess.Popen([COAPT, "stress", "-o", str(self.out)], stdout=subprocess.PIPE, text=True) as run:
+            run.stdout.readline()  # header
+            run.stdout.readline()  # first row
+            run.send_signal(signal.SIGINT)
+            rest = run.stdout.read()
+        self.assertEqual(run.returncode, 1, rest)
+        found = json.loads((self.out / "stress.json").read_text())
+        self.assertTrue(found["cancelled"])
+        self.assertFalse(found["holds"])
+        self.assertGreaterEqual(len(found["rows"]), 1)
+
+    def test_names_what_cannot_be(self):
+        for arguments, words in [(["--rows", "S1,S98"], ["S98", "there are"]), (["--time-limit", "nan"], ["--time-limit"]),
+                                 ([self.folder / "none.json"], ["none.json"])]:
+            run = coapt("stress", *arguments, "-o", self.out)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            for word in words:
+                self.assertIn(word, run.stderr)
+            self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -1,0 +1,197 @@
+// The stability matrix: what it says of answers that are wrong, of scenes of the user's own, and in its
+// files.
+#include "core/error.hpp"
+#include "mesh/generators/shapes.hpp"
+#include "mesh/mesh_io.hpp"
+#include "optim/newton.hpp"
+#include "scene/stress/slivers.hpp"
+#include "scene/stress/stress_report.hpp"
+#include "scene/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+using Verdict = StressVerdict;
+
+StressRow row_that(const std::string& name, std::function<StressOutcome()> run) {
+  return {"S3", "a scene", name, "error", "mm", true, std::move(run)};
+}
+
+// Newton, but what it hands over is not a number.
+class Breaking : public Solver {
+ public:
+  std::string_view name() const override { return "breaking"; }
+  bool follows_path() const override { return true; }
+  Status minimize(Objective&, Vector& q, Monitor&) override {
+    q[0] = kNaN;
+    return Status::Converged;
+  }
+};
+
+// Gives up where it stands.
+class Idle : public Solver {
+ public:
+  std::string_view name() const override { return "idle"; }
+  bool follows_path() const override { return true; }
+  Status minimize(Objective&, Vector&, Monitor&) override { return Status::Stalled; }
+};
+
+class StressedScene : public testing::Test {
+ protected:
+  StressedScene() {
+    options_.folder = folder_.path();
+    options_.row_seconds = 60;
+  }
+
+  // A quarter of a square sheet between two planes of symmetry: supports that hold single coordinates.
+  Scene quarter() {
+    write_mesh(folder_.path() / "quarter.obj", square(10, 200, CellPattern::Cross));
+    return load_scene(folder_.write("quarter.json", R"({"mesh": {"file": "quarter.obj"},
+      "boundary": [{"nodes": {"plane": {"axis": "x"}}, "fix": ["x"]}, {"nodes": {"plane": {"axis": "y"}}, "fix": ["y"]},
+                   {"nodes": {"nearest": [0, 0, 0]}, "fix": ["x", "y"]},
+                   {"nodes": {"plane": {"axis": "x", "at": "10 mm"}}, "fix": true},
+                   {"nodes": {"plane": {"axis": "y", "at": "10 mm"}}, "fix": true}],
+      "terms": [{"type": "cst_tension_field", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"},
+                {"type": "load_pressure", "value": "0.1 kPa"}],
+      "solver": {"type": "newton", "tolerance": 1e-8}})"));
+  }
+
+  // A disc pressed on a floor.
+  Scene pressed() {
+    TriangleMesh sheet = disc(10, 150), floor = square(60, 2);
+    sheet.vertices.row(2).array() += 2;
+    sheet.triangles.row(1).swap(sheet.triangles.row(2));
+    floor.vertices.colwise() -= Vec3(31, 29, 0);
+    write_mesh(folder_.path() / "sheet.obj", sheet);
+    write_mesh(folder_.path() / "floor.obj", floor);
+    return load_scene(folder_.write("pressed.json", R"({"mesh": {"file": "sheet.obj"},
+      "obstacles": [{"name": "floor", "file": "floor.obj"}],
+      "boundary": [{"nodes": "boundary", "fix": true}],
+      "terms": [{"type": "cst_tension_field", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"},
+                {"type": "bending"}, {"type": "load_pressure", "value": "2 kPa"}, {"type": "contact_barrier"}],
+      "solver": {"type": "newton", "tolerance": 1e-8}})"));
+  }
+
+  StressMatrix stressed(const Scene& scene, std::vector<std::string> ids, bool is_quick = false) {
+    options_.rows = std::move(ids);
+    options_.is_quick = is_quick;
+    return run_stress(stress_rows(scene, options_), options_);
+  }
+
+  static std::string told(const StressMatrix& matrix) { return stress_csv(matrix); }
+
+  TemporaryFolder folder_;
+  StressOptions options_;
+};
+
+TEST_F(StressedScene, AWrongRowFailsTheMatrixAndStandsInEveryFile) {
+  const std::vector<StressRow> rows = {
+      row_that("right",
+               [] {
+                 return StressOutcome{Verdict::Pass, 1e-9, 1e-8, "converged"};
+               }),
+      row_that("wrong",
+               [] {
+                 return StressOutcome{Verdict::Fail, 0.5, 1e-8, "a lie, \"converged\""};
+               }),
+      row_that("broken", []() -> StressOutcome { throw std::runtime_error("broke <here>"); }),
+      row_that("refused", []() -> StressOutcome { throw InputError("no such thing"); })};
+  const StressMatrix matrix = run_stress(rows, options_);
+  EXPECT_TRUE(matrix.has_failed());
+  EXPECT_EQ(matrix.count(Verdict::Fail), 2);
+  EXPECT_EQ(matrix.results[2].outcome.message, "exception: broke <here>");
+  EXPECT_EQ(matrix.results[3].outcome.verdict, Verdict::NotApplicable);
+  EXPECT_NE(stress_summary(matrix).find("4 rows: 1 pass, 1 do not apply, 2 FAIL"), std::string::npos);
+
+  write_stress(folder_.path(), matrix);
+  const auto json = nlohmann::json::parse(stress_json(matrix));
+  EXPECT_FALSE(json["holds"]);
+  EXPECT_EQ(json["counts"]["fail"], 2);
+  EXPECT_EQ(json["rows"][1]["figure"], 0.5);
+  EXPECT_EQ(json["rows"][1]["unit"], "mm");
+  EXPECT_TRUE(json["rows"][2]["figure"].is_null());
+  EXPECT_NE(stress_csv(matrix).find("\"a lie, \"\"converged\"\"\""), std::string::npos);
+  const std::string page = stress_page(matrix);
+  EXPECT_NE(page.find("Rows that fail"), std::string::npos);
+  EXPECT_EQ(page.find("broke <here>"), std::string::npos);
+  for (const char* file : {"stress.json", "stress.csv", "stress.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / file)) << file;
+  EXPECT_FALSE(run_stress({rows[0], rows[3]}, options_).has_failed());
+}
+
+TEST_F(StressedScene, NumbersThatAreNoneAreAFailureAndGivingUpIsNot) {
+  const Scene scene = quarter();
+  options_.solvers = {{"newton", [](const SolverOptions&) { return std::make_unique<Breaking>(); }}};
+  StressMatrix matrix = stressed(scene, {"S18", "S1"}, true);
+  EXPECT_EQ(matrix.count(Verdict::Fail), static_cast<int>(matrix.results.size())) << told(matrix);
+  options_.solvers = {{"newton", [](const SolverOptions&) { return std::make_unique<Idle>(); }}};
+  matrix = stressed(scene, {"S1", "S4", "S9"}, true);
+  EXPECT_EQ(matrix.count(Verdict::Pass), 0) << told(matrix);
+  EXPECT_GT(matrix.count(Verdict::Stall), 2) << told(matrix);
+  EXPECT_FALSE(matrix.has_failed()) << told(matrix);
+}
+
+TEST_F(StressedScene, FramesStartsAndNumbersDoNotMatter) {
+  const StressMatrix matrix =
+      stressed(quarter(), {"S1", "S2", "S3", "S4", "S6", "S7", "S9", "S19", "S22", "P"});
+  EXPECT_GT(matrix.count(Verdict::Pass), 20) << told(matrix);
+  EXPECT_EQ(matrix.count(Verdict::Stall) + matrix.count(Verdict::Fail) + matrix.count(Verdict::OtherBranch),
+            0)
+      << told(matrix);
+  for (const StressResult& result : matrix.results) {
+    const bool is_left_out = result.outcome.verdict == Verdict::NotApplicable;
+    // It has no lines; and planes of symmetry cannot be turned obliquely.
+    EXPECT_EQ(is_left_out, result.row.name.starts_with("lines") || result.row.name.starts_with("turned"))
+        << result.row.id << " " << result.row.name << ": " << result.outcome.message;
+  }
+}
+
+TEST_F(StressedScene, ContactKeepsItsPromiseAtEveryState) {
+  const StressMatrix matrix = stressed(pressed(), {"S13", "S17", "S18"});
+  EXPECT_FALSE(matrix.has_failed()) << told(matrix);
+  EXPECT_GT(matrix.count(Verdict::Pass), 4) << told(matrix);
+  for (const StressResult& result : matrix.results)
+    if (result.row.id == "S13") {
+      EXPECT_EQ(result.outcome.verdict, Verdict::Pass) << result.outcome.message;
+      EXPECT_EQ(result.outcome.figure, 0);
+      EXPECT_NE(result.outcome.message.find("states were judged"), std::string::npos);
+    }
+}
+
+TEST_F(StressedScene, RowsThatAreNotThereAreNamedWithThoseThatAre) {
+  try {
+    stressed(quarter(), {"S1", "S99", "s2"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.defects().size(), 2u);
+    EXPECT_NE(error.defects()[0].find("\"S99\""), std::string::npos);
+    EXPECT_NE(error.defects()[1].find("S22"), std::string::npos);
+  }
+}
+
+TEST_F(StressedScene, SliversAreThinAndKeepTheirSides) {
+  StressScene scene = stress_scene(quarter());
+  const TriangleMesh before = scene.ground.model.mesh;
+  ASSERT_GT(add_slivers(scene, 1e-4, 10), 3);
+  const TriangleMesh& after = scene.ground.model.mesh;
+  double thinnest = 1;
+  for (const auto& t : after.triangles.colwise()) {
+    const Vec3 area = area_vector(after.vertices, t);
+    EXPECT_GT(area.dot(area_vector(before.vertices, t)), 0);
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (after.vertices.col(t[k]) - after.vertices.col(t[(k + 1) % 3])).norm());
+    thinnest = std::min(thinnest, 2 * area.norm() / (longest * longest));
+  }
+  EXPECT_LT(thinnest, 2e-4);
+  EXPECT_GT(thinnest, 1e-5);
+  EXPECT_EQ(after.vertices, scene.ground.model.X.leftCols(after.vertex_count()));
+}
+
+}  // namespace
+}  // namespace coapt
