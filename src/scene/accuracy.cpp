@@ -27,6 +27,7 @@ constexpr int kMostRefinements = 200;  // iterates of newton; at round-off it wo
 struct SolvedMesh {
   size_t cuts = 0;
   Model model;
+  Report report;  // begun
   CascadeOutcome outcome;
   const Result& result() const { return outcome.result; }
   bool has_converged() const { return result().status == Status::Converged; }
@@ -46,6 +47,7 @@ class Search {
       : scene_(scene),
         setup_(solve_setup(scene, solvers, options)),
         going_on_(solve_setup(scene, solvers, refining(solvers, options))),
+        options_(options),
         most_triangles_(most_triangles),
         most_seconds_(setup_.stop.max_seconds) {
     if (going_on_.solver == kRefiningSolver)
@@ -104,8 +106,9 @@ class Search {
   SolvedMesh solved(size_t cuts) {
     setup_.stop.tolerance = estimate.tolerance;
     setup_.stop.max_seconds = seconds_left();
-    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .outcome = {}};
-    mesh.outcome = solve_scene(scene_, ground(cuts), mesh.model, setup_);
+    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .report = {}, .outcome = {}};
+    begin_report(scene_, setup_, mesh.model, options_, mesh.report);
+    mesh.outcome = solve_recorded(scene_, ground(cuts), mesh.model, setup_, mesh.report);
     const Result& result = mesh.result();
     estimate.levels.push_back({mesh.model.mesh.triangle_count(), estimate.tolerance, result.status,
                                result.iterations, result.wall_s, result.cpu_s});
@@ -145,6 +148,7 @@ class Search {
 
   const Scene& scene_;
   SolveSetup setup_, going_on_;
+  const RunOptions& options_;
   int most_triangles_;
   double most_seconds_, start_ = wall_seconds();
   std::list<Groundwork> grounds_;  // the scene's own first; the others refer to it
@@ -196,7 +200,7 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
 
   SolveSetup setup = search.setup();
   setup.stop.tolerance = estimate.tolerance;
-  begin_report(scene, setup, mesh.model, options, run.report);
+  run.report = std::move(mesh.report);
   if (!estimate.is_reached)
     run.report.warnings.push_back("The wanted accuracy was not reached: " + estimate.message + ".");
   if (scene.frame_interval > 0)

@@ -26,6 +26,21 @@ void begin_report(const Scene& scene, const SolveSetup& setup, const Model& mode
   report.has_page = options.writes && options.writes_page.value_or(scene.writes_page);
 }
 
+CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+                              Report& report) {
+  std::optional<ShapeRecord> record;
+  if (report.has_page && has_shape_view()) {
+    record.emplace(model, page_shapes(model));
+    setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
+      record->see(iteration, q);
+      return !next || next(iteration, q);
+    };
+  }
+  CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
+  if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
+  return outcome;
+}
+
 void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run) {
   const Model& model = run.model;
   Report& report = run.report;
@@ -75,18 +90,9 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
     }
   }
   begin_report(scene, setup, model, options, report);
-  std::optional<ShapeRecord> record;
-  if (report.has_page && has_shape_view()) {
-    record.emplace(model, page_shapes(model));
-    setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
-      record->see(iteration, q);
-      return !next || next(iteration, q);
-    };
-  }
-  CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
+  CascadeOutcome outcome = solve_recorded(scene, ground, model, setup, report);
   if (frames) frames->finish();
   report.has_frames = frames.has_value();
-  if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
   finish_run(setup, std::move(outcome), options, run);
   return run;
 }

@@ -1,6 +1,7 @@
 // From what a solve found to its report and files. Private to this room.
 #pragma once
 
+#include "scene/groundwork.hpp"
 #include "scene/run.hpp"
 #include "scene/solve_scene.hpp"
 
@@ -9,6 +10,10 @@ namespace coapt {
 // What is known of a report before the solve.
 void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
                   Report& report);
+
+// Solves as solve_scene() does, and keeps the shapes on the way where the report has a page that shows them.
+CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+                              Report& report);
 
 // Measures the shape of the outcome on run.model and writes run.report into run.folder where the options want
 // files.
