@@ -1,5 +1,7 @@
 #include "scene/solve_view.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -93,6 +95,15 @@ void add_outlines(const Closure& closure, ShapeView& view) {
   for (const Orifice& orifice : closure.orifices) view.outlines.push_back({true, orifice.outline.corners});
 }
 
+// The input's x axis to the right, or where one looks along it, its y axis: the same valve stands the same
+// way in every page.
+ViewFrame upright(ViewFrame frame) {
+  const Vec3 axis = std::abs(frame.up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  frame.e1 = (axis - axis.dot(frame.up) * frame.up).normalized();
+  frame.e2 = frame.up.cross(frame.e1);
+  return frame;
+}
+
 }  // namespace
 
 ViewFrame viewing_frame(const Model& model, const Fields& fields) {
@@ -113,7 +124,7 @@ ShapeView bare_view(const Model& model, const Fields& fields) {
   view.lines.resize(2, std::ssize(model.lines));
   for (size_t k = 0; k < model.lines.size(); ++k)
     view.lines.col(static_cast<Eigen::Index>(k)) << model.lines[k].a, model.lines[k].b;
-  view.frame = viewing_frame(model, fields);
+  view.frame = upright(viewing_frame(model, fields));
   view.is_valve = annulus_of(model) != nullptr;
   return view;
 }

@@ -1,15 +1,14 @@
 // Drives report.html in a headless Chromium as a user does: mouse, keyboard, screen reader names, printing.
 //   node report_test.mjs COAPT_BINARY SCRATCH_FOLDER
-// Exit code 77: skipped, with the reason. COAPT_UPDATE_REFERENCE=1 renews reference.png.
+// Exit code 77: skipped, with the reason.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
 import { readVtp } from "./vtp.mjs";
 
 const [coapt, scratch] = process.argv.slice(2);
-const here = dirname(fileURLToPath(import.meta.url));
 
 function skip(reason) {
   console.log("skipped: " + reason);
@@ -185,16 +184,6 @@ const tests = {
     assert.ok(await page.locator("#slider").isHidden());
     assert.ok(await page.locator("#canvas").isVisible());
     await page.emulateMedia({ media: "screen" });
-  },
-
-  async "the picture is that of the reference"({ page }) {
-    await page.reload();
-    await page.waitForSelector("#viewer[data-ready=yes]");
-    const file = join(here, "reference.png"), now = await picture(page);
-    writeFileSync(join(scratch, "picture.png"), now);
-    if (process.env.COAPT_UPDATE_REFERENCE) writeFileSync(file, now);
-    const apart = await difference(now, readFileSync(file));
-    assert.ok(apart < 4, `${apart} of 255 from reference.png; the picture is ${join(scratch, "picture.png")}`);
   },
 };
 
