@@ -17,9 +17,9 @@ enum class Collisions {
 
 struct DynamicOptions {
   TimeIntegration integration = TimeIntegration::BackwardDifferences;
-  double time_step = 1e-4;     // the first; the only one unless steps adapt [s]
-  bool adapts_steps = true;    // backward differences: to the work of a step; Euler: to the highest frequency
-  double longest_step = 1;           // [s]; far beyond any oscillation, and an animation keeps a time axis
+  double time_step = 1e-4;   // the first; the only one unless steps adapt [s]
+  bool adapts_steps = true;  // backward differences: to the work of a step; Euler: to the highest frequency
+  double longest_step = 1;   // [s]; far beyond any oscillation, and an animation keeps a time axis
   double relaxation_time = 1e-3;     // in which drag alone slows a mass down by a factor e [s]; 0: no drag
   bool has_kinetic_damping = false;  // masses stand still whenever the kinetic energy has begun to fall
   bool uses_conjugate_gradients = false;  // backward differences: instead of a factorisation

@@ -34,6 +34,14 @@ bool keeps_sides(const TriangleMesh& mesh, const std::vector<int>& triangles, in
   });
 }
 
+// Vertices of the triangles.
+std::vector<int> corners_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  std::vector<int> corners;
+  for (const int t : triangles)
+    for (const int v : mesh.triangles.col(t)) corners.push_back(v);
+  return corners;
+}
+
 }  // namespace
 
 int add_slivers(StressScene& subject, double share, int every) {
@@ -48,14 +56,14 @@ int add_slivers(StressScene& subject, double share, int every) {
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const std::vector<int>& triangles = around[static_cast<size_t>(v)];
     if (kept[static_cast<size_t>(v)] || triangles.empty() || looked_at++ % every != 0) continue;
-    for (const int neighbour : mesh.triangles(Eigen::all, triangles).reshaped()) {
+    const std::vector<int> corners = corners_of(mesh, triangles);
+    for (const int neighbour : corners) {
       if (neighbour == v) continue;
       const Vec3 to = mesh.vertices.col(neighbour);
       const Vec3 x = to + share * (mesh.vertices.col(v) - to);
       if (!keeps_sides(mesh, triangles, v, x)) continue;
       mesh.vertices.col(v) = model.X.col(v) = x;
-      for (const int corner : mesh.triangles(Eigen::all, triangles).reshaped())
-        kept[static_cast<size_t>(corner)] = true;
+      for (const int corner : corners) kept[static_cast<size_t>(corner)] = true;
       ++moved;
       break;
     }

@@ -155,10 +155,10 @@ std::string stress_page(const StressMatrix& matrix) {
   PageSection all{"The matrix", {}};
   for (size_t k = 0; k < matrix.results.size();) {
     const std::string& id = matrix.results[k].row.id;
-    PageTable table = table_of(id + ": " + std::string(stress_topic(id)));
+    PageBlock& block = all.blocks.emplace_back(table_of(id + ": " + std::string(stress_topic(id))));
+    std::vector<std::vector<PageCell>>& rows = std::get<PageTable>(block).rows;
     for (; k < matrix.results.size() && matrix.results[k].row.id == id; ++k)
-      table.rows.push_back(page_row(matrix.results[k]));
-    all.blocks.push_back(std::move(table));
+      rows.push_back(page_row(matrix.results[k]));
   }
   page.sections.push_back(std::move(all));
   page.footer = "Time limit of each solve: " + page_number(matrix.row_seconds) + " s.";
