@@ -1,5 +1,5 @@
 // Every solver on every scene: the same equilibrium, the same energy, a residual of 1e-8, and an energy that
-// never rises between accepted iterates.
+// never rises between accepted iterates of a minimiser.
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
 #include "support/equilibrium.hpp"
@@ -179,7 +179,7 @@ TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
   }
   for (size_t k = 1; k < result.trace.size(); ++k) {
     const Iteration &before = result.trace[k - 1], &now = result.trace[k];
-    if (before.round != now.round) continue;
+    if (before.round != now.round || solver == "dynamic") continue;  // long steps swing about the rest
     EXPECT_LE(now.energy, before.energy + 1e-12 * std::abs(before.energy) + 1e-13) << "iteration " << k;
   }
   EXPECT_EQ(result.trace.front().iteration, 0);

@@ -4,11 +4,13 @@
 #include "scene/stress/subject.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace coapt {
 namespace {
 
-constexpr double kSlack = 10;  // of the tolerance, where another objective measures the residual
+constexpr double kBarredSeconds = 2;  // for a run that creeps up to where it cannot go on
+constexpr double kSlack = 10;         // of the tolerance, where another objective measures the residual
 
 // The greatest way of a node that no support carries along [mm].
 double way_gone(const Stressed& solved, const Points& x, const Points& rest) {
@@ -27,9 +29,11 @@ StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const
   if (way_gone(own, own.x, rest) == 0)
     return {
         StressVerdict::NotApplicable, {}, {}, "nothing moves in the solution but what supports carry along"};
+  const std::optional<double> seconds = part < 1 ? std::optional(kBarredSeconds) : std::nullopt;
   const Stressed solved = subject.bench.solve(
-      own_scene(subject),
-      {.solver = solver, .edit = [&](Model& model) { make_faulty(model, fault, part * farthest); }});
+      own_scene(subject), {.solver = solver, .seconds = seconds, .edit = [&](Model& model) {
+                             make_faulty(model, fault, part * farthest);
+                           }});
   if (part > 1) return same_shape_as_own(subject, solved, solved.x);
   const double tolerance = tolerance_of(own_scene(subject));
   if (auto wrong = untruth(solved, tolerance)) return *wrong;
