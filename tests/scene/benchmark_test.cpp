@@ -97,7 +97,8 @@ TEST_F(BenchmarkTest, EstimatesTheErrorOfTheMesh) {
   const MeshStudy study = study_mesh(scene, solvers(), 3, run_);
   for (const size_t k : {size_t{0}, size_t{1}}) {
     const double later = distance_between(study.levels[k].closed, study.levels[3].closed).p95;
-    EXPECT_NEAR(*found.meshes[k].error_mm, later, 0.25 * later) << "mesh " << k;
+    EXPECT_GT(*found.meshes[k].error_mm, later) << "mesh " << k;
+    EXPECT_LT(*found.meshes[k].error_mm, 1.6 * later) << "mesh " << k;
   }
 }
 
@@ -250,6 +251,7 @@ Benchmark table() {
                                (tolerance < 1e-3 ? 2 : 1) * (method == 0 ? 1 : 0.1);
         run.wall = run.cpu = {seconds, 0.9 * seconds};
         run.errors.algebraic = NodeError{30 * tolerance, 10 * tolerance};
+        run.errors.discretisation = bench.meshes[mesh].error_mm;
         run.errors.total = run.errors.algebraic->max + *bench.meshes[mesh].error_mm;
         if (method == 1) run.status = Status::Stalled;
         bench.runs.push_back(run);
