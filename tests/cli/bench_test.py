@@ -55,7 +55,7 @@ class BenchTest(unittest.TestCase):
             self.assertAlmostEqual(float(row["total_mm"]), run["errors"]["total_mm"], places=9)
             self.assertGreaterEqual(run["wall_s"]["median"], run["wall_s"]["best"])
             self.assertGreater(sum(run["time_by_phase_s"].values()), 0)
-            self.assertEqual(run["repeats"], 2)
+            self.assertIn(run["repeats"], (1, 2))  # not again where the first took 10 s
         # Each entry of the table of times is a run that is that exact, and none of those was faster.
         for entry in found["time_to"]:
             if entry["wall_s"] is None:
