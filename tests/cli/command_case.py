@@ -1,0 +1,38 @@
+"""What the tests of the command share: each has a scratch folder and runs the command given as first argument."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+COAPT = os.path.abspath(sys.argv[1])
+
+
+def coapt(*arguments, cwd=None):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
+
+
+class CommandCase(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = pathlib.Path(self.scratch.name)
+
+    def generate(self, shape, *options):
+        run = coapt("generate", shape, "-o", self.folder, *options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.folder / "scene.json"
+
+    def result(self, folder=None):
+        text = ((folder or self.folder / "result") / "result.json").read_text()
+        self.assertNotIn("NaN", text)
+        return json.loads(text)
+
+    def assert_bad_input(self, run, *pieces):
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        for line in run.stderr.splitlines():
+            self.assertTrue(line.startswith("coapt: error: "), line)
+        for piece in pieces:
+            self.assertIn(piece, run.stderr)
