@@ -4,32 +4,23 @@ Usage: bench_test.py COAPT_BINARY RESULT_SCHEMA [unittest arguments]
 """
 import csv
 import json
-import os
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
-COAPT = os.path.abspath(sys.argv[1])
+import command_case
+
 SCHEMA = json.loads(pathlib.Path(sys.argv[2]).read_text())
 
 
-def coapt(*arguments):
-    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=200)
+def coapt(*arguments, **options):
+    return command_case.coapt(*arguments, timeout=200, **options)
 
 
-class BenchTest(unittest.TestCase):
+class BenchTest(command_case.CommandCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.out = self.folder / "result"
-
-    def generate(self, *arguments):
-        run = coapt("generate", *arguments, "-o", self.folder)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return self.folder / "scene.json"
 
     def bench(self, scene, *arguments, code=0):
         run = coapt("bench", scene, "-o", self.out, *arguments)
@@ -37,11 +28,6 @@ class BenchTest(unittest.TestCase):
         self.assertEqual(run.stderr, "")
         rows = list(csv.DictReader((self.out / "bench.csv").read_text().splitlines()))
         return run.stdout, json.loads((self.out / "bench.json").read_text()), rows
-
-    def assert_bad_input(self, run, *pieces):
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        for piece in pieces:
-            self.assertIn(piece, run.stderr)
 
     def test_a_valve_gets_a_recommendation(self):
         scene = self.generate("mitral", "--triangles", 300, "--contact", "none")

@@ -10,8 +10,8 @@ import unittest
 COAPT = os.path.abspath(sys.argv[1])
 
 
-def coapt(*arguments, cwd=None):
-    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
+def coapt(*arguments, cwd=None, timeout=120):
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
 
 
 class CommandCase(unittest.TestCase):

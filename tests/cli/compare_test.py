@@ -4,31 +4,23 @@ Usage: compare_test.py COAPT_BINARY [unittest arguments]
 """
 import csv
 import json
-import os
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
-COAPT = os.path.abspath(sys.argv[1])
+import command_case
 
 
-def coapt(*arguments):
-    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=200)
+def coapt(*arguments, **options):
+    return command_case.coapt(*arguments, timeout=200, **options)
 
 
-class CompareTest(unittest.TestCase):
+class CompareTest(command_case.CommandCase):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.out = self.folder / "result"
 
     def valve(self, *options, triangles=300):
-        run = coapt("generate", "mitral", "--triangles", triangles, "--contact", "none", "-o", self.folder, *options)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return self.folder / "scene.json"
+        return self.generate("mitral", "--triangles", triangles, "--contact", "none", *options)
 
     def compare(self, scene, *arguments, code=0):
         run = coapt("compare", scene, "-o", self.out, *arguments)
@@ -36,11 +28,6 @@ class CompareTest(unittest.TestCase):
         self.assertEqual(run.stderr, "")
         rows = list(csv.DictReader((self.out / "compare.csv").read_text().splitlines()))
         return run.stdout, json.loads((self.out / "compare.json").read_text()), rows
-
-    def assert_bad_input(self, run, *pieces):
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        for piece in pieces:
-            self.assertIn(piece, run.stderr)
 
     def test_methods_on_one_energy_agree(self):
         text, found, rows = self.compare(self.valve(), "--methods", "lbfgs,newton,bfgs")
@@ -145,7 +132,9 @@ class CompareTest(unittest.TestCase):
         self.assertFalse(self.out.exists())
         self.assert_bad_input(coapt("compare", scene, "--methods", "newton,"), "--methods")
         self.assert_bad_input(coapt("compare", self.folder / "no.json"), "no.json")
-        self.assert_bad_input(coapt("compare", scene, "--max-seconds", "nan"), "--max-seconds")
+        run = coapt("compare", scene, "--max-seconds", "nan")  # of usage: a hint follows the error
+        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+        self.assertIn("--max-seconds", run.stderr)
 
     def test_refuses_a_folder_that_cannot_be_written(self):
         scene = self.valve()
