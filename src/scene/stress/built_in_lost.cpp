@@ -47,7 +47,7 @@ BuiltScene balloon_scene(const std::string& name, double pressure) {
 }
 )",
           {{"RADIUS", kRadius}, {"MODULUS", kModulus}, {"THICKNESS", kThickness}, {"PRESSURE", pressure}}),
-      .mesh = sphere(kRadius, 320)};
+      .mesh = sphere(kRadius, 1280)};
 }
 
 // Just below the greatest pressure there is an equilibrium; its stretch is that of the facets, so the radius

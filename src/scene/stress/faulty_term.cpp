@@ -29,8 +29,8 @@ class PassingTerm final : public EnergyTerm {
     if (!fails) return energy;
     if (fault_ == Fault::NaN) return kNaN;
     if (fault_ == Fault::Infinity) return kInfinity;
-    if (sink.wants_gradient() && !stencils().nodes.empty())
-      sink.add_gradient(stencils().nodes.front(), Vec3::Constant(kNaN));
+    if (sink.wants_gradient())  // at every node: what a support prescribes is not looked at
+      for (const int node : stencils().nodes) sink.add_gradient(node, Vec3::Constant(kNaN));
     return energy;
   }
   bool prepare(const Points& x) override { return inner_.prepare(x); }
