@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kFirstTolerance = 1e-3, kLeastTolerance = 1e-10;
 constexpr double kAlgebraicShare = 0.1;  // of the wanted accuracy
-constexpr double kGoingOn = 1e-2;        // of the residual, to see how far the shape still goes
+constexpr double kGoingOn = 1e-4;        // of the residual, to see how far the shape still goes
 constexpr double kRoundOff = 1e-12;      // residual below which nothing is gained
 constexpr double kClearlySmaller = 0.5;  // a residual that tells how far the shape still goes
 constexpr int kMostTightenings = 4;

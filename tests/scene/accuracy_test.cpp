@@ -38,7 +38,7 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
     EXPECT_LT(later, 1.2 * *estimate.total_mm());
     EXPECT_GT(later, 0.25 * *estimate.total_mm());
     const double algebraic = (closed.vertices - level.closed.vertices).colwise().norm().maxCoeff();
-    EXPECT_NEAR(*estimate.algebraic_mm, algebraic, 0.25 * algebraic + 1e-9);
+    EXPECT_NEAR(*estimate.algebraic_mm, algebraic, 0.05 * algebraic + 1e-9);
     EXPECT_LE(algebraic, 0.1 * wanted);
     EXPECT_GT(closed.triangle_count(), last_triangles);
     last_triangles = closed.triangle_count();
