@@ -37,8 +37,8 @@ void print_cell(const std::optional<double>& value, const char* format, int widt
 void print_header(bool has_closed) {
   std::printf("  %-12s %-16s %9s %9s %9s %9s", "method", "status", "mean", "95 %", "max", "vertex");
   if (has_closed) std::printf(" %9s %9s", "closed", "95 %");
-  std::printf(" %9s %9s %6s %9s %14s %7s %8s %8s\n", "orifice", "coapt.", "inter.", "residual", "energy",
-              "iter.", "CPU s", "wall s");
+  std::printf(" %9s %9s %9s %6s %9s %14s %7s %8s %8s\n", "orifice", "area +-", "coapt.", "inter.", "residual",
+              "energy", "iter.", "CPU s", "wall s");
 }
 
 void print_distances(const ComparedMethod& method, bool has_closed) {
@@ -63,6 +63,9 @@ void print_row(const ComparedMethod& method, bool has_closed) {
     std::printf("  %-12s %-16s", method.name.c_str(), std::string(status_name(result.status)).c_str());
     print_distances(method, has_closed);
     print_cell(metrics.orifice_area_mm2, " %9.2f", 10);
+    print_cell(
+        metrics.leaflet_area_open_mm2 > 0 ? std::optional(metrics.leaflet_area_change_mm2) : std::nullopt,
+        " %9.2f", 10);
     print_cell(metrics.coaptation_area_mm2, " %9.2f", 10);
     std::printf(" %6ld %9.1e %14.8g %7d %8.2f %8.2f\n", metrics.intersections, result.residual, result.energy,
                 result.iterations, result.cpu_s, result.wall_s);

@@ -131,9 +131,11 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
                     Result& result) {
   Objective& objective = problem.objective;
   const Continuation& continuation = problem.continuation;
-  const int steps = std::max({1, problem.motion.positions ? problem.motion.steps : 1, continuation.load_steps,
-                              continuation.stiffness_steps});
   const bool is_continued = std::max(continuation.load_steps, continuation.stiffness_steps) > 1;
+  const bool is_taken = problem.motion.positions && !is_continued && solver.takes_motion(problem.motion);
+  const bool has_motion = problem.motion.positions && !is_taken;
+  const int steps = std::max(
+      {1, has_motion ? problem.motion.steps : 1, continuation.load_steps, continuation.stiffness_steps});
   const double on_the_way = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
   BranchWatch branches(path_means(solver, problem, stop, monitor, result.rounds));
   Outcome outcome;
@@ -143,7 +145,7 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   int step = 1;
   for (; step <= steps; ++step) {
     const double t = static_cast<double>(step) / steps;
-    has_arrived = !problem.motion.positions;
+    has_arrived = !has_motion;
     do {
       if (!has_arrived) {
         const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);

@@ -52,6 +52,12 @@ struct Iteration {
 // Sees every accepted iterate; returning false cancels the run, which keeps that iterate.
 using Observer = std::function<bool(const Iteration&, const Vector& q)>;
 
+// Prescribed motion: positions of the prescribed coordinates at load parameter 0 <= t <= 1.
+struct MotionPath {
+  int steps = 1;                              // equal steps in t; at least one
+  std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
+};
+
 class Monitor;
 
 // A minimiser. It owns its method and nothing else: stop rules, trace, time and the verdict stand once,
@@ -69,6 +75,10 @@ class Solver {
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
 
+  // Asked before the first minimize(): whether the method carries the prescribed nodes along this path itself
+  // as time goes on. Those of other methods are moved in steps, with a minimize() after each.
+  virtual bool takes_motion(const MotionPath& /*motion*/) { return false; }
+
   // Whether the last minimize() ended without motion. What passes through an equilibrium at speed has no
   // residual there and is on its way to another state.
   virtual bool is_at_rest() const { return true; }
@@ -79,12 +89,6 @@ class Solver {
   // Improves q until the monitor says stop or the method cannot go on; returns why. q is the last
   // accepted iterate, finite whatever happens. Never throws for numerical reasons.
   virtual Status minimize(Objective& objective, Vector& q, Monitor& monitor) = 0;
-};
-
-// Prescribed motion: positions of the prescribed coordinates at load parameter 0 < t <= 1.
-struct MotionPath {
-  int steps = 1;                              // equal steps in t; at least one
-  std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
 };
 
 // Ways to the full problem by easier ones. All advance together with the prescribed motion, in as many steps

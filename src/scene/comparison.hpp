@@ -19,7 +19,7 @@ namespace coapt {
 enum class MethodModel {
   Scene,       // the energy of the scene
   Springs,     // that with springs in place of its membranes, see mass_spring_scene
-  Constraints  // constraints on positions ("xpbd")
+  Constraints  // constraints on positions ("xpbd"), unless they are the energy itself
 };
 std::string_view method_model_name(MethodModel model);  // "scene", "springs", "constraints"
 

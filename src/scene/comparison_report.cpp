@@ -76,8 +76,13 @@ constexpr const char* kHeader =
     "method,model,verdict,status,residual,energy_mj,iterations,gradients,factorisations,simulated_s,wall_s,"
     "cpu_s,intersections,mean_to_reference_mm,p95_to_reference_mm,max_to_reference_mm,same_vertex_mean_mm,"
     "same_vertex_max_mm,mean_to_closed_mm,p95_to_closed_mm,max_to_closed_mm,orifice_area_mm2,"
-    "coaptation_area_mm2,coaptation_length_mm,coaptation_height_mm,tenting_height_mm,max_chord_force_n,"
-    "max_principal_strain,message";
+    "leaflet_area_change_mm2,coaptation_area_mm2,coaptation_length_mm,coaptation_height_mm,tenting_height_mm,"
+    "max_chord_force_n,max_principal_strain,message";
+
+// None where there is no membrane.
+std::optional<double> area_change(const Metrics& m) {
+  return m.leaflet_area_open_mm2 > 0 ? std::optional(m.leaflet_area_change_mm2) : std::nullopt;
+}
 
 void add_figures(const ComparedMethod& method, Row& row) {
   const Report& report = method.run->report;
@@ -99,8 +104,8 @@ void add_figures(const ComparedMethod& method, Row& row) {
   row.number(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt);
   row.distance(has_closed ? &to_closed : nullptr);
   for (const auto& value :
-       {m.orifice_area_mm2, m.coaptation_area_mm2, m.coaptation_length_mm, m.coaptation_height_mm,
-        m.tenting_height_mm, m.max_chord_force_n, m.max_principal_strain})
+       {m.orifice_area_mm2, area_change(m), m.coaptation_area_mm2, m.coaptation_length_mm,
+        m.coaptation_height_mm, m.tenting_height_mm, m.max_chord_force_n, m.max_principal_strain})
     row.number(value);
 }
 
@@ -144,7 +149,7 @@ std::string comparison_json(const Comparison& comparison) {
 
 std::string comparison_csv(const Comparison& comparison) {
   std::ostringstream csv = csv_begun(kHeader);
-  constexpr int kFigures = 25;  // columns between the verdict and the message
+  constexpr int kFigures = 26;  // columns between the verdict and the message
   for (const ComparedMethod& method : comparison.methods) {
     Row row(csv);
     row.text(method.name);

@@ -203,16 +203,31 @@ DynamicOptions dynamics_from(const Parameters& values) {
   return dynamics;
 }
 
+XpbdPaper paper_from(const Parameters& values) {
+  XpbdPaper paper;
+  paper.stretch = values.number("stretch");
+  paper.bending = values.number("bending");
+  paper.area = values.number("area");
+  paper.tether = values.number("tether");
+  paper.contact = values.number("contact");
+  paper.compliance = values.number("compliance");
+  paper.flow = values.number("flow");
+  paper.pressure = values.number("pressure");
+  return paper;
+}
+
 XpbdOptions xpbd_from(const Parameters& values) {
   XpbdOptions xpbd;
   xpbd.time_step = values.number_or("time_step", 0);
   xpbd.iterations = values.integer("iterations");
   xpbd.steps = values.integer("steps");
+  xpbd.motion_time = values.number_or("motion_time", 0);
   xpbd.damping = values.number("damping");
   xpbd.thickness = values.number("thickness");
   if (values.text("stiffness") == "paper") xpbd.stiffness = XpbdStiffness::Paper;
   if (values.text("forces") == "paper") xpbd.forces = XpbdForces::Paper;
   if (values.text("phase") == "diastole") xpbd.phase = HeartPhase::Diastole;
+  if (values.has("paper")) xpbd.paper = paper_from(values.object("paper"));
   return xpbd;
 }
 

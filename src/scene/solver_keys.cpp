@@ -60,6 +60,41 @@ KeySpec dynamics_key() {
       .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
 }
 
+KeySpec paper_share(const char* name, const char* fallback, const char* what) {
+  return {.name = name,
+          .fallback = fallback,
+          .min = 0,
+          .max = 1,
+          .doc = std::string("Share of a correction of ") + what + " that is applied in one sweep."};
+}
+
+KeySpec paper_key() {
+  return {
+      .name = "paper",
+      .kind = KeyKind::Object,
+      .object = {.keys = {paper_share("stretch", "0.1", "edges"),
+                          paper_share("bending", "0.1", "hinges"),
+                          paper_share("area", "0.1", "areas (the paper gives none)"),
+                          paper_share("tether", "1", "chords"),
+                          paper_share("contact", "1", "contact"),
+                          {.name = "compliance",
+                           .fallback = "1e-5",
+                           .min = 0,
+                           .doc = "Compliance alpha of every constraint, in mm, s and masses of 1; 0: plain "
+                                  "position-based dynamics."},
+                          {.name = "flow",
+                           .fallback = "50",
+                           .min = 0,
+                           .doc = "Weight w of the flow field, a force on the mass 1 in mm and s."},
+                          {.name = "pressure",
+                           .fallback = "100",
+                           .min = 0,
+                           .doc = "Weight p of the pressure, a force on the mass 1 in mm and s."}}},
+      .doc =
+          "Numbers for stiffness \"paper\" and forces \"paper\"; the defaults are those of Walczak et al. "
+          "2019."};
+}
+
 KeySpec xpbd_key() {
   return {
       .name = "xpbd",
@@ -81,9 +116,15 @@ KeySpec xpbd_key() {
                  .kind = KeyKind::Integer,
                  .fallback = "2000",
                  .min = 1,
+                 .doc = "Greatest number of time steps in a phase; it ends before where nothing moves any "
+                        "more."},
+                {.name = "motion_time",
+                 .dimension = kTime,
+                 .min = 0,
+                 .excludes_min = true,
                  .doc =
-                     "Greatest number of time steps at each place of the prescribed motion; it ends before "
-                     "where nothing moves any more."},
+                     "Time in which the prescribed nodes go their way, a piece in every step; default: half "
+                     "the time of all steps."},
                 {.name = "damping",
                  .fallback = "0.05",
                  .min = 0,
@@ -115,7 +156,8 @@ KeySpec xpbd_key() {
                  .choices = {"systole", "diastole"},
                  .doc =
                      "systole: the forces as they are, they close a valve; diastole: turned round, they open "
-                     "it."}}},
+                     "it while the prescribed nodes go back. A start in the shape at rest is closed first."},
+                paper_key()}},
       .doc =
           "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of the "
           "solver."};

@@ -10,6 +10,8 @@
 #include "energy/kernels/tether_cubic.hpp"
 #include "scene/contact_pairs.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 namespace {
 
@@ -194,6 +196,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
   }
   if (!defects.empty()) throw InputError(defects);
   add_membrane(model, *body);
+  body->is_exact = body->edges.empty() && body->areas.empty() && body->hinges.empty() && !body->has_contact;
   for (const TermSpec& term : terms)
     if (term.type == "contact_barrier" && term.parameters.has("exclude"))
       for (const auto& pair :
@@ -201,6 +204,16 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
                             static_cast<int>(model.mesh.triangles.cols() + model.obstacles.cols())))
         body->excluded.push_back(pair);
   return body;
+}
+
+bool xpbd_moves_the_scene_itself(const Scene& scene) {
+  const XpbdOptions& options = scene.solver.xpbd;
+  return options.stiffness == XpbdStiffness::Material && options.forces == XpbdForces::Scene &&
+         options.phase == HeartPhase::Systole &&
+         std::none_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
+           return term.type.starts_with("cst_") || term.type.starts_with("contact_") ||
+                  term.type == "bending";
+         });
 }
 
 }  // namespace coapt

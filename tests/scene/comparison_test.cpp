@@ -198,6 +198,15 @@ TEST_F(ComparisonTest, NamesTwoBranchesAndTheirEnergies) {
   }
 }
 
+// The constraints of a chain are its energy: what is left is no gap between models.
+TEST_F(ComparisonTest, XpbdOnTheScenesOwnEnergyIsJudgedAsAnyMethod) {
+  Scene scene = load_scene(fs::path(COAPT_SOURCE_DIR) / "examples/03_catenary/scene.json");
+  scene.solver.xpbd.steps = 300;
+  const Comparison stiff = compare(scene, {"newton", "xpbd"});
+  EXPECT_EQ(stiff.methods[1].model, MethodModel::Scene);
+  EXPECT_EQ(stiff.methods[1].verdict, Verdict::NotConverged) << stiff.methods[1].message;
+}
+
 TEST_F(ComparisonTest, SaysWhoDidNotConverge) {
   const Comparison found = compare(disc_scene(), {"newton", "idle"});
   EXPECT_EQ(found.methods[1].verdict, Verdict::NotConverged);

@@ -1,12 +1,9 @@
-// xpbd on scenes: the constraints that terms become, and a valve that closes and opens.
+// xpbd on scenes: the constraints that terms become, and its options.
 #include "core/error.hpp"
 #include "energy/connected_parts.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "mesh/mesh_io.hpp"
 #include "optim/xpbd/constraints.hpp"
 #include "scene/build.hpp"
-#include "scene/import.hpp"
-#include "scene/run.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/xpbd_body.hpp"
 
@@ -150,6 +147,31 @@ TEST_F(XpbdBodyTest, TakesSpringsForWhatTheyAreAndNothingElse) {
   EXPECT_LT((of_tethers - forces).norm(), 1e-12);
 }
 
+// What says that the comparison is one of methods and not of models.
+TEST_F(XpbdBodyTest, IsExactWhereOnlyLinesAndFilmsAreLeft) {
+  const std::string lines = R"({"type": "cable", "edges": [0, 1], "young": "10 MPa", "area": "0.4 mm2"},
+    {"type": "spring", "young": "2 MPa", "thickness": "0.5 mm"}, {"type": "surface_tension", "tension": "0.2 N/mm"},
+    {"type": "load_pressure", "value": "1 kPa", "model": "frozen"})";
+  build_with(lines);
+  EXPECT_TRUE(body_->is_exact);
+  EXPECT_TRUE(xpbd_moves_the_scene_itself(scene_));
+  XpbdOptions& options = scene_.solver.xpbd;
+  options.phase = HeartPhase::Diastole;
+  EXPECT_FALSE(xpbd_moves_the_scene_itself(scene_));
+  options = {};
+  options.forces = XpbdForces::Paper;
+  EXPECT_FALSE(xpbd_moves_the_scene_itself(scene_));
+  options = {};
+  options.stiffness = XpbdStiffness::Paper;
+  EXPECT_FALSE(xpbd_moves_the_scene_itself(scene_));
+  for (const char* more : {R"({"type": "cst_stvk", "young": "2 MPa", "thickness": "0.5 mm"})",
+                           R"({"type": "contact_barrier"})", R"({"type": "bending", "stiffness": "1 mJ"})"}) {
+    build_with(lines + ", " + more);
+    EXPECT_FALSE(body_->is_exact) << more;
+    EXPECT_FALSE(xpbd_moves_the_scene_itself(scene_)) << more;
+  }
+}
+
 class Unknown final : public EnergyTerm {
  public:
   using EnergyTerm::EnergyTerm;
@@ -178,88 +200,13 @@ TEST_F(XpbdBodyTest, RefusesTermsThatItHasNoConstraintFor) {
   }
 }
 
-// The generated valve, and one number that says how far open it is.
-class XpbdValve : public testing::Test {
- protected:
-  XpbdValve() { write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"}); }
-
-  Scene scene() const { return load_scene(folder_.path() / "scene.json"); }
-
-  static RunReport run_xpbd(Scene scene, const XpbdOptions& options) {
-    scene.solver.type = "xpbd";
-    scene.solver.xpbd = options;
-    RunOptions run_options;
-    run_options.writes = false;
-    return run(scene, built_in_solvers(), run_options);
-  }
-
-  static double orifice(const RunReport& report) {
-    EXPECT_TRUE(report.report.result.q.allFinite());
-    return report.report.metrics.orifice_area_mm2.value();
-  }
-
-  TemporaryFolder folder_;
-};
-
-TEST_F(XpbdValve, ClosesInSystoleAndOpensInDiastole) {
-  XpbdOptions first;
-  first.steps = 1;
-  const double open = orifice(run_xpbd(scene(), first));
-  XpbdOptions options;
-  options.steps = 150;
-  options.iterations = 10;
-  const RunReport closed = run_xpbd(scene(), options);
-  EXPECT_LT(orifice(closed), 0.3 * open);
-  EXPECT_NE(closed.report.result.message.find("membrane area"), std::string::npos)
-      << closed.report.result.message;
-  std::printf("xpbd valve: orifice %.1f -> %.1f mm2; %s\n", open, orifice(closed),
-              closed.report.result.message.c_str());
-
-  options.phase = HeartPhase::Diastole;
-  const double opened = orifice(run_xpbd(scene(), options));
-  EXPECT_GT(opened, open);
-  std::printf("xpbd valve opened: %.1f mm2\n", opened);
-}
-
-// Without hinges: in radians the paper's compliance makes them too stiff to fold (docs/theory.md).
-TEST_F(XpbdValve, MovesByThePapersNumbersInBothPhases) {
-  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(),
-                    {.membrane = "stvk", .contact = "none"});
-  XpbdOptions first;
-  first.steps = 1;
-  const double open = orifice(run_xpbd(scene(), first));
-  XpbdOptions options;
-  options.stiffness = XpbdStiffness::Paper;
-  options.forces = XpbdForces::Paper;
-  options.steps = 600;
-  options.iterations = 3;
-  const RunReport closed = run_xpbd(scene(), options);
-  EXPECT_LT(orifice(closed), 0.2 * open);
-  EXPECT_LT(std::abs(closed.report.metrics.leaflet_area_change_mm2), 4);  // as the paper says of its valves
-  options.phase = HeartPhase::Diastole;
-  const double opened = orifice(run_xpbd(scene(), options));
-  EXPECT_GT(opened, open);
-  std::printf("xpbd valve by the paper: orifice %.1f -> %.1f and %.1f mm2; %s\n", open, orifice(closed),
-              opened, closed.report.result.message.c_str());
-}
-
-TEST_F(XpbdValve, KeepsABarrierFromIntersections) {
-  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "barrier"});
-  XpbdOptions options;
-  options.steps = 100;
-  options.iterations = 5;
-  const RunReport closed = run_xpbd(scene(), options);
-  EXPECT_EQ(closed.report.metrics.intersections, 0);
-  EXPECT_TRUE(std::isfinite(closed.report.result.energy));
-  std::printf("xpbd valve with a barrier: orifice %.1f mm2; %s\n", orifice(closed),
-              closed.report.result.message.c_str());
-}
-
-TEST_F(XpbdValve, ReadsItsOptionsFromTheScene) {
-  const Scene read = parse_scene(R"({"mesh": {"file": "leaflets.obj"}, "terms": [{"type": "surface_tension",
+TEST_F(XpbdBodyTest, ReadsItsOptionsFromTheScene) {
+  build_with(R"({"type": "surface_tension", "tension": "1 N/mm"})");
+  const Scene read = parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [{"type": "surface_tension",
     "tension": "1 N/mm"}], "solver": {"type": "xpbd", "threads": 2, "xpbd": {"time_step": "2 ms",
     "iterations": 3, "steps": 7, "damping": 0.1, "thickness": "0.2 mm", "stiffness": "paper",
-    "forces": "paper", "phase": "diastole"}}})",
+    "forces": "paper", "phase": "diastole", "motion_time": "50 ms", "paper": {"stretch": 0.2, "bending": 0.3,
+    "area": 0.4, "tether": 0.5, "contact": 0.6, "compliance": 2e-5, "flow": 60, "pressure": 90}}}})",
                                  folder_.path() / "other.json");
   const XpbdOptions& options = read.solver.xpbd;
   EXPECT_EQ(read.solver.type, "xpbd");
@@ -272,9 +219,23 @@ TEST_F(XpbdValve, ReadsItsOptionsFromTheScene) {
   EXPECT_EQ(options.stiffness, XpbdStiffness::Paper);
   EXPECT_EQ(options.forces, XpbdForces::Paper);
   EXPECT_EQ(options.phase, HeartPhase::Diastole);
+  EXPECT_EQ(options.motion_time, 0.05);
+  EXPECT_EQ(options.paper.stretch, 0.2);
+  EXPECT_EQ(options.paper.bending, 0.3);
+  EXPECT_EQ(options.paper.area, 0.4);
+  EXPECT_EQ(options.paper.tether, 0.5);
+  EXPECT_EQ(options.paper.contact, 0.6);
+  EXPECT_EQ(options.paper.compliance, 2e-5);
+  EXPECT_EQ(options.paper.flow, 60);
+  EXPECT_EQ(options.paper.pressure, 90);
+}
 
-  const XpbdOptions defaults, fallback = parse_scene(R"({"mesh": {"file": "leaflets.obj"}, "terms": [
-    {"type": "surface_tension", "tension": "1 N/mm"}], "solver": {"xpbd": {}}})",
+// An empty object of the scene gives what the library has, and that is what the source has: k 0.1, 0.1 and 1,
+// w 50, p 100, 5 ms, alpha 1e-5, h 0.5 mm; 20 sweeps, or 3.
+TEST_F(XpbdBodyTest, HasTheNumbersOfThePaper) {
+  build_with(R"({"type": "surface_tension", "tension": "1 N/mm"})");
+  const XpbdOptions defaults, fallback = parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [
+    {"type": "surface_tension", "tension": "1 N/mm"}], "solver": {"xpbd": {"stiffness": "paper", "paper": {}}}})",
                                                      folder_.path() / "other.json")
                                              .solver.xpbd;
   EXPECT_EQ(fallback.time_step, defaults.time_step);
@@ -282,7 +243,19 @@ TEST_F(XpbdValve, ReadsItsOptionsFromTheScene) {
   EXPECT_EQ(fallback.steps, defaults.steps);
   EXPECT_EQ(fallback.damping, defaults.damping);
   EXPECT_EQ(fallback.thickness, defaults.thickness);
-  EXPECT_EQ(fallback.stiffness, defaults.stiffness);
+  EXPECT_EQ(xpbd_time_step(fallback), 0.005);
+  EXPECT_EQ(fallback.iterations, 20);
+  EXPECT_EQ(fallback.thickness, 0.5);
+  for (const XpbdPaper& paper : {defaults.paper, fallback.paper}) {
+    EXPECT_EQ(paper.stretch, 0.1);
+    EXPECT_EQ(paper.bending, 0.1);
+    EXPECT_EQ(paper.tether, 1);
+    EXPECT_EQ(paper.area, 0.1);   // the source gives none
+    EXPECT_EQ(paper.contact, 1);  // nor this
+    EXPECT_EQ(paper.compliance, 1e-5);
+    EXPECT_EQ(paper.flow, 50);
+    EXPECT_EQ(paper.pressure, 100);
+  }
 }
 
 }  // namespace

@@ -7,12 +7,12 @@
 namespace coapt {
 namespace {
 
-constexpr double kSlack = 0.5;       // h: how far a search looks beyond what it has to
-constexpr double kCorrection = 0.5;  // h: that sweeps may add to the predicted move
+constexpr double kSlack = 0.25;       // h: how far a search looks beyond what it has to
+constexpr double kCorrection = 0.25;  // h: that sweeps may add to the predicted move
 
-// A step that goes farther than the lesser is not followed by the search, which would find the whole sheet.
-constexpr double kFarthest = 6;        // h
-constexpr double kFarthestEdge = 0.5;  // mean edge lengths
+// The lesser is the longest move of a step: neighbours on a flat sheet stay out of the search.
+constexpr double kLongest = 6;        // h
+constexpr double kLongestEdge = 0.2;  // mean edge lengths
 
 PairCorners corners(const Points& x, const std::array<int, 4>& nodes) {
   PairCorners c;
@@ -50,8 +50,7 @@ XpbdContact::XpbdContact(const XpbdBody& body, double thickness, double alpha, d
       thickness_(thickness),
       alpha_(alpha),
       stiffness_(stiffness),
-      farthest_(
-          std::min(kFarthest * thickness, kFarthestEdge * mean_edge_length(body.rest, body.triangles))) {
+      longest_(std::min(kLongest * thickness, kLongestEdge * mean_edge_length(body.rest, body.triangles))) {
   for (const Edge& edge : edges(surface_.triangles())) {
     neighbours_[static_cast<size_t>(edge.a)].push_back(edge.b);
     neighbours_[static_cast<size_t>(edge.b)].push_back(edge.a);
@@ -72,7 +71,7 @@ bool XpbdContact::is_joined(const FeaturePair& pair) const {
 void XpbdContact::search(const Points& x, double reach) {
   candidates_.clear();
   surface_.visit_near(x, reach, [&](const FeaturePair& pair) {
-    if (is_joined(pair)) return;
+    if (is_joined(pair) || closest_points(pair.kind, corners(x, pair.nodes)).distance > reach) return;
     const double apart = closest_points(pair.kind, corners(surface_.rest(), pair.nodes)).distance;
     const double thickness = std::min(thickness_, 0.5 * apart);
     if (!(thickness > 0)) return;
@@ -90,7 +89,7 @@ void XpbdContact::search(const Points& x, double reach) {
 }
 
 void XpbdContact::begin_step(const Points& x, const Points& predicted) {
-  const double move = std::min(largest_move(x, predicted), farthest_) + kCorrection * thickness_;
+  const double move = largest_move(x, predicted) + kCorrection * thickness_;
   const bool is_stale = searches_ == 0 || thickness_ + 2 * (move + largest_move(searched_at_, x)) > reach_;
   if (is_stale) search(x, thickness_ + 2 * (move + kSlack * thickness_));
 

@@ -33,13 +33,19 @@ class XpbdContact {
   // thickness: h [length]. alpha, stiffness: of each constraint.
   XpbdContact(const XpbdBody& body, double thickness, double alpha, double stiffness);
 
-  // Finds the pairs that may meet in a step from x to about `predicted`, and the side of each at x.
+  // Finds the pairs that may meet in a step from x to about `predicted`, and the side of each at x. Pre: no
+  // node is predicted to go farther than longest_move().
   void begin_step(const Points& x, const Points& predicted);
 
   void sweep(double dt2, const InverseMasses& w, Points& x, int threads) {
     active_.sweep(dt2, w, x, threads);
   }
 
+  // The longest move that a step may predict for a node: what goes farther may have passed through a sheet
+  // before the search has found it [length].
+  double longest_move() const { return longest_; }
+
+  const std::vector<double>& multipliers() const { return active_.multipliers(); }
   size_t active_count() const { return active_.size(); }
   long search_count() const { return searches_; }
 
@@ -50,7 +56,7 @@ class XpbdContact {
   ContactSurface surface_;
   std::vector<std::vector<int>> neighbours_;  // of each node by an edge, ascending
   double thickness_, alpha_, stiffness_;
-  double farthest_;  // move in a step that a search follows [length]
+  double longest_;
   std::vector<ContactConstraint> candidates_;
   Points searched_at_;
   double reach_ = 0;  // of the search

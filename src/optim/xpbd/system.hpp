@@ -16,15 +16,20 @@ class XpbdSystem {
   XpbdSystem(const XpbdBody& body, const Points& x, const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed,
              const Vector& masses, const XpbdOptions& options);
 
-  // x + (1 - damping) (x - x before) + dt^2 f/m, then the sweeps. force: 3 x node_count [force].
-  void step(const Points& force);
+  // x + (1 - damping) (x - x before) + dt^2 f/m, with contact no farther than that can follow
+  // (XpbdContact::longest_move), then the sweeps. force: 3 x node_count [force]. prescribed:
+  // where the prescribed coordinates go; its others are ignored.
+  void step(const Points& force, const Points& prescribed);
+  void step(const Points& force) { step(force, Points(x_)); }
 
-  // Takes back all but the share s of the last step; the velocity falls with it.
-  void retract(double s);
+  // Puts all nodes at x instead of where the last step led; their velocities change with it.
+  void place(const Points& x) { x_ = x; }
 
   const Points& positions() const { return x_; }
   const Points& positions_before() const { return before_; }
-  double largest_move() const;  // of a node in the last step [length]
+  double largest_move() const;    // of a node in the last step [length]
+  double kinetic_energy() const;  // of the last step; of what is prescribed none [force x length]
+  const InverseMasses& inverse_masses() const { return w_; }
 
   const ColouredConstraints<StretchConstraint>& tethers() const { return tethers_; }
   const std::optional<XpbdContact>& contact() const { return contact_; }

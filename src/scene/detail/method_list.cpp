@@ -3,6 +3,7 @@
 #include "scene/mass_spring_scene.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/term_types.hpp"
+#include "scene/xpbd_body.hpp"
 
 #include <algorithm>
 #include <system_error>
@@ -69,7 +70,8 @@ std::vector<std::string> reference_first(std::vector<std::string> methods, const
 
 MethodModel model_of(const std::string& method, const Scene& scene) {
   if (method == kMassSpring) return has_springs_alone(scene) ? MethodModel::Scene : MethodModel::Springs;
-  return method == kConstraintSolver ? MethodModel::Constraints : MethodModel::Scene;
+  const bool has_constraints = method == kConstraintSolver && !xpbd_moves_the_scene_itself(scene);
+  return has_constraints ? MethodModel::Constraints : MethodModel::Scene;
 }
 
 std::string solver_of(const std::string& method) {
