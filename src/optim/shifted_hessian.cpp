@@ -34,8 +34,9 @@ bool ShiftedHessian::factorise_shifted(Monitor& monitor, double shift) {
 }
 
 bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g,
-                               double& shift) {
+                               double& shift, bool tries_exact) {
   for (const Projection projection : {Projection::None, Projection::PositiveSemidefinite}) {
+    if (projection == Projection::None && !tries_exact) continue;
     if (!std::isfinite(monitor.hessian(q, g, h_, projection))) return false;
     is_exact_ = projection == Projection::None;
     if (objective.pattern_version() != pattern_version_) analyse(monitor);

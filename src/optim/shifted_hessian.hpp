@@ -17,8 +17,9 @@ class ShiftedHessian {
   // Evaluates the Hessian at q and factorises it with `shift` times the weights [force/length] added to its
   // diagonal: the exact one if that is positive definite, else that of projected elements with a shift that
   // is raised until it is one. g: gradient at q. Returns false when no shift helps: the Hessian is not
-  // finite, or a term cannot be evaluated with it.
-  bool factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g, double& shift);
+  // finite, or a term cannot be evaluated with it. tries_exact: false leaves the exact one out.
+  bool factorise(Objective& objective, Monitor& monitor, const Vector& q, Vector& g, double& shift,
+                 bool tries_exact = true);
 
   // The same Hessian with a greater shift.
   bool raise(Monitor& monitor, double& shift);
@@ -28,7 +29,8 @@ class ShiftedHessian {
 
   bool is_exact() const { return is_exact_; }
 
-  // product += K v with the exact Hessian of the last evaluation, unshifted. Pre: !is_exact().
+  // product += K v with the exact Hessian of the last evaluation, unshifted.
+  // Pre: it was tried, and !is_exact().
   void add_exact_product(const Vector& v, Vector& product) const;
 
  private:

@@ -19,6 +19,8 @@ constexpr double kDecrease = 1e-4;
 constexpr int kTrials = 12;
 constexpr int kKrylovVectors = 30;
 constexpr double kForcing = 1e-2;
+constexpr int kMostProducts = 300;  // of conjugate gradients in a solve; a shorter step is better conditioned
+constexpr int kProjectedRun = 8;    // factorisations after an indefinite Hessian that do not ask for it again
 
 class BackwardDifferences final : public TimeIntegrator {
  public:
@@ -30,12 +32,16 @@ class BackwardDifferences final : public TimeIntegrator {
         applied_(context.applied),
         drag_(options.relaxation_time > 0 ? 1 / options.relaxation_time : 0),
         uses_conjugate_gradients_(options.uses_conjugate_gradients),
-        hessian_(factorisation, &context.mass) {}
+        hessian_(factorisation, &context.mass) {
+    conjugate_gradients_.setTolerance(kForcing);
+    conjugate_gradients_.setMaxIterations(kMostProducts);
+  }
 
   void restart() override { last_step_ = 0; }
 
   double next_step(double h, const Motion&) override {
-    return iterations_ <= kFew ? kGrowth * h : iterations_ >= kMany ? kShrinkage * h : h;
+    if (iterations_ >= kMany || products_ > 0.9 * kMostProducts) return kShrinkage * h;
+    return iterations_ <= kFew && products_ < 0.4 * kMostProducts ? kGrowth * h : h;
   }
 
   bool step(double h, Motion& at) override {
@@ -43,6 +49,7 @@ class BackwardDifferences final : public TimeIntegrator {
     now_.q = at.q;
     now_.energy = at.energy;
     now_.g = at.g;
+    products_ = 0;
     for (iterations_ = 0; iterations_ < kMostIterations; ++iterations_) {
       imbalance_ = now_.g - applied_ + inertia_ * mass_.cwiseProduct(now_.q - target_);
       if (iterations_ > 0 && is_enough()) {
@@ -99,7 +106,9 @@ class BackwardDifferences final : public TimeIntegrator {
 
   bool factorise_symmetric() {
     double shift = inertia_;
-    if (!hessian_.factorise(objective_, monitor_, now_.q, work_, shift)) return false;
+    const bool tries_exact = projected_run_ == 0;
+    if (!hessian_.factorise(objective_, monitor_, now_.q, work_, shift, tries_exact)) return false;
+    count_projected(tries_exact, hessian_.is_exact());
     PhaseTimer timer(monitor_.phases(), "direction");
     work_ = -imbalance_;
     solve_symmetric(work_, symmetric_);
@@ -107,27 +116,36 @@ class BackwardDifferences final : public TimeIntegrator {
   }
 
   // With the exact Hessian, unless it shows that it is not positive definite; then with the projected one.
+  // Returns false where the iterations do not suffice.
   bool iterate_symmetric() {
+    const bool tries_exact = projected_run_ == 0;
     for (const Projection projection : {Projection::None, Projection::PositiveSemidefinite}) {
+      if (projection == Projection::None && !tries_exact) continue;
       if (!std::isfinite(monitor_.hessian(now_.q, work_, matrix_, projection))) return false;
       PhaseTimer timer(monitor_.phases(), "direction");
       matrix_.diagonal() += inertia_ * mass_;
-      conjugate_gradients_.setTolerance(kForcing);
       conjugate_gradients_.compute(matrix_);
       work_ = -imbalance_;
       solve_symmetric(work_, symmetric_);
       if (symmetric_.allFinite() && imbalance_.dot(symmetric_) < 0 &&
-          conjugate_gradients_.info() == Eigen::Success)
+          conjugate_gradients_.info() == Eigen::Success) {
+        count_projected(tries_exact, projection == Projection::None);
         return true;
+      }
     }
-    return symmetric_.allFinite();
+    return false;
+  }
+
+  // An indefinite Hessian stays so for a while: to ask for it in each step would cost as much as the
+  // projected one.
+  void count_projected(bool tried_exact, bool is_exact) {
+    projected_run_ = is_exact ? 0 : tried_exact ? kProjectedRun : projected_run_ - 1;
   }
 
   void solve_symmetric(const Vector& b, Vector& x) {
-    if (uses_conjugate_gradients_)
-      x = conjugate_gradients_.solve(b);
-    else
-      hessian_.solve(b, x);
+    if (!uses_conjugate_gradients_) return hessian_.solve(b, x);
+    x = conjugate_gradients_.solve(b);
+    products_ = std::max(products_, static_cast<int>(conjugate_gradients_.iterations()));
   }
 
   // The potential of the step, whose gradient is imbalance_.
@@ -171,6 +189,8 @@ class BackwardDifferences final : public TimeIntegrator {
   double rate_ = 0, inertia_ = 0;  // [1/time], [1/time^2]
   double slope_ = 0;               // of the merit along the direction
   int iterations_ = 0;             // of the last step
+  int products_ = 0;               // of the longest of its solves by conjugate gradients
+  int projected_run_ = 0;          // factorisations to come without the exact Hessian
   Motion before_, now_, next_;     // the state before `at`; iterates of the step
   Vector drift_, target_, imbalance_, direction_, symmetric_, work_;
 };
