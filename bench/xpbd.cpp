@@ -70,10 +70,7 @@ void step(benchmark::State& state, bool has_contact) {
   }
   state.counters["triangles"] = static_cast<double>(valve.body.triangles.cols());
   state.counters["constraints"] = static_cast<double>(system->constraint_count());
-  if (has_contact) {
-    state.counters["active"] = static_cast<double>(system->contact()->active_count());
-    state.counters["searches"] = static_cast<double>(system->contact()->search_count());
-  }
+  if (has_contact) state.counters["active"] = static_cast<double>(system->contact()->active_count());
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {

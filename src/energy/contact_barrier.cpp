@@ -113,7 +113,8 @@ class ContactBarrier final : public EnergyTerm {
     if (is_within_skin(x) && is_within_skin(x + most * d)) {
       for (size_t k = 0; k < rest_.size(); ++k) visit(rest_[k].kind, &stencils_.nodes[4 * k]);
     } else {
-      surface_.visit_swept(x, d, most, [&](const FeaturePair& pair) { visit(pair.kind, pair.nodes.data()); });
+      surface_.visit_swept(x, d, 0, most,
+                           [&](const FeaturePair& pair) { visit(pair.kind, pair.nodes.data()); });
     }
   }
 

@@ -145,7 +145,6 @@ TEST(Xpbd, ContactKeepsItsThickness) {
   EXPECT_NEAR(fallen.row(2).maxCoeff(), options.thickness, 1e-3);
   EXPECT_EQ(system.positions().leftCols(held), plate.vertices);
   EXPECT_GT(system.contact()->active_count(), 0U);
-  EXPECT_LT(system.contact()->search_count(), 400);
 }
 
 TEST(Xpbd, KeepsPrescribedCoordinates) {

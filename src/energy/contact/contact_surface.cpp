@@ -153,12 +153,12 @@ void ContactSurface::visit_near(const Points& x, double reach, const Visit& visi
       overlap, visit);
 }
 
-void ContactSurface::visit_swept(const Points& x, const Points& d, const double& most,
+void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,
                                  const Visit& visit) const {
   const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
   visit_pairs<SweptBounds>(
       [&](int node) {
-        return SweptBounds{{x.col(node).array(), x.col(node).array()},
+        return SweptBounds{{x.col(node).array() - 0.5 * reach, x.col(node).array() + 0.5 * reach},
                            {d.col(node).array(), d.col(node).array()}};
       },
       [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit);

@@ -40,9 +40,10 @@ class ContactSurface {
   // x.
   void visit_near(const Points& x, double reach, const Visit& visit) const;
 
-  // Pairs that the boxes do not keep apart while x moves to x + s d, 0 <= s <= most. `most` may fall during
-  // the visit.
-  void visit_swept(const Points& x, const Points& d, const double& most, const Visit& visit) const;
+  // Pairs whose boxes come within `reach` of each other while x moves to x + s d, 0 <= s <= most. `most` may
+  // fall during the visit.
+  void visit_swept(const Points& x, const Points& d, double reach, const double& most,
+                   const Visit& visit) const;
 
  private:
   struct SurfaceEdge {

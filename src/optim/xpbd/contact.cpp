@@ -7,8 +7,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kSlack = 0.25;       // h: how far a search looks beyond what it has to
-constexpr double kCorrection = 0.25;  // h: that sweeps may add to the predicted move
+constexpr double kCorrection = 0.125;  // h: that sweeps may add to the predicted move
 
 // The lesser is the longest move of a step: neighbours on a flat sheet stay out of the search.
 constexpr double kLongest = 6;        // h
@@ -24,10 +23,6 @@ Triangles all_triangles(const XpbdBody& body) {
   Triangles all(3, body.triangles.cols() + body.obstacles.cols());
   all << body.triangles, body.obstacles;
   return all;
-}
-
-double largest_move(const Points& from, const Points& to) {
-  return from.cols() == 0 ? 0 : std::sqrt((to - from).colwise().squaredNorm().maxCoeff());
 }
 
 }  // namespace
@@ -68,42 +63,28 @@ bool XpbdContact::is_joined(const FeaturePair& pair) const {
   return false;
 }
 
-void XpbdContact::search(const Points& x, double reach) {
-  candidates_.clear();
-  surface_.visit_near(x, reach, [&](const FeaturePair& pair) {
-    if (is_joined(pair) || closest_points(pair.kind, corners(x, pair.nodes)).distance > reach) return;
+void XpbdContact::begin_step(const Points& x, const Points& predicted) {
+  const double margin = 2 * kCorrection * thickness_, all_of_it = 1;
+  std::vector<ContactConstraint> active;
+  surface_.visit_swept(x, predicted - x, thickness_ + margin, all_of_it, [&](const FeaturePair& pair) {
+    const PairCorners c = corners(x, pair.nodes);
+    const ClosestPair closest = closest_points(pair.kind, c);
+    // What moves along together does not come nearer.
+    const Vec3 approach = (corners(predicted, pair.nodes) - c) * closest.weights;
+    const double near = closest.distance - approach.norm() - margin;
+    if (near > thickness_ || is_joined(pair)) return;
     const double apart = closest_points(pair.kind, corners(surface_.rest(), pair.nodes)).distance;
     const double thickness = std::min(thickness_, 0.5 * apart);
-    if (!(thickness > 0)) return;
+    if (near > thickness || !(thickness > 0)) return;
     ContactConstraint contact;
     contact.kind = pair.kind;
     contact.nodes = pair.nodes;
     contact.thickness = thickness;
     contact.alpha = alpha_;
     contact.stiffness = stiffness_;
-    candidates_.push_back(contact);
+    if (closest.distance > 0) contact.side = c * closest.weights / closest.distance;
+    active.push_back(contact);
   });
-  searched_at_ = x;
-  reach_ = reach;
-  ++searches_;
-}
-
-void XpbdContact::begin_step(const Points& x, const Points& predicted) {
-  const double move = largest_move(x, predicted) + kCorrection * thickness_;
-  const bool is_stale = searches_ == 0 || thickness_ + 2 * (move + largest_move(searched_at_, x)) > reach_;
-  if (is_stale) search(x, thickness_ + 2 * (move + kSlack * thickness_));
-
-  std::vector<ContactConstraint> active;
-  for (const ContactConstraint& candidate : candidates_) {
-    const PairCorners c = corners(x, candidate.nodes);
-    const ClosestPair closest = closest_points(candidate.kind, c);
-    // What moves along together does not come nearer.
-    const Vec3 approach = (corners(predicted, candidate.nodes) - c) * closest.weights;
-    const double near = candidate.thickness + approach.norm() + 2 * kCorrection * thickness_;
-    if (closest.distance > near) continue;
-    active.push_back(candidate);
-    if (closest.distance > 0) active.back().side = c * closest.weights / closest.distance;
-  }
   active_ = ColouredConstraints<ContactConstraint>(active, static_cast<int>(x.cols()));
 }
 

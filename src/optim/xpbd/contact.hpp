@@ -47,20 +47,14 @@ class XpbdContact {
 
   const std::vector<double>& multipliers() const { return active_.multipliers(); }
   size_t active_count() const { return active_.size(); }
-  long search_count() const { return searches_; }
 
  private:
-  void search(const Points& x, double reach);
   bool is_joined(const FeaturePair& pair) const;
 
   ContactSurface surface_;
   std::vector<std::vector<int>> neighbours_;  // of each node by an edge, ascending
   double thickness_, alpha_, stiffness_;
   double longest_;
-  std::vector<ContactConstraint> candidates_;
-  Points searched_at_;
-  double reach_ = 0;  // of the search
-  long searches_ = 0;
   ColouredConstraints<ContactConstraint> active_;
 };
 
