@@ -1,8 +1,10 @@
+#include "cli/checkpointing.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "core/components.hpp"
 #include "core/error.hpp"
 #include "scene/accuracy.hpp"
 #include "scene/units.hpp"
@@ -23,6 +25,7 @@ struct Arguments {
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
   bool has_no_report = false;
+  CheckpointArguments checkpoint;
 };
 
 void print_value(const char* label, const std::optional<double>& value, const char* unit,
@@ -91,6 +94,13 @@ void print_summary(const RunReport& run) {
   std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
 }
 
+// What a checkpoint of this run is recognised by.
+RunIdentity identity(const Scene& scene, const RunOptions& options,
+                     const std::optional<double>& accuracy_mm) {
+  return {version(), scene_fingerprint(scene), options.solver.empty() ? scene.solver.type : options.solver,
+          options.tolerance.value_or(scene.solver.tolerance), accuracy_mm};
+}
+
 }  // namespace
 
 void add_solve_command(CLI::App& app, int& exit_code) {
@@ -118,6 +128,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                            ->add_option("--frames", arguments->frames,
                                         "Write every N-th iterate as a frame of an animation (frames.pvd)")
                            ->check(CLI::Range(1, 1000000000));
+  add_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
   command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
     listen_for_interrupts();
@@ -133,12 +144,20 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     options.judge = intersection_judge();
     options.observer = make_observer();
     const Scene scene = load_scene(arguments->scene);
+    std::optional<double> accuracy_mm;
+    if (!arguments->accuracy.empty()) accuracy_mm = wanted_accuracy(arguments->accuracy);
+    SolverTable solvers = all_solvers();
+    std::optional<Checkpointing> checkpointing;
+    if (arguments->checkpoint.is_wanted()) {
+      checkpointing.emplace(arguments->checkpoint, identity(scene, options, accuracy_mm));
+      solvers = checkpointing->recorded(solvers);
+      options.observer = checkpointing->recorded(options.observer);
+    }
     const RunReport report =
-        arguments->accuracy.empty()
-            ? run(scene, all_solvers(), options)
-            : run_to_accuracy(scene, all_solvers(), wanted_accuracy(arguments->accuracy), options);
+        accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
     end_progress();
     print_summary(report);
+    if (checkpointing) checkpointing->finish(arguments->scene);
     const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
     const bool is_good = is_reached && report.report.result.status == Status::Converged;
     exit_code = is_good ? kConverged : kNotConverged;
