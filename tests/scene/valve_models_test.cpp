@@ -86,6 +86,37 @@ INSTANTIATE_TEST_SUITE_P(All, ValveModels, testing::ValuesIn(valve_model_names()
   return instance.param.substr(instance.param.find('-') + 1);
 });
 
+// The sizes of the sources: at once, in time, and by position-based dynamics, which comes to rest near a closed
+// shape without being one of the energy.
+TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
+  for (const std::string& model : valve_model_names())
+    for (const int triangles : {625, 2500, 10000})
+      for (const char* solver : {"newton", "dynamic", "xpbd"}) {
+        const TemporaryFolder folder;
+        Valve valve = mitral_valve({.triangles = triangles});
+        ImportOptions options;
+        options.contact = "barrier";
+        options.tolerance = 1e-6;
+        apply_valve_model(model, valve, options);
+        write_valve_scene(valve, folder.path(), options);
+        Scene scene = load_scene(folder.path() / "scene.json");
+        const bool is_static = solver != std::string("xpbd");
+        scene.solver.type = solver;
+        scene.solver.cascade = solver == std::string("newton");
+        scene.solver.xpbd.steps = 400;
+        const JudgedScene judged = solve_judged(scene);
+        const std::string name = model + ", " + solver + ", " + std::to_string(triangles);
+        if (is_static)
+          expect_contact_without_intersection(name, judged);
+        else
+          EXPECT_EQ(judged.intersections, 0) << name;
+        const double orifice = judged.metrics.orifice_area_mm2.value();
+        std::printf("%s: orifice %.2f mm2, residual %.1e, %.0f s\n", name.c_str(), orifice,
+                    judged.outcome.result.residual, judged.outcome.result.cpu_s);
+        EXPECT_LT(orifice, (is_static ? 0.02 : 0.05) * judged.metrics.annulus_area_mm2.value()) << name;
+      }
+}
+
 TEST(ValveModels, NamesThoseThereAre) {
   Valve valve = mitral_valve({.triangles = 300});
   ImportOptions options;
