@@ -4,6 +4,8 @@
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "optim/newton.hpp"
+#include "scene/build.hpp"
+#include "scene/stress/energy_judge.hpp"
 #include "scene/stress/slivers.hpp"
 #include "scene/stress/stress_report.hpp"
 #include "scene/temporary_folder.hpp"
@@ -77,6 +79,16 @@ class StressedScene : public testing::Test {
       "solver": {"type": "newton", "tolerance": 1e-8}})"));
   }
 
+  // A clamped disc, whose pressure has a potential.
+  Scene clamped() {
+    write_mesh(folder_.path() / "disc.obj", disc(10, 100));
+    return load_scene(folder_.write("clamped.json", R"({"mesh": {"file": "disc.obj"},
+      "boundary": [{"nodes": "boundary", "fix": true}],
+      "terms": [{"type": "cst_tension_field", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"},
+                {"type": "load_pressure", "value": "0.1 kPa"}],
+      "solver": {"type": "newton", "tolerance": 1e-8}})"));
+  }
+
   StressMatrix stressed(const Scene& scene, std::vector<std::string> ids, bool is_quick = false) {
     options_.rows = std::move(ids);
     options_.is_quick = is_quick;
@@ -147,8 +159,10 @@ TEST_F(StressedScene, FramesStartsAndNumbersDoNotMatter) {
   for (const StressResult& result : matrix.results) {
     const bool is_left_out = result.outcome.verdict == Verdict::NotApplicable;
     // It has no lines; and planes of symmetry cannot be turned obliquely.
-    EXPECT_EQ(is_left_out, result.row.name.starts_with("lines") || result.row.name.starts_with("turned"))
-        << result.row.id << " " << result.row.name << ": " << result.outcome.message;
+    const std::string& name = result.row.name;
+    EXPECT_EQ(is_left_out,
+              name.starts_with("lines") || name.starts_with("chords") || name.starts_with("turned"))
+        << result.row.id << " " << name << ": " << result.outcome.message;
   }
 }
 
@@ -162,6 +176,35 @@ TEST_F(StressedScene, ContactKeepsItsPromiseAtEveryState) {
       EXPECT_EQ(result.outcome.figure, 0);
       EXPECT_NE(result.outcome.message.find("states were judged"), std::string::npos);
     }
+}
+
+TEST_F(StressedScene, InputDescentAndStepsAreJudgedOnAnyScene) {
+  for (const bool has_contact : {false, true}) {
+    const StressMatrix matrix =
+        stressed(has_contact ? pressed() : clamped(), {"S8", "S15", "S20", "S21", "S23", "S24"});
+    EXPECT_FALSE(matrix.has_failed()) << told(matrix);
+    for (const StressResult& result : matrix.results) {
+      const std::string& id = result.row.id;
+      const bool applies = id == "S8" || id == "S20" || id == (has_contact ? "S15" : "S21");
+      EXPECT_EQ(result.outcome.verdict, applies ? Verdict::Pass : Verdict::NotApplicable)
+          << id << ": " << result.outcome.message;
+    }
+  }
+}
+
+TEST_F(StressedScene, AnEnergyThatRisesIsToldUnlessAnotherRoundBegins) {
+  Model model = build(clamped());
+  Result result;
+  result.q = model.q0;
+  result.trace.resize(3);
+  result.trace[0].energy = 1;
+  result.trace[1].energy = 0.5;
+  result.trace[2].energy = 0.6;
+  result.trace[2].iteration = 2;
+  const std::string rise = energy_rise(result, *model.objective, model.X);
+  EXPECT_NE(rise.find("in iteration 2"), std::string::npos) << rise;
+  result.trace[2].round = 1;
+  EXPECT_EQ(energy_rise(result, *model.objective, model.X), "");
 }
 
 TEST_F(StressedScene, RowsThatAreNotThereAreNamedWithThoseThatAre) {

@@ -18,16 +18,6 @@ bool promises_contact(const Scene& scene) {
   });
 }
 
-// Pairs of facets, one or both of the mesh.
-long count_intersections(const Model& model, const Points& x, const IntersectionJudge& judge) {
-  const auto own = model.mesh.triangles.cols();
-  Triangles facets(3, own + model.obstacles.cols());
-  facets << model.mesh.triangles, model.obstacles;
-  const auto pairs = judge.pairs(x, facets);
-  return std::count_if(pairs.begin(), pairs.end(),
-                       [&](const std::array<int, 2>& pair) { return std::min(pair[0], pair[1]) < own; });
-}
-
 // The longest time from one accepted state to the next: within it nobody can be asked to stop.
 double longest_pause(const Result& result) {
   double longest = 0, last = 0;
@@ -84,7 +74,7 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
   Model& model = solved.model;
   if (how.edit) how.edit(model);
   const auto judge = [&](const Points& x) {
-    solved.intersections = std::max(solved.intersections, count_intersections(model, x, options_.judge));
+    solved.intersections = std::max(solved.intersections, intersection_count(model, x, options_.judge));
     ++solved.judged;
   };
   setup.observer = [&](const Iteration& iteration, const Vector& q) {
@@ -111,6 +101,15 @@ StressOutcome outcome_of(const Stressed& solved, StressVerdict verdict, std::str
   outcome.residual = solved.result.residual;
   outcome.iterations = solved.result.iterations;
   return outcome;
+}
+
+long intersection_count(const Model& model, const Points& x, const IntersectionJudge& judge) {
+  const auto own = model.mesh.triangles.cols();
+  Triangles facets(3, own + model.obstacles.cols());
+  facets << model.mesh.triangles, model.obstacles;
+  const auto pairs = judge.pairs(x, facets);
+  return std::count_if(pairs.begin(), pairs.end(),
+                       [&](const std::array<int, 2>& pair) { return std::min(pair[0], pair[1]) < own; });
 }
 
 std::optional<StressOutcome> untruth(const Stressed& solved, double tolerance) {

@@ -57,6 +57,9 @@ class StressBench {
   StressOptions options_;
 };
 
+// Pairs of facets at x that pass through each other, one or both of the mesh.
+long intersection_count(const Model& model, const Points& x, const IntersectionJudge& judge);
+
 // The outcome with status, residual and iterations of the solve.
 StressOutcome outcome_of(const Stressed& solved, StressVerdict verdict, std::string message);
 

@@ -52,7 +52,14 @@ std::vector<BuiltRow> line_rows();        // S5, S11: chords and tethers
 std::vector<BuiltRow> sheet_rows();       // S6, S8, S9, S11: sheets
 std::vector<BuiltRow> lost_rows();        // S10, S12: no equilibrium, or another branch
 std::vector<BuiltRow> degenerate_rows();  // S13, S26: contact
+std::vector<BuiltRow> folded_rows();      // S13, S26: sheets that meet themselves or have holes
 std::vector<BuiltRow> tunnelling_rows();  // S14, S25: contact under load
+
+// Rows that are no solve of one scene.
+std::vector<StressRow> collision_query_rows();                       // S15
+std::vector<StressRow> bad_input_rows(const StressBench& bench);     // S20
+std::vector<StressRow> random_scene_rows(const StressBench& bench);  // S21
+std::vector<StressRow> large_scene_rows(const StressBench& bench);   // S24
 
 // The generated valve, 300 triangles, for the rows that are done to any scene. Written into the folder.
 StressScene built_in_valve(const std::filesystem::path& folder, bool has_contact);

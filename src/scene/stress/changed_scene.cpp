@@ -158,6 +158,13 @@ StressScene with_energy_scaled(const StressScene& subject, double factor,
   return scaled;
 }
 
+StressScene with_chords_scaled(const StressScene& subject, double factor) {
+  StressScene scaled = copy_of(subject);
+  for (auto& [path, placed] : scaled.ground.networks)
+    for (Chord& chord : placed.network.chords) chord.rest_length *= factor;
+  return scaled;
+}
+
 bool is_load(const TermSpec& term) { return term.type.starts_with("load_"); }
 bool is_line(const TermSpec& term) { return term.type.starts_with("cable") || term.type == "tether_cubic"; }
 bool is_membrane(const TermSpec& term) {

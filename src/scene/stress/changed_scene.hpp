@@ -31,6 +31,9 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame);
 StressScene with_energy_scaled(const StressScene& subject, double factor,
                                const std::function<bool(const TermSpec&)>& is_meant);
 
+// The scene with every length at rest of its networks of chords times `factor`.
+StressScene with_chords_scaled(const StressScene& subject, double factor);
+
 // What a term is, by its keys.
 bool is_load(const TermSpec& term);
 bool is_line(const TermSpec& term);      // cables, chords, tethers

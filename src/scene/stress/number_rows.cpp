@@ -1,5 +1,6 @@
-// S3, S4, S6: loads, stiffnesses and triangles far from the usual. Nothing is known of the answer but that it
-// must be one: what is called converged is measured again by an objective that was made anew.
+// S3, S4, S5, S6, S25: loads, stiffnesses, chords and triangles far from the usual. Nothing is known of the
+// answer but that it must be one: what is called converged is measured again by an objective that was made
+// anew.
 #include "scene/stress/slivers.hpp"
 #include "scene/stress/subject.hpp"
 
@@ -41,6 +42,15 @@ StressRow scaled_row(const SubjectPointer& subject, const char* id, const std::s
              });
 }
 
+StressRow short_chords_row(const SubjectPointer& subject) {
+  return row(subject, "S5", "chords that start half as long again as they should", true,
+             [subject]() -> StressOutcome {
+               if (own_scene(*subject).ground.networks.empty())
+                 return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
+               return solved_anew(*subject, with_chords_scaled(own_scene(*subject), 1 / 1.5));
+             });
+}
+
 StressRow sliver_row(const SubjectPointer& subject, double aspect, bool is_quick) {
   return row(subject, "S6", "slivers of aspect " + short_number(aspect), is_quick,
              [subject, aspect]() -> StressOutcome {
@@ -64,6 +74,9 @@ std::vector<StressRow> number_rows(const SubjectPointer& subject) {
     rows.push_back(scaled_row(subject, "S4", "membranes", factor, factor == 1e2, is_membrane));
   for (const double factor : {1e-2, 1e2, 1e4})
     rows.push_back(scaled_row(subject, "S4", "lines", factor, factor == 1e2, is_line));
+  for (const double factor : {1e-12, 1e12})
+    rows.push_back(scaled_row(subject, "S25", "membranes", factor, false, is_membrane));
+  rows.push_back(short_chords_row(subject));
   for (const double aspect : {1e2, 1e4, 1e6}) rows.push_back(sliver_row(subject, aspect, aspect == 1e4));
   return rows;
 }

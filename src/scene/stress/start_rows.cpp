@@ -1,4 +1,4 @@
-// S9, S10, S22: other starts, no supports, and the way there and back.
+// S8, S9, S10, S22: nothing to do, other starts, no supports, and the way there and back.
 #include "scene/stress/subject.hpp"
 
 #include <algorithm>
@@ -77,28 +77,53 @@ StressOutcome without_supports(StressSubject& subject) {
   return outcome_of(solved, is_named ? StressVerdict::Pass : StressVerdict::Stall, solved.result.message);
 }
 
-StressOutcome there_and_back(StressSubject& subject) {
-  constexpr double kChange = 1.1;
-  if (auto outcome = no_yardstick(subject)) return *outcome;
-  for (const TermSpec& term : own_scene(subject).scene.terms)
-    if (term.parameters.has("forces"))
-      return {StressVerdict::NotApplicable, {}, {}, "the loads are read from a file"};
-  const Stressed there = subject.bench.solve(with_energy_scaled(own_scene(subject), kChange, is_load),
-                                             {.start = &own_solution(subject).x});
+StressOutcome with_every_node_held(StressSubject& subject) {
+  StressScene held = copy_of(own_scene(subject));
+  held.ground.prescribed.fixed.setConstant(true);
+  held.ground.prescribed.paths.clear();
+  const Stressed solved = subject.bench.solve(held);
+  if (auto outcome = not_converged(solved, tolerance_of(held))) return *outcome;
+  return measured(solved, solved.result.iterations, 0, "looked for what was there already");
+}
+
+// Solved on from the own solution in the changed scene, and from there in the scene as it is.
+StressOutcome there_and_back(StressSubject& subject, const StressScene& changed) {
+  const Stressed there = subject.bench.solve(changed, {.start = &own_solution(subject).x});
   if (auto outcome = not_converged(there, tolerance_of(own_scene(subject)))) return *outcome;
   const Stressed back = subject.bench.solve(own_scene(subject), {.start = &there.x});
   return same_shape_as_own(subject, back, back.x);
 }
 
+constexpr double kChange = 1.1;
+
+StressOutcome longer_chords_and_back(StressSubject& subject) {
+  if (auto outcome = no_yardstick(subject)) return *outcome;
+  if (own_scene(subject).ground.networks.empty())
+    return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
+  return there_and_back(subject, with_chords_scaled(own_scene(subject), kChange));
+}
+
+StressOutcome more_load_and_back(StressSubject& subject) {
+  if (auto outcome = no_yardstick(subject)) return *outcome;
+  for (const TermSpec& term : own_scene(subject).scene.terms)
+    if (term.parameters.has("forces"))
+      return {StressVerdict::NotApplicable, {}, {}, "the loads are read from a file"};
+  return there_and_back(subject, with_energy_scaled(own_scene(subject), kChange, is_load));
+}
+
 }  // namespace
 
 std::vector<StressRow> start_rows(const SubjectPointer& subject) {
-  return {shaken_row(subject, 1e-6, true),
+  return {{"S8", subject->name, "every node held", "iterations", "", true,
+           [subject] { return with_every_node_held(*subject); }},
+          shaken_row(subject, 1e-6, true),
           shaken_row(subject, 1e-3, false),
           {"S10", subject->name, "all supports gone", "residual of what is called converged, measured anew",
            "", true, [subject] { return without_supports(*subject); }},
           {"S22", subject->name, "loads 10 % up, and back", kDistance, "", true,
-           [subject] { return there_and_back(*subject); }}};
+           [subject] { return more_load_and_back(*subject); }},
+          {"S22", subject->name, "chords 10 % longer, and back", kDistance, "", true,
+           [subject] { return longer_chords_and_back(*subject); }}};
 }
 
 }  // namespace coapt

@@ -18,7 +18,8 @@ void append(std::vector<StressRow>& rows, std::vector<StressRow> more) {
 std::vector<StressRow> subject_rows(const SubjectPointer& subject) {
   std::vector<StressRow> rows;
   for (const auto& family :
-       {frame_rows, number_rows, start_rows, promise_rows, failure_rows, interrupt_rows, repetition_rows})
+       {frame_rows, number_rows, start_rows, promise_rows, collision_rows, failure_rows, interrupt_rows,
+        repetition_rows, input_rows, descent_rows, derivative_rows, size_rows})
     append(rows, family(subject));
   return rows;
 }
@@ -73,11 +74,16 @@ constexpr Topic kTopics[] = {{"S1", "units"},
                              {"S12", "snap-through"},
                              {"S13", "degenerate contact"},
                              {"S14", "tunnelling"},
+                             {"S15", "collision detection"},
                              {"S16", "failing evaluations"},
                              {"S17", "interrupts"},
                              {"S18", "repetition"},
                              {"S19", "threads"},
+                             {"S20", "bad input"},
+                             {"S21", "descent"},
                              {"S22", "there and back"},
+                             {"S23", "derivatives"},
+                             {"S24", "size"},
                              {"S25", "extreme numbers"},
                              {"S26", "large contact"},
                              {"P", "balance"},
@@ -142,8 +148,12 @@ std::vector<StressRow> stress_rows(const StressOptions& options) {
   constexpr double kSameShape = 1e-8;  // over the extent, at the tolerance of the built-in valve
   const StressBench bench(options);
   std::vector<StressRow> rows;
-  for (const auto& family : {load_rows, line_rows, sheet_rows, lost_rows, degenerate_rows, tunnelling_rows})
+  for (const auto& family :
+       {load_rows, line_rows, sheet_rows, lost_rows, degenerate_rows, folded_rows, tunnelling_rows})
     for (const BuiltRow& row : family()) rows.push_back(row_of(bench, row));
+  append(rows, collision_query_rows());
+  for (const auto& family : {bad_input_rows, random_scene_rows, large_scene_rows})
+    append(rows, family(bench));
   for (const bool has_contact : {false, true}) {
     const auto subject = std::make_shared<StressSubject>();
     subject->name = has_contact ? "valve with contact" : "valve";

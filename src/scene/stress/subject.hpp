@@ -36,11 +36,16 @@ inline double tolerance_of(const StressScene& scene) { return scene.scene.solver
 
 // The rows by family. Each row keeps the subject.
 std::vector<StressRow> frame_rows(const SubjectPointer& subject);       // S1, S2, S7
-std::vector<StressRow> number_rows(const SubjectPointer& subject);      // S3, S4, S6
-std::vector<StressRow> start_rows(const SubjectPointer& subject);       // S9, S10, S22
+std::vector<StressRow> number_rows(const SubjectPointer& subject);      // S3, S4, S5, S6, S25
+std::vector<StressRow> start_rows(const SubjectPointer& subject);       // S8, S9, S10, S22
 std::vector<StressRow> failure_rows(const SubjectPointer& subject);     // S16
 std::vector<StressRow> interrupt_rows(const SubjectPointer& subject);   // S17
 std::vector<StressRow> repetition_rows(const SubjectPointer& subject);  // S18, S19, methods
 std::vector<StressRow> promise_rows(const SubjectPointer& subject);     // S13, S14, balance
+std::vector<StressRow> collision_rows(const SubjectPointer& subject);   // S15
+std::vector<StressRow> input_rows(const SubjectPointer& subject);       // S20
+std::vector<StressRow> descent_rows(const SubjectPointer& subject);     // S21
+std::vector<StressRow> derivative_rows(const SubjectPointer& subject);  // S23
+std::vector<StressRow> size_rows(const SubjectPointer& subject);        // S24
 
 }  // namespace coapt

@@ -1,10 +1,10 @@
-// Random scenes of a few triangles: each byte is a choice.
+// Random scenes of a few triangles: each byte is a choice. Private to this room.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-namespace coapt::fuzz {
+namespace coapt {
 
 struct SmallScene {
   std::string mesh;   // text of an OBJ file, at most 18 triangles
@@ -17,4 +17,4 @@ struct SmallScene {
 // Stiffnesses, thicknesses and loads span many orders of magnitude.
 SmallScene small_scene(std::string_view bytes);
 
-}  // namespace coapt::fuzz
+}  // namespace coapt

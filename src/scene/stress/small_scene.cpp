@@ -1,11 +1,11 @@
-#include "fuzz/small_scene.hpp"
+#include "scene/stress/small_scene.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
-namespace coapt::fuzz {
+namespace coapt {
 namespace {
 
 class Choices {
@@ -144,4 +144,4 @@ SmallScene small_scene(std::string_view bytes) {
   return small;
 }
 
-}  // namespace coapt::fuzz
+}  // namespace coapt
