@@ -45,6 +45,12 @@ std::optional<double> error_of(const BenchRun& run, ErrorKind kind) {
   return run.errors.algebraic ? std::optional(run.errors.algebraic->max) : std::nullopt;
 }
 
+std::optional<double> factorisations_worth(const Benchmark& bench, const BenchRun& run) {
+  const std::optional<double>& unit = bench.meshes[run.mesh].factorisation_s;
+  if (!unit || !(*unit > 0)) return std::nullopt;
+  return run.cpu.median / *unit;
+}
+
 const BenchRun* fastest_run(const Benchmark& bench, ErrorKind kind, double mm, const RunFilter& filter) {
   const BenchRun* fastest = nullptr;
   for (const BenchRun& run : bench.runs) {

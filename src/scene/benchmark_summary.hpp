@@ -20,6 +20,9 @@ inline constexpr std::array kAlgebraicAccuracies{1.0, 0.1, 0.01, 1e-6};
 // Empty where it is not known [mm].
 std::optional<double> error_of(const BenchRun& run, ErrorKind kind);
 
+// CPU time of a run in units of BenchMesh::factorisation_s; empty where that is not known.
+std::optional<double> factorisations_worth(const Benchmark& bench, const BenchRun& run);
+
 // Which runs are asked; empty: all.
 struct RunFilter {
   std::optional<size_t> method = {}, mesh = {};
