@@ -122,7 +122,7 @@ PageTable meshes_table(const Benchmark& bench) {
 }
 
 PageTable growth_table(const Benchmark& bench) {
-  PageTable table{.caption = "Growth of the wall time with the number of triangles"};
+  PageTable table{.caption = "Growth of the CPU time with the number of triangles"};
   table.columns = {{"method", true}, {"exponent"}, {"tolerance"}, {"meshes"}};
   for (size_t method = 0; method < bench.methods.size(); ++method)
     if (const auto found = growth(bench, method))

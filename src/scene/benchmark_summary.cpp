@@ -75,9 +75,9 @@ std::optional<Growth> growth(const Benchmark& bench, size_t method) {
   for (const double tolerance : bench.tolerances) {  // falling: later ones win where they have as many meshes
     std::vector<double> sizes, seconds;
     for (const BenchRun& run : bench.runs) {
-      if (!is_asked(run, {.method = method}) || run.tolerance != tolerance || !(run.wall.best > 0)) continue;
+      if (!is_asked(run, {.method = method}) || run.tolerance != tolerance || !(run.cpu.best > 0)) continue;
       sizes.push_back(bench.meshes[run.mesh].triangles);
-      seconds.push_back(run.wall.best);
+      seconds.push_back(run.cpu.best);
     }
     const int meshes = static_cast<int>(sizes.size());
     if (meshes >= 2 && (!found || meshes >= found->meshes))
