@@ -20,6 +20,10 @@ constexpr double kNear = 1e-3;                   // residual at which an equilib
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
+// Iterates in a row that better neither the energy nor the residual, before the rest is left to round-off.
+constexpr int kPatience = 10;
+constexpr double kBetter = 0.9;  // of the least residual so far
+
 // Conjugate gradients: how many at most, to which share of the gradient, and the share of the projected
 // curvature below which a direction counts as flat.
 constexpr int kConjugate = 15;
@@ -49,8 +53,8 @@ class Newton {
       evaluate();
     }
     while (true) {
-      sharpen();
-      if (const auto status = monitor_.accept(at_.q, at_.energy, at_.g)) return *status;
+      if (const auto status = accept()) return *status;
+      if (is_at_round_off()) return Status::Stalled;
       if (unit_ == 0) start_shift();
       if (!hessian_.factorise(objective_, monitor_, at_.q, at_.g, shift_)) return Status::Stalled;
       bool is_found = is_beyond_the_potential() && approach();
@@ -64,6 +68,12 @@ class Newton {
       std::swap(at_, next_);
       q = at_.q;
     }
+  }
+
+  std::string remark() const {
+    if (idle_ < kPatience) return {};
+    return "round-off forbids more, as " + std::to_string(kPatience) +
+           " iterates in a row bettered neither the residual nor the energy";
   }
 
  private:
@@ -80,13 +90,32 @@ class Newton {
            });
   }
 
-  // Narrows the kinks, step by step, when the iterates have settled for those there are.
-  void sharpen() {
-    while (rounding_ > 0 && objective_.relative_residual(at_.g) <= std::max(kSettled, monitor_.tolerance())) {
+  // Why to stop at this iterate, if so. Narrows the kinks, step by step, when the iterates have settled for
+  // those there are: from then on the energy is another one, which the trace has as another round.
+  std::optional<Status> accept() {
+    while (true) {
+      const auto status = monitor_.accept(at_.q, at_.energy, at_.g);
+      if (rounding_ == 0 || (status && *status != Status::Converged)) return status;
+      if (objective_.relative_residual(at_.g) > std::max(kSettled, monitor_.tolerance())) return status;
       rounding_ = rounding_ * kSharpen < kLeastRounding ? 0 : rounding_ * kSharpen;
       objective_.round_kinks(rounding_);
+      monitor_.begin_round(monitor_.round() + 1, monitor_.tolerance());
+      least_energy_ = least_residual_ = kInfinity;
       evaluate();
     }
+  }
+
+  // Every step of this method promises a gain. Where none comes for long, it is too small to be seen.
+  bool is_at_round_off() {
+    const double residual = objective_.relative_residual(at_.g);
+    const bool is_better = residual < kBetter * least_residual_ ||
+                           at_.energy < least_energy_ - monitor_.energy_noise(at_.energy);
+    idle_ = is_better ? 0 : idle_ + 1;
+    if (is_better) {
+      least_residual_ = std::min(least_residual_, residual);
+      least_energy_ = std::min(least_energy_, at_.energy);
+    }
+    return idle_ >= kPatience;
   }
 
   // Force over length: what resists a displacement of the scene's size with the scene's force.
@@ -237,6 +266,8 @@ class Newton {
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
   double rounding_ = 0;
+  double least_energy_ = kInfinity, least_residual_ = kInfinity;  // that counted as a gain
+  int idle_ = 0;                                                  // iterates since
   LinePoint at_, next_;
   Vector work_, symmetric_, direction_, last_;
   Vector left_, conjugate_, image_;  // of the conjugate gradients
@@ -250,11 +281,17 @@ class SolverNewton final : public Solver {
   bool follows_path() const override { return true; }
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
-    return Newton(options_, objective, monitor).minimize(q);
+    Newton newton(options_, objective, monitor);
+    const Status status = newton.minimize(q);
+    remark_ = newton.remark();
+    return status;
   }
+
+  std::string remark() const override { return remark_; }
 
  private:
   SolverOptions options_;
+  std::string remark_;
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   if (!objective.has_circulatory_force() || solver.follows_path()) {
     for (int stiffening = 0;; ++stiffening) {
       if (objective.has_circulatory_force()) objective.follow_path(q);
-      monitor.begin_round(monitor.round(), tolerance);
+      monitor.begin_round(monitor.round() + 1, tolerance);
       const Status status = solver.minimize(objective, q, monitor);
       if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
     }

@@ -22,7 +22,6 @@ constexpr double kGoingOn = 1e-4;        // of the residual, to see how far the 
 constexpr double kRoundOff = 1e-12;      // residual below which nothing is gained
 constexpr double kClearlySmaller = 0.5;  // a residual that tells how far the shape still goes
 constexpr int kMostTightenings = 4;
-constexpr int kMostRefinements = 200;  // iterates of newton; at round-off it would go on for long
 
 struct SolvedMesh {
   size_t cuts = 0;
@@ -50,8 +49,6 @@ class Search {
         options_(options),
         most_triangles_(most_triangles),
         most_seconds_(setup_.stop.max_seconds) {
-    if (going_on_.solver == kRefiningSolver)
-      going_on_.stop.max_iterations = std::min(going_on_.stop.max_iterations, kMostRefinements);
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
     estimate.wanted_mm = wanted_mm;
     estimate.tolerance = kFirstTolerance;
@@ -62,14 +59,14 @@ class Search {
 
   SolvedMesh solve() {
     SolvedMesh mesh = tightened(solved(0));
-    std::vector<DistanceFigures> distances;
+    std::vector<TriangleMesh> shapes = {mesh.closed()};
     while (mesh.has_converged() && estimate.algebraic_mm) {
       if (4L * mesh.model.mesh.triangle_count() > most_triangles_) break;
-      const TriangleMesh coarser = mesh.closed();
       SolvedMesh finer = solved(mesh.cuts + 1);
       if (!finer.has_converged()) return finer;
-      distances.push_back(distance_between(coarser, finer.closed()));
-      estimate.levels.back().to_previous = distances.back();
+      shapes.push_back(finer.closed());
+      const MeshDistances distances = distances_between_meshes(shapes);
+      estimate.levels.back().to_previous = distances.to_next.back();
       const DiscretisationEstimate found = estimate_discretisation(distances);
       estimate.order = found.order;
       const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {

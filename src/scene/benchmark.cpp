@@ -4,6 +4,7 @@
 #include "scene/build.hpp"
 #include "scene/detail/bench_pair.hpp"
 #include "scene/detail/method_list.hpp"
+#include "scene/detail/unit_cost.hpp"
 #include "scene/refining.hpp"
 
 #include <algorithm>
@@ -59,21 +60,22 @@ BenchMesh described(const Groundwork& ground, bool is_benchmarked) {
 // Nothing where one of them is missing.
 void estimate_meshes(const std::list<Groundwork>& grounds, const std::vector<Equilibrium>& equilibria,
                      Benchmark& found) {
-  std::vector<DistanceFigures> to_next;
+  if (found.meshes.size() < 2 || equilibria.size() != found.meshes.size()) return;
+  std::vector<TriangleMesh> shapes;
   auto ground = grounds.begin();
-  for (size_t k = 0; k + 1 < equilibria.size(); ++k, ++ground) {
-    if (!equilibria[k].is_found || !equilibria[k + 1].is_found) return;
-    to_next.push_back(distance_between(surface_at(ground->model, equilibria[k].x),
-                                       surface_at(std::next(ground)->model, equilibria[k + 1].x)));
+  for (const Equilibrium& equilibrium : equilibria) {
+    if (!equilibrium.is_found) return;
+    shapes.push_back(surface_at((ground++)->model, equilibrium.x));
   }
-  if (to_next.empty() || to_next.size() + 1 != found.meshes.size()) return;
-  const DiscretisationEstimate estimate = estimate_discretisation(to_next);
+  const MeshDistances distances = distances_between_meshes(shapes);
+  const std::vector<DistanceFigures>& to_next = distances.to_next;
+  const DiscretisationEstimate estimate = estimate_discretisation(distances);
   found.assumed_order = estimate.assumed_order;
   for (size_t k = 0; k < found.meshes.size(); ++k) {
     BenchMesh& mesh = found.meshes[k];
     mesh.error_mm = estimate.error_mm[k];
     if (k < to_next.size()) mesh.to_next = to_next[k];
-    if (k > 0 && k < to_next.size()) mesh.order = estimate_discretisation({to_next[k - 1], to_next[k]}).order;
+    if (k > 0 && k < to_next.size()) mesh.order = observed_order(to_next[k - 1], to_next[k]);
   }
 }
 
@@ -109,7 +111,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
   const std::list<Groundwork> grounds = laid_grounds(scene, options.levels);
   RunOptions run = wanted;
   run.modes = 0;  // eigenvalues are no part of a solve
-  solve_setup(scene, solvers, run);
+  const SolveSetup setup = solve_setup(scene, solvers, run);
   if (run.folder.empty()) run.folder = result_folder(scene);
 
   Benchmark found;
@@ -139,7 +141,11 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
       const Equilibrium end = bench_pair(course, ground, mesh, method, equilibria.back(), found);
       if (method == 0) equilibria.back() = end;
     }
-    if (equilibria.back().is_found) found.meshes.back().residual = equilibria.back().residual;
+    if (const Equilibrium& reference = equilibria.back(); reference.is_found) {
+      found.meshes.back().residual = reference.residual;
+      if (is_benchmarked && !found.is_cancelled)
+        found.meshes.back().factorisation_s = factorisation_seconds(scene, ground, setup, reference.x);
+    }
     if (found.is_cancelled) break;
   }
   estimate_meshes(grounds, equilibria, found);

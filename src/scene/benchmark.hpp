@@ -77,6 +77,9 @@ struct BenchMesh {
   std::optional<DistanceFigures> to_next = {};  // between the reference equilibria here and on the next mesh
   std::optional<double> order = {};             // log2 of the mean distance from the mesh before over that
   std::optional<double> error_mm = {};          // estimate of the discretisation error, 95 % of the surface
+  // CPU time of a Hessian and its factorisation there, in which other times can be told on any machine; only
+  // of benchmarked meshes whose equilibrium was found [s].
+  std::optional<double> factorisation_s = {};
 };
 
 struct BenchMethod {

@@ -7,6 +7,8 @@
 #include "scene/detail/csv_row.hpp"
 #include "scene/detail/json_text.hpp"
 
+#include <sstream>
+
 namespace coapt {
 namespace {
 
@@ -49,6 +51,7 @@ Json run_json(const Benchmark& bench, const BenchRun& run) {
   json["repeats"] = run.repeats;
   json["wall_s"] = spread_json(run.wall);
   json["cpu_s"] = spread_json(run.cpu);
+  json["cpu_in_factorisations"] = number_json(factorisations_worth(bench, run));
   json["time_by_phase_s"] = Json::object();
   for (const auto& [phase, seconds] : run.phase_s) json["time_by_phase_s"][phase] = number_json(seconds);
   json["peak_memory_mb"] = number_json(run.peak_memory_mb);
@@ -65,6 +68,7 @@ Json mesh_json(const BenchMesh& mesh) {
   json["distance_to_next"] = mesh.to_next ? distances_json(*mesh.to_next) : Json(nullptr);
   json["order"] = number_json(mesh.order);
   json["discretisation_mm"] = number_json(mesh.error_mm);
+  json["factorisation_s"] = number_json(mesh.factorisation_s);
   return json;
 }
 
@@ -145,9 +149,18 @@ Json benchmark_as_json(const Benchmark& bench) {
 
 constexpr const char* kHeader =
     "method,model,triangles,tolerance,status,residual,energy_mj,iterations,values,gradients,hessians,"
-    "factorisations,repeats,wall_median_s,wall_best_s,cpu_median_s,cpu_best_s,peak_memory_mb,"
+    "factorisations,repeats,wall_median_s,wall_best_s,cpu_median_s,cpu_best_s,cpu_in_factorisations,"
+    "peak_memory_mb,"
     "algebraic_max_mm,algebraic_rms_mm,discretisation_mm,method_mm,mean_to_closed_mm,p95_to_closed_mm,"
-    "max_to_closed_mm,total_mm,message";
+    "max_to_closed_mm,total_mm,phases_s,message";
+
+// "factorise=0.12;gradient=0.03", wall time [s].
+std::string phases_text(const BenchRun& run) {
+  std::ostringstream text;
+  for (const auto& [phase, seconds] : run.phase_s)
+    text << (text.tellp() > 0 ? ";" : "") << phase << '=' << seconds;
+  return text.str();
+}
 
 void add_row(const Benchmark& bench, const BenchRun& run, std::ostream& csv) {
   Row row(csv);
@@ -162,6 +175,7 @@ void add_row(const Benchmark& bench, const BenchRun& run, std::ostream& csv) {
     row.count(count);
   for (const double seconds : {run.wall.median, run.wall.best, run.cpu.median, run.cpu.best})
     row.number(seconds);
+  row.number(factorisations_worth(bench, run));
   row.number(run.peak_memory_mb);
   const RunErrors& errors = run.errors;
   row.number(errors.algebraic ? std::optional(errors.algebraic->max) : std::nullopt);
@@ -170,6 +184,7 @@ void add_row(const Benchmark& bench, const BenchRun& run, std::ostream& csv) {
   row.number(errors.method);
   row.distance(errors.model ? &*errors.model : nullptr);
   row.number(errors.total);
+  row.text(phases_text(run));
   row.text(run.message);
   csv << '\n';
 }

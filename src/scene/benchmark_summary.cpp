@@ -45,6 +45,12 @@ std::optional<double> error_of(const BenchRun& run, ErrorKind kind) {
   return run.errors.algebraic ? std::optional(run.errors.algebraic->max) : std::nullopt;
 }
 
+std::optional<double> factorisations_worth(const Benchmark& bench, const BenchRun& run) {
+  const std::optional<double>& unit = bench.meshes[run.mesh].factorisation_s;
+  if (!unit || !(*unit > 0)) return std::nullopt;
+  return run.cpu.median / *unit;
+}
+
 const BenchRun* fastest_run(const Benchmark& bench, ErrorKind kind, double mm, const RunFilter& filter) {
   const BenchRun* fastest = nullptr;
   for (const BenchRun& run : bench.runs) {
@@ -69,9 +75,9 @@ std::optional<Growth> growth(const Benchmark& bench, size_t method) {
   for (const double tolerance : bench.tolerances) {  // falling: later ones win where they have as many meshes
     std::vector<double> sizes, seconds;
     for (const BenchRun& run : bench.runs) {
-      if (!is_asked(run, {.method = method}) || run.tolerance != tolerance || !(run.wall.best > 0)) continue;
+      if (!is_asked(run, {.method = method}) || run.tolerance != tolerance || !(run.cpu.best > 0)) continue;
       sizes.push_back(bench.meshes[run.mesh].triangles);
-      seconds.push_back(run.wall.best);
+      seconds.push_back(run.cpu.best);
     }
     const int meshes = static_cast<int>(sizes.size());
     if (meshes >= 2 && (!found || meshes >= found->meshes))

@@ -20,6 +20,9 @@ inline constexpr std::array kAlgebraicAccuracies{1.0, 0.1, 0.01, 1e-6};
 // Empty where it is not known [mm].
 std::optional<double> error_of(const BenchRun& run, ErrorKind kind);
 
+// CPU time of a run in units of BenchMesh::factorisation_s; empty where that is not known.
+std::optional<double> factorisations_worth(const Benchmark& bench, const BenchRun& run);
+
 // Which runs are asked; empty: all.
 struct RunFilter {
   std::optional<size_t> method = {}, mesh = {};
@@ -32,8 +35,8 @@ const BenchRun* fastest_run(const Benchmark& bench, ErrorKind kind, double mm, c
 // Of the converged runs the one with the least error; null where none is known.
 const BenchRun* most_exact_run(const Benchmark& bench, ErrorKind kind);
 
-// p of time ~ triangles^p, of the best wall times at the tightest tolerance that the method reached on the
-// most meshes; least squares over the meshes. Empty with fewer than two.
+// p of time ~ triangles^p, of the best CPU times at the tightest tolerance that the method reached on the
+// most meshes (wall times of a shared machine show its other users); least squares over the meshes. Empty with fewer than two.
 struct Growth {
   double exponent = 0;
   double tolerance = 0;

@@ -1,20 +1,51 @@
 #include "scene/discretisation.hpp"
 
+#include "mesh/cut_in_four.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace coapt {
+namespace {
 
-DiscretisationEstimate estimate_discretisation(const std::vector<DistanceFigures>& to_next) {
-  DiscretisationEstimate estimate;
-  const size_t count = to_next.size();
-  if (count > 1 && to_next[count - 1].mean > 0 && to_next[count - 2].mean > 0) {
-    estimate.order = std::log2(to_next[count - 2].mean / to_next[count - 1].mean);
-    estimate.assumed_order = std::clamp(*estimate.order, 0.5, 2.0);
+DistanceFigures between(TriangleMesh coarser, size_t cuts, const TriangleMesh& finer) {
+  for (size_t k = 0; k < cuts; ++k) coarser = cut_in_four(coarser).mesh;
+  return distance_between(coarser, finer);
+}
+
+}  // namespace
+
+MeshDistances distances_between_meshes(const std::vector<TriangleMesh>& shapes) {
+  MeshDistances distances;
+  const size_t last = shapes.size() - 1;
+  for (size_t k = 0; k < last; ++k) {
+    distances.to_next.push_back(between(shapes[k], 1, shapes[k + 1]));
+    distances.to_finest.push_back(k + 1 == last ? distances.to_next.back()
+                                                : between(shapes[k], last - k, shapes[last]));
   }
-  double error = to_next.back().p95 / (std::exp2(estimate.assumed_order) - 1);
-  estimate.error_mm.assign(count + 1, error);
-  for (size_t k = count; k-- > 0;) estimate.error_mm[k] = error += to_next[k].p95;
+  return distances;
+}
+
+std::optional<double> observed_order(const DistanceFigures& coarser, const DistanceFigures& finer) {
+  if (!(coarser.mean > 0 && finer.mean > 0)) return std::nullopt;
+  return std::log2(coarser.mean / finer.mean);
+}
+
+DiscretisationEstimate estimate_discretisation(const MeshDistances& distances) {
+  const std::vector<DistanceFigures>&to_next = distances.to_next, &to_finest = distances.to_finest;
+  DiscretisationEstimate estimate;
+  const size_t last = to_next.size();  // of the meshes
+  if (last > 1) estimate.order = observed_order(to_next[last - 2], to_next[last - 1]);
+  if (estimate.order) estimate.assumed_order = std::clamp(*estimate.order, 0.5, 2.0);
+  const double fall = std::exp2(-estimate.assumed_order);
+
+  for (size_t k = 0; k + 1 < last; ++k)
+    estimate.error_mm.push_back(to_finest[k].p95 / (1 - std::pow(fall, last - k)));
+  double of_distance = 1 / (1 - fall);
+  if (last > 1 && to_next[last - 2].p95 > 0)
+    of_distance = std::clamp(estimate.error_mm.back() / to_next[last - 2].p95, 1.0, of_distance);
+  estimate.error_mm.push_back(of_distance * to_next[last - 1].p95);
+  estimate.error_mm.push_back(fall * estimate.error_mm.back());
   return estimate;
 }
 

@@ -69,11 +69,9 @@ std::string html(const PageTable& table) {
 }
 
 std::string html(const PagePlot& plot) {
-  std::string html = plot_html(plot);
-  for (const PageTable& numbers : plot_numbers(plot))
-    html += "<details><summary>Numbers: " + xml_escaped(numbers.caption) + "</summary>\n" +
-            coapt::html(numbers) + "</details>\n";
-  return html;
+  std::string html = plot_html(plot) + "<details><summary>Numbers</summary>\n";
+  for (const PageTable& numbers : plot_numbers(plot)) html += coapt::html(numbers);
+  return html + "</details>\n";
 }
 
 std::string html(const PageMarkup& markup) { return markup.html; }

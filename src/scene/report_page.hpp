@@ -50,12 +50,14 @@ struct PagePoint {
   double x = 0, y = 0;
   bool stopped_early = false;  // drawn hollow and crossed: the run did not reach what was wanted
   std::string label = {};      // of the point, in its tooltip; may be empty
+  bool begins_round = false;   // an upright line: from here on another function is minimised
 };
 
 struct PageSeries {
   std::string name = {};
   std::vector<PagePoint> points = {};  // in the order of the line
   bool is_joined = true;               // by a line
+  int kin = -1;  // series of one number share a colour, and differ by mark and dashes; below 0: none is kin
 };
 
 enum class Scale { Linear, Logarithmic };

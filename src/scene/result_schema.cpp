@@ -196,6 +196,15 @@ Json counters() {
                 "work by kind: zero for what the scene does not use");
 }
 
+Json potential_changes() {
+  return list(
+      count("number of the iterate"),
+      "iterates from which on another energy is minimised, a new round of trace.csv: a step of a motion or "
+      "of "
+      "loads, a renewed pressure, a stiffened barrier, sharpened kinks, the way off a saddle; only between "
+      "these the energy of the trace falls");
+}
+
 }  // namespace
 
 std::string result_schema() {
@@ -213,6 +222,7 @@ std::string result_schema() {
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
               {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"potential_changes", potential_changes()},
               {"branch_changes", branch_changes()},
               {"evaluations", object({{"value", count("energy alone")},
                                       {"gradient", count("energy and gradient")},

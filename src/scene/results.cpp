@@ -177,6 +177,14 @@ Json branch_changes_json(const std::vector<BranchChange>& changes) {
   return json;
 }
 
+// Iterates at which a round begins, but for the first.
+Json potential_changes_json(const std::vector<Iteration>& trace) {
+  Json json = Json::array();
+  for (size_t k = 1; k < trace.size(); ++k)
+    if (trace[k].round != trace[k - 1].round) json.push_back(trace[k].iteration);
+  return json;
+}
+
 std::string trace_csv(const Result& result) {
   std::ostringstream out;
   out.precision(10);
@@ -250,6 +258,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},
+      {"potential_changes", potential_changes_json(result.trace)},
       {"branch_changes", branch_changes_json(result.branch_changes)},
       {"evaluations",
        {{"value", result.evaluations.value},

@@ -112,9 +112,12 @@ PageSection figures(const Report& report) {
 
 PagePlot residual_plot(const Report& report, bool against_time) {
   PageSeries series{.name = report.solver};
-  for (const Iteration& it : report.result.trace)
-    series.points.push_back({against_time ? it.seconds : it.iteration, it.residual, false,
-                             "iterate " + std::to_string(it.iteration)});
+  const std::vector<Iteration>& trace = report.result.trace;
+  for (size_t k = 0; k < trace.size(); ++k)
+    series.points.push_back({.x = against_time ? trace[k].seconds : trace[k].iteration,
+                             .y = trace[k].residual,
+                             .label = "iterate " + std::to_string(trace[k].iteration),
+                             .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
   return {.title = against_time ? "Residual against wall time" : "Residual against iterates",
           .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
           .y = {"residual (largest out-of-balance force over the largest force)", Scale::Logarithmic},
@@ -126,6 +129,11 @@ PageSection convergence(const Report& report) {
   PageSection section{"Convergence", {}};
   if (report.result.trace.empty()) return {"Convergence", {PageText{"No iterate was accepted."}}};
   section.blocks = {residual_plot(report, false), residual_plot(report, true)};
+  const auto& trace = report.result.trace;
+  if (trace.front().round != trace.back().round)
+    section.blocks.emplace_back(
+        PageText{"Dotted upright lines: from there on another energy is minimised, because loads or supports "
+                 "went on, a barrier became stiffer, kinks became sharper, or pressure was renewed."});
   if (report.result.rounds > 0)
     section.blocks.emplace_back(
         PageText{"The residual of an iterate is that of the potential of its round; the "

@@ -41,6 +41,10 @@ class BenchTest(command_case.CommandCase):
             self.assertAlmostEqual(float(row["total_mm"]), run["errors"]["total_mm"], places=9)
             self.assertGreaterEqual(run["wall_s"]["median"], run["wall_s"]["best"])
             self.assertGreater(sum(run["time_by_phase_s"].values()), 0)
+            phases = dict(pair.split("=") for pair in row["phases_s"].split(";"))
+            self.assertEqual(set(phases), set(run["time_by_phase_s"]))
+            unit = found["meshes"][run["mesh"]]["factorisation_s"]
+            self.assertAlmostEqual(run["cpu_in_factorisations"] * unit, run["cpu_s"]["median"], places=9)
             self.assertIn(run["repeats"], (1, 2))  # not again where the first took 10 s
         # Each entry of the table of times is a run that is that exact, and none of those was faster.
         for entry in found["time_to"]:

@@ -5,6 +5,7 @@
 #include "optim/carry_along.hpp"
 #include "optim/gmres.hpp"
 #include "optim/lbfgs.hpp"
+#include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
 #include "support/valve_scene.hpp"
@@ -215,9 +216,84 @@ TEST(RoundedKinks, LeadToTheSharpEquilibrium) {
   EXPECT_EQ(result.status, Status::Converged) << result.message;
   EXPECT_LE(residual, 1e-9);
   EXPECT_LE(result.iterations, 40);
+  int rounds = 0, rises = 0;
+  for (size_t k = 1; k < result.trace.size(); ++k) {
+    const Iteration &before = result.trace[k - 1], &now = result.trace[k];
+    const double rise = now.energy - before.energy, noise = 1e-12 * std::abs(before.energy) + 1e-13;
+    if (now.round == before.round) {
+      EXPECT_LE(rise, noise) << "iterate " << now.iteration;
+    } else {
+      ++rounds;  // the same shape under sharper kinks
+      EXPECT_EQ(now.iteration, before.iteration);
+      EXPECT_EQ(now.step, 0);
+      if (std::abs(rise) > noise) ++rises;
+    }
+  }
+  EXPECT_GE(rounds, 3);
+  EXPECT_GT(rises, 0);
   const Result other = valve.solved("lbfgs", 100000, &other_residual);
   EXPECT_EQ(other.status, Status::Converged) << other.message;
   EXPECT_NEAR(result.energy, other.energy, 1e-7 * std::abs(other.energy));
+}
+
+// A stop at the start of every node, made ten times as stiff each time that it proves too soft.
+class Hardening final : public EnergyTerm {
+ public:
+  explicit Hardening(Points start) : EnergyTerm("hardening"), start_(std::move(start)) {}
+  std::string_view type() const override { return "hardening"; }
+  TermRole role() const override { return TermRole::Contact; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(const Points& x, Sink& sink) const override {
+    for (int k = 0; sink.wants_gradient() && k < x.cols(); ++k)
+      sink.add_gradient(k, stiffness_ * (x.col(k) - start_.col(k)));
+    return 0.5 * stiffness_ * (x - start_).squaredNorm();
+  }
+  bool stiffen(const Points& x) override {
+    const bool is_too_soft = (x - start_).cwiseAbs().maxCoeff() > 0.05;
+    if (is_too_soft) stiffness_ *= 10;
+    return is_too_soft;
+  }
+
+ private:
+  Points start_;
+  Stencils stencils_;
+  double stiffness_ = 1;
+};
+
+TEST(Trace, BeginsARoundWhereATermStiffens) {
+  Points X = Points::Zero(3, 2), force = X;
+  X(0, 1) = -10;
+  force(0, 0) = 1;
+  const Equilibrium found = find_equilibrium(
+      X, fixed_nodes(2, {1}),
+      terms_of(std::make_unique<Hardening>(X), std::make_unique<LoadDead>("pull", "load_field", force, X)),
+      1e-8, "lbfgs");
+  ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
+  EXPECT_NEAR(found.x(0, 0), 0.01, 1e-9);  // stiffened twice
+  const std::vector<Iteration>& trace = found.result.trace;
+  EXPECT_EQ(trace.back().round, trace.front().round + 2);
+  for (size_t k = 1; k < trace.size(); ++k)
+    if (trace[k].round == trace[k - 1].round) {
+      EXPECT_LT(trace[k].energy, trace[k - 1].energy + 1e-12);
+    } else {
+      EXPECT_GT(trace[k].energy, trace[k - 1].energy);
+    }
+}
+
+// No residual of a sum of forces is below its rounding.
+TEST(Newton, SaysWhereRoundOffForbidsMore) {
+  const ValveScene scene({.triangles = 200});
+  Objective objective(scene.X, scene.fixed, scene.terms());
+  StopRule stop;
+  stop.tolerance = 1e-17;
+  const Result result =
+      solve(*make_newton(), {objective, objective.unknowns(scene.X), scene.method().motion}, stop);
+  EXPECT_EQ(result.status, Status::Stalled);
+  EXPECT_NE(result.message.find("round-off forbids more"), std::string::npos) << result.message;
+  EXPECT_LT(result.residual, 1e-12);
+  const auto there = std::find_if(result.trace.begin(), result.trace.end(),
+                                  [](const Iteration& iterate) { return iterate.residual < 1e-12; });
+  EXPECT_LE(result.trace.end() - there, 20);
 }
 
 TEST(RoundedKinks, AreSharpAgainWhenTheRunIsCutShort) {

@@ -2,6 +2,7 @@
 #include "scene/accuracy.hpp"
 
 #include "scene/bench_fixture.hpp"
+#include "scene/discretisation.hpp"
 #include "scene/mesh_study.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,8 +16,7 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
   const Scene scene = disc_scene();
   run_.writes = false;
   run_.tolerance = 1e-11;
-  const MeshStudy study = study_mesh(scene, solvers(), 3, run_);
-  const TriangleMesh& truth = study.levels.back().closed;
+  const MeshStudy study = study_mesh(scene, solvers(), 4, run_);
   run_.tolerance.reset();
   int last_triangles = 0;
   for (const double wanted : {0.3, 0.05, 0.015}) {
@@ -31,12 +31,14 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
     const auto& level = study.levels[static_cast<size_t>(estimate.cuts)];
     const TriangleMesh closed = surface_at(found.model, found.report.fields.x);
     ASSERT_EQ(closed.triangle_count(), level.triangles);
-    const double later = distance_between(closed, truth).p95;
+    std::vector<TriangleMesh> shapes = {closed};
+    for (auto k = static_cast<size_t>(estimate.cuts) + 1; k < study.levels.size(); ++k)
+      shapes.push_back(study.levels[k].closed);
+    const double later = distances_between_meshes(shapes).to_finest.front().p95;
     std::printf("  wanted %g mm: %s; later %.4f mm, order %.2f\n", wanted, estimate.message.c_str(), later,
                 estimate.order.value_or(-1));
     EXPECT_LE(later, wanted);
-    EXPECT_LT(later, 1.2 * *estimate.total_mm());
-    EXPECT_GT(later, 0.25 * *estimate.total_mm());
+    EXPECT_NEAR(estimate.discretisation_mm.value() / later, 1, 0.25);
     const double algebraic = (closed.vertices - level.closed.vertices).colwise().norm().maxCoeff();
     EXPECT_NEAR(*estimate.algebraic_mm, algebraic, 0.05 * algebraic + 1e-9);
     EXPECT_LE(algebraic, 0.1 * wanted);

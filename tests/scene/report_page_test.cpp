@@ -57,6 +57,18 @@ TEST(ReportPage, APlotMarksRunsThatStoppedEarly) {
   EXPECT_EQ(count(report_page(page_with(plot)), "mark early\">"), 0u);
 }
 
+TEST(ReportPage, APlotShowsKinInOneColourAndWhereARoundBegins) {
+  PagePlot plot{.title = "Error", .x = {"time [s]"}, .y = {"error [mm]"}};
+  for (const int kin : {4, 4, 2})
+    plot.series.push_back(
+        {.name = "line", .points = {{1, 2}, {.x = 2, .y = 1, .begins_round = kin == 2}}, .kin = kin});
+  const std::string html = report_page(page_with(plot));
+  EXPECT_EQ(count(html, "<g class=\"series s4\">"), 1u);
+  EXPECT_EQ(count(html, "<g class=\"series s4 d1\">"), 1u);  // dashed, and other marks
+  EXPECT_EQ(count(html, "<g class=\"series s2\">"), 1u);
+  EXPECT_EQ(count(html, "<line class=\"round\""), 1u + 1u);  // in the plot and in its key
+}
+
 TEST(ReportPage, PointsWithoutAPlaceAreCounted) {
   PagePlot plot{.title = "Error", .x = {"x"}, .y = {"y", Scale::Logarithmic}};
   const double nothing = std::numeric_limits<double>::quiet_NaN();

@@ -11,7 +11,7 @@
 namespace coapt {
 namespace {
 
-// Iterates of newton from a method's last shape to the equilibrium; at round-off it would go on for long.
+// Iterates of newton from a method's last shape; from one that takes more it is no near equilibrium.
 constexpr int kMostRefinements = 200;
 
 // Of all that errors are measured on: the mesh, or all nodes where there is none.

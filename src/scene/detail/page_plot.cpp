@@ -29,7 +29,22 @@ std::string px(double value) {
   return text;
 }
 
-std::string colour_class(size_t series) { return "series s" + std::to_string(series % kColours); }
+// What tells a series from the others: colour and mark, among kin mark and dashes.
+struct Look {
+  std::string classes;
+  size_t shape = 0;
+};
+
+Look look_of(const PagePlot& plot, size_t series) {
+  const int kin = plot.series[series].kin;
+  const size_t colour = (kin < 0 ? series : static_cast<size_t>(kin)) % kColours;
+  size_t elder = 0;  // kin before it
+  for (size_t s = 0; kin >= 0 && s < series; ++s)
+    if (plot.series[s].kin == kin) ++elder;
+  return {"series s" + std::to_string(colour) +
+              (elder > 0 ? " d" + std::to_string(std::min<size_t>(elder, 3)) : ""),
+          kin < 0 ? series : elder};
+}
 
 // A shape for each series, so that colour is not all that tells them apart.
 std::string shape(size_t series, const Spot& at, double r) {
@@ -53,7 +68,7 @@ std::string mark(const PagePlot& plot, size_t series, const PagePoint& point, co
                       page_number(point.x) + ", " + plot.y.title + " " + page_number(point.y);
   if (point.stopped_early) title += " (stopped early)";
   std::string html = std::string("<g class=\"mark") + (point.stopped_early ? " early" : "") + "\"><title>" +
-                     xml_escaped(title) + "</title>" + shape(series, at, 4.5);
+                     xml_escaped(title) + "</title>" + shape(look_of(plot, series).shape, at, 4.5);
   if (point.stopped_early)
     html += "<path d=\"M" + px(at.x - 7) + " " + px(at.y - 7) + "L" + px(at.x + 7) + " " + px(at.y + 7) +
             "M" + px(at.x - 7) + " " + px(at.y + 7) + "L" + px(at.x + 7) + " " + px(at.y - 7) + "\"/>";
@@ -81,6 +96,11 @@ std::vector<Spot> drawn_corners(const std::vector<Spot>& spots) {
     first = last + 1;
   }
   return kept;
+}
+
+std::string round_line(const Spot& at) {
+  return "<line class=\"round\" x1=\"" + px(at.x) + "\" x2=\"" + px(at.x) + "\" y1=\"" + px(kTop) +
+         "\" y2=\"" + px(kBottom) + "\"/>\n";
 }
 
 std::string line(const std::vector<Spot>& spots) {
@@ -129,16 +149,22 @@ std::string grid(const PagePlot& plot, const Axes& axes) {
   return svg.str();
 }
 
-std::string key(const PagePlot& plot, bool has_early) {
+std::string key(const PagePlot& plot, bool has_early, bool has_rounds) {
   std::string html = "<ul class=\"key\">";
-  for (size_t s = 0; s < plot.series.size(); ++s)
-    html += "<li><svg class=\"" + colour_class(s) + "\" width=\"26\" height=\"14\" aria-hidden=\"true\">" +
+  for (size_t s = 0; s < plot.series.size(); ++s) {
+    const Look look = look_of(plot, s);
+    html += "<li><svg class=\"" + look.classes + "\" width=\"26\" height=\"14\" aria-hidden=\"true\">" +
             (plot.series[s].is_joined ? "<polyline points=\"1,7 25,7\"/>" : "") + "<g class=\"mark\">" +
-            shape(s, {13, 7}, 4) + "</g></svg>" + xml_escaped(plot.series[s].name) + "</li>";
+            shape(look.shape, {13, 7}, 4) + "</g></svg>" + xml_escaped(plot.series[s].name) + "</li>";
+  }
   if (has_early)
     html +=
         "<li><svg class=\"series\" width=\"26\" height=\"14\" aria-hidden=\"true\"><g class=\"mark early\">"
         "<circle cx=\"13\" cy=\"7\" r=\"4\"/><path d=\"M7 1L19 13M7 13L19 1\"/></g></svg>stopped early</li>";
+  if (has_rounds)
+    html +=
+        "<li><svg class=\"plot\" width=\"26\" height=\"14\" aria-hidden=\"true\"><line class=\"round\" "
+        "x1=\"13\" x2=\"13\" y1=\"0\" y2=\"14\"/></svg>another energy from here on</li>";
   return html + "</ul>";
 }
 
@@ -148,7 +174,7 @@ std::string plot_html(const PagePlot& plot) {
   const Axes axes = axes_of(plot);
   std::string drawn;
   long lost = 0;
-  bool has_early = false;
+  bool has_early = false, has_rounds = false;
   for (size_t s = 0; s < plot.series.size(); ++s) {
     const PageSeries& series = plot.series[s];
     std::vector<Spot> spots;
@@ -160,11 +186,13 @@ std::string plot_html(const PagePlot& plot) {
       }
       spots.push_back({axes.x.place(point.x), axes.y.place(point.y)});
       has_early = has_early || point.stopped_early;
+      has_rounds = has_rounds || point.begins_round;
+      if (point.begins_round) drawn += round_line(spots.back());
       if (series.points.size() <= kMostMarks || point.stopped_early || !series.is_joined)
         marks += mark(plot, s, point, spots.back()) + "\n";
     }
-    drawn += "<g class=\"" + colour_class(s) + "\">" + (series.is_joined ? line(spots) : "") + "\n" + marks +
-             "</g>\n";
+    drawn += "<g class=\"" + look_of(plot, s).classes + "\">" + (series.is_joined ? line(spots) : "") + "\n" +
+             marks + "</g>\n";
   }
   std::ostringstream html;
   html << "<figure class=\"plot\">\n<figcaption>" << xml_escaped(plot.title)
@@ -172,7 +200,7 @@ std::string plot_html(const PagePlot& plot) {
        << xml_escaped(plot.title + ": " + plot.y.title + " against " + plot.x.title) << "\" viewBox=\"0 0 "
        << kWidth << " " << kHeight << "\">\n"
        << grid(plot, axes) << drawn << "</svg>\n"
-       << key(plot, has_early) << "\n";
+       << key(plot, has_early, has_rounds) << "\n";
   if (lost > 0)
     html << "<p class=\"quiet\">" << lost << (lost == 1 ? " point has" : " points have")
          << " no place on these scales: not finite, or not positive on a logarithmic one.</p>\n";
@@ -197,7 +225,9 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
       table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
                             {page_number(point.x, 6)},
                             {page_number(point.y, 6)},
-                            {point.stopped_early ? "stopped early" : ""}});
+                            {point.stopped_early  ? "stopped early"
+                             : point.begins_round ? "another energy from here on"
+                                                  : ""}});
     }
     tables.push_back(std::move(table));
   }
