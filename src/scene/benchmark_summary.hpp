@@ -44,8 +44,8 @@ struct Growth {
 };
 std::optional<Growth> growth(const Benchmark& bench, size_t method);
 
-// "for 0.1 mm on this scene: newton, 2,500 triangles, 0.3 s (tolerance 1e-04, error 0.062 mm)"; where no run
-// is that exact the most exact one, and whether a finer mesh or a tighter tolerance is what it lacks.
+// In the form "for MM mm on this scene: SOLVER, N triangles, S s (tolerance T, error E mm)"; where no run is
+// that exact the most exact one, and whether a finer mesh or a tighter tolerance is what it lacks.
 std::string recommendation(const Benchmark& bench, double mm);
 
 // "2,500 triangles", or nodes in a scene without a mesh.

@@ -1,7 +1,7 @@
 // A page of results as one file: texts, tables and plots in one frame, for solve, compare, bench and stress.
 // The page needs nothing but itself: no network, no other file; it prints, and a screen reader can read it.
 //
-//   Page page{.title = "Benchmark of mitral.json", .lead = "newton, 2,500 triangles, 0.3 s for 0.1 mm"};
+//   Page page{.title = "Benchmark of " + scene, .lead = recommendation(bench, 0.1)};
 //   page.sections.push_back({"Error against time", {PagePlot{...}, PageTable{...}}});
 //   formats::write_whole(folder / "report.html", report_page(page));
 //

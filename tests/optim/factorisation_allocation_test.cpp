@@ -1,43 +1,14 @@
 // Counts what a factorisation allocates once its pattern is known, and what a whole iteration of newton does.
-// An executable of its own: it puts itself in front of the C library's allocator, which serves Eigen and
-// CHOLMOD alike.
 #include "optim/factorisation.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"
 #endif
 
+#include "support/counted_allocations.hpp"
 #include "support/valve_scene.hpp"
 
 #include <gtest/gtest.h>
-
-#include <atomic>
-#include <cstdlib>
-
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-extern "C" {
-void* __libc_malloc(size_t size);
-void* __libc_calloc(size_t count, size_t size);
-void* __libc_realloc(void* block, size_t size);
-
-void* malloc(size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(size_t count, size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* block, size_t size) {
-  ++allocations;
-  return __libc_realloc(block, size);
-}
-}
-#endif
 
 namespace {
 
@@ -70,24 +41,16 @@ Count second_round(Factorisation& factor, const SparseMatrix& matrix) {
   EXPECT_TRUE(factor.factorise(matrix));
   factor.solve(b, x);
   Count count;
-  long before = allocations;
+  long before = allocations().count;
   factor.factorise(matrix);
-  count.factorise = allocations - before;
-  before = allocations;
+  count.factorise = allocations().count - before;
+  before = allocations().count;
   factor.solve(b, x);
-  count.solve = allocations - before;
+  count.solve = allocations().count - before;
   return count;
 }
 
-class Allocation : public testing::Test {
- protected:
-  void SetUp() override {
-    const long before = allocations;
-    void* volatile block = std::malloc(1000);  // volatile: a pair that nobody looks at may be removed
-    std::free(block);
-    if (allocations == before) GTEST_SKIP() << "the allocator cannot be replaced here (sanitizers)";
-  }
-};
+using Allocation = CountedAllocations;
 
 TEST_F(Allocation, OfEigenIsNoneBelow128KilobytesOfWorkSpace) {
   const auto factor = make_eigen_factorisation();
@@ -149,7 +112,7 @@ void expect_nothing_allocated_but(long blocks, const FactorisationFactory& make)
   seen.reserve(1000);
   const Result result = solve(*newton, {objective, objective.unknowns(scene.X), scene.method().motion},
                               {.tolerance = 1e-8}, [&](const Iteration&, const Vector&) {
-                                seen.push_back({allocations, factorised});
+                                seen.push_back({allocations().count, factorised});
                                 return true;
                               });
   ASSERT_EQ(result.status, Status::Converged);

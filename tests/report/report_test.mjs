@@ -1,14 +1,16 @@
 // Drives report.html in a headless Chromium as a user does: mouse, keyboard, screen reader names, printing.
-//   node report_test.mjs COAPT_BINARY SCRATCH_FOLDER
+//   node report_test.mjs COAPT_BINARY SAMPLE_PAGE_BINARY SCRATCH_FOLDER
+// Pictures are compared with those in pictures/; COAPT_UPDATE_GENERATED=1 in the environment renews them (pictures.mjs).
 // Exit code 77: skipped, with the reason.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { difference, framed, looksLike } from "./pictures.mjs";
 import { readVtp } from "./vtp.mjs";
 
-const [coapt, scratch] = process.argv.slice(2);
+const [coapt, samplePage, scratch] = process.argv.slice(2);
 
 function skip(reason) {
   console.log("skipped: " + reason);
@@ -43,7 +45,8 @@ async function opened(folder, options = {}) {
   page.on("pageerror", error => errors.push(error.message));
   page.on("request", request => request.url() !== url && !request.url().startsWith("data:") && requests.push(request.url()));
   await page.goto(url);
-  await page.waitForSelector("#viewer[data-ready=yes]", { timeout: 60000 });
+  if (await page.locator("#viewer").count() > 0)
+    await page.waitForSelector("#viewer[data-ready=yes]", { timeout: 60000 });
   const closed = async () => {
     await page.close();
     assert.deepEqual(errors, [], "errors on the console");
@@ -64,25 +67,6 @@ const near = (text, value, digits) =>
 async function pick(page, node) {
   await page.getByLabel("Node", { exact: true }).fill(String(node));
   assert.match(await page.getByRole("status").textContent(), new RegExp(`^Node ${node}\\.`));
-}
-
-// The mean difference of two pictures on a coarse grid, 0 to 255: blind to what another machine rounds otherwise.
-async function difference(one, other) {
-  const page = await browser.newPage();
-  const result = await page.evaluate(async texts => {
-    const pixels = await Promise.all(texts.map(async text => {
-      const image = new Image();
-      image.src = "data:image/png;base64," + text;
-      await image.decode();
-      const canvas = new OffscreenCanvas(48, 36), pen = canvas.getContext("2d");
-      pen.imageSmoothingQuality = "high";
-      pen.drawImage(image, 0, 0, 48, 36);
-      return pen.getImageData(0, 0, 48, 36).data;
-    }));
-    return pixels[0].reduce((sum, value, k) => sum + Math.abs(value - pixels[1][k]), 0) / pixels[0].length;
-  }, [one.toString("base64"), other.toString("base64")]);
-  await page.close();
-  return result;
 }
 
 const tests = {
@@ -107,7 +91,7 @@ const tests = {
     closed.forEach((value, c) => assert.ok(
         Math.abs(value - open[c] - vtp.points.displacement[3 * node.at + c]) < 1e-3, "the first is the start"));
     assert.equal(await page.locator("#state-label").textContent(), "start, as given");
-    assert.ok(await difference(await picture(page), closedPicture) > 2, "the picture moves with the slider");
+    assert.ok((await difference(browser, await picture(page), closedPicture)).mean > 2, "the picture moves with the slider");
     await slider.press("End");
     assert.match(await slider.getAttribute("aria-valuetext"), /^result: converged/);
   },
@@ -177,6 +161,33 @@ const tests = {
     assert.equal(await page.locator("figure.plot svg[role=img]").count(), 2);
   },
 
+  async "the valve looks as it did, closed and open"({ page }) {
+    const view = name => page.getByRole("button", { name, exact: true }).click();
+    const colour = label => page.getByLabel("Colour by").selectOption({ label });
+    const shot = () => framed(page, page.locator("#canvas"), 640, 480);
+    const slider = page.getByRole("slider", { name: "Open ↔ closed" });
+    await view("From the atrium");
+    await page.getByLabel("chords and cables").uncheck();  // slack ones lie anywhere
+    await colour("Displacement");
+    const above = await shot();
+    await colour("no colours");
+    await looksLike(browser, "closed_displacement", above, await shot(), scratch);
+    await colour("Greater principal strain");
+    await view("Side");
+    const side = await shot();
+    await view("Oblique");
+    await looksLike(browser, "closed_strain", side, await shot(), scratch);
+    await page.getByLabel("chords and cables").check();
+    await page.getByLabel("mesh", { exact: true }).check();
+    await colour("Region");
+    const closed = await shot();
+    await slider.fill("0");
+    await looksLike(browser, "open_regions", await shot(), closed, scratch);
+    await slider.press("End");
+    await page.getByLabel("mesh", { exact: true }).uncheck();
+    await page.getByLabel("Colour by").selectOption({ index: 0 });
+  },
+
   async "a picture can be saved, and the page printed"({ page }) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save a picture" }).click()]);
     assert.equal(readFileSync(await download.path()).subarray(1, 4).toString(), "PNG");
@@ -205,8 +216,25 @@ for (const [name, test] of Object.entries(tests)) await run(name, () => test({ p
 await run("no errors and no requests on a valve", closed);
 await run("a chain without a sheet is drawn too, in the dark", async () => {
   const chain = await opened(solved("chain", ["catenary"]), { colorScheme: "dark" });
-  await chain.page.getByRole("slider", { name: "Start ↔ result" }).fill("0");
+  const shot = () => framed(chain.page, chain.page.locator("#canvas"), 640, 480);
+  const result = await shot(), slider = chain.page.getByRole("slider", { name: "Start ↔ result" });
+  await slider.fill("0");
+  await looksLike(browser, "chain", result, await shot(), scratch);
   await chain.closed();
+});
+await run("plots look as they did, in light and dark", async () => {
+  const folder = join(scratch, "sample");
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, "report.html"), execFileSync(samplePage));
+  for (const colorScheme of ["light", "dark"]) {
+    const sample = await opened(folder, { colorScheme });
+    await sample.page.addStyleTag({ content: "figure.plot svg text { visibility: hidden }" });
+    const plot = sample.page.getByRole("img", { name: /^Error against time/ });
+    const drawn = await framed(sample.page, plot, 720, 400);
+    await plot.locator("polyline").first().evaluate(curve => curve.remove());
+    await looksLike(browser, "plot_" + colorScheme, drawn, await framed(sample.page, plot, 720, 400), scratch);
+    await sample.closed();
+  }
 });
 await run("10,000 triangles take less than 5 MB", async () => {
   const folder = solved("disc", ["disc", "--triangles", "10000"], "--max-seconds", "0.5");
