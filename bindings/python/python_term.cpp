@@ -27,7 +27,7 @@ TermRole role_of(const py::object& term) {
   return role == "contact" ? TermRole::Contact : TermRole::Internal;
 }
 
-std::string shape_of(const py::array& array) { return py::str(py::tuple(array.attr("shape"))); }
+std::string shape_of(const py::object& array) { return py::str(py::object(array.attr("shape"))); }
 
 // Real numbers of any width; anything else (texts, complex numbers, objects) is not taken.
 bool is_real(const py::array& array) {
@@ -41,11 +41,11 @@ Dense projected(const Dense& blocks) { return py::module_::import("coapt._terms"
 // Calls see(row, column, value) for every entry of a matrix in compressed rows.
 template <typename See>
 void for_each_entry(const py::object& csr, const See& see) {
-  const Indices first = csr.attr("indptr"), columns = csr.attr("indices");
-  const Dense values = csr.attr("data");
-  for (py::ssize_t row = 0; row + 1 < first.size(); ++row)
-    for (int k = first.at(row); k < first.at(row + 1); ++k)
-      see(static_cast<int>(row), columns.at(k), values.at(k));
+  const Indices firsts = Indices::ensure(csr.attr("indptr")), columns = Indices::ensure(csr.attr("indices"));
+  const Dense values = Dense::ensure(csr.attr("data"));
+  const int* first = firsts.data();
+  for (int row = 0; row + 1 < firsts.size(); ++row)
+    for (int k = first[row]; k < first[row + 1]; ++k) see(row, columns.data()[k], values.data()[k]);
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ py::object PythonTerm::csr_of(const py::object& matrix) const {
   const auto wanted = 3 * node_count_;
   if (py::len(shape) != 2 || shape[0].cast<Eigen::Index>() != wanted ||
       shape[1].cast<Eigen::Index>() != wanted)
-    refuse("hessian() returned a matrix of shape " + std::string(py::str(shape)) + "; expected (" +
+    refuse("hessian() returned a matrix of shape " + shape_of(matrix) + "; expected (" +
            std::to_string(wanted) + ", " + std::to_string(wanted) + "), coordinates node after node [N/mm]");
   return matrix.attr("tocsr")();
 }

@@ -37,13 +37,13 @@ py::array lines(const py::object& self) {
     ends.mutable_at(k, 0) = all[k].a;
     ends.mutable_at(k, 1) = all[k].b;
   }
-  return std::move(ends);
+  return ends;
 }
 
 py::array regimes(const Fields& fields) {
   py::array_t<int> codes(fields.regime.size());
   for (size_t k = 0; k < fields.regime.size(); ++k) codes.mutable_at(k) = static_cast<int>(fields.regime[k]);
-  return std::move(codes);
+  return codes;
 }
 
 // Those that the scene has.
@@ -66,7 +66,7 @@ py::dict fields(const py::object& self) {
 
 py::array history(const py::object& self) {
   const std::vector<Iteration>& trace = in(self).run.report.result.trace;
-  return py::array_t<Iteration>({trace.size()}, trace.data(), self);
+  return py::array_t<Iteration>({static_cast<py::ssize_t>(trace.size())}, trace.data(), self);
 }
 
 py::tuple evaluations(const Solution& solution) {
