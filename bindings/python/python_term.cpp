@@ -232,8 +232,12 @@ void PythonTerm::add_sparse(const py::object& matrix, Sink& sink) const {
           "pair that it may couple");
     blocks[static_cast<size_t>(found - pairs_.begin())](row % 3, column % 3) += value;
   });
-  for (size_t k = 0; k < pairs_.size(); ++k)
-    sink.add_block(4 * static_cast<long>(k), 2, 0, pairs_[k].first == pairs_[k].second ? 0 : 1, blocks[k]);
+  for (size_t k = 0; k < pairs_.size(); ++k) {
+    const long place = 4 * static_cast<long>(k);
+    const bool is_diagonal = pairs_[k].first == pairs_[k].second;
+    sink.add_block(place, 2, 0, is_diagonal ? 0 : 1, blocks[k]);
+    if (!is_diagonal) sink.add_block(place, 2, 1, 0, blocks[k].transpose());
+  }
 }
 
 }  // namespace coapt::python

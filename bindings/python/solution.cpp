@@ -14,6 +14,17 @@ Points free_gradient(Objective& objective, const Vector& q) {
   return objective.fixed().select(none, objective.positions(g));
 }
 
+// What the body pulls with at prescribed coordinates. The potential of a pressure is that of the free nodes:
+// its gradient at held ones is no force that a support feels.
+Points support_forces(const Model& model, const Points& x) {
+  const Points none = Points::Zero(3, x.cols());
+  Points gradient = none;
+  Sink sink(gradient.data());
+  for (const auto& term : model.objective->terms())
+    if (term->role() != TermRole::Load) term->evaluate(x, sink);
+  return model.objective->fixed().select(gradient, none);
+}
+
 // Arrays that look into a solution and keep it alive.
 template <typename T, typename Matrix>
 py::array rows(const py::object& self, const Matrix& columns) {
@@ -81,7 +92,7 @@ Solution::Solution(RunReport report, double start) : run(std::move(report)) {
   const Vector& q = run.report.result.q;
   x = run.report.fields.x.colwise() + model.origin;
   gradient = free_gradient(*model.objective, q);
-  reactions = model.objective->reactions(q);
+  reactions = support_forces(model, run.report.fields.x);
   document = result_json(model, run.report);
   seconds = wall_seconds() - start;
   model.objective.reset();

@@ -17,7 +17,7 @@ class Solution {
   RunReport run;
   Points x;              // in the coordinates of the input, 3 x node_count [mm]
   Points gradient;       // of the energy, exact loads; zero at prescribed coordinates [N]
-  Points reactions;      // of the supports, zero at free coordinates [N]
+  Points reactions;      // of the supports on the body, without loads on held nodes; zero at free coordinates [N]
   std::string document;  // result.json
   double seconds;        // in the library, from reading to measuring [s]
 };

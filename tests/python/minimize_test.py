@@ -36,10 +36,12 @@ def test_a_result_is_shaped_as_those_of_scipy(inflated):
 def test_forces_balance_and_the_gradient_is_that_of_the_residual(inflated):
     rim = np.hypot(*inflated.x[:, :2].T) > 9.999
     assert not inflated.jac[rim].any() and not inflated.reactions[~rim].any()
-    largest = np.linalg.norm(inflated.reactions, axis=1).max()
-    assert np.linalg.norm(inflated.jac, axis=1).max() / largest == pytest.approx(inflated.residual, rel=1e-6)
-    lift = 1e-4 * np.pi * 10**2  # pressure times area [N]
-    assert inflated.reactions[:, 2].sum() == pytest.approx(-lift, rel=0.01)
+    assert np.linalg.norm(inflated.jac, axis=1).max() <= 1e-8 * np.linalg.norm(inflated.reactions, axis=1).max()
+    a, b, c = inflated.x[inflated.faces].transpose(1, 0, 2)
+    push = 1e-4 * np.cross(b - a, c - a) / 6  # of the pressure on each corner of each triangle [N]
+    on_free = (push[:, None] * ~rim[inflated.faces][:, :, None]).sum(axis=(0, 1))
+    assert on_free[2] > 0.02
+    assert inflated.reactions.sum(axis=0) == pytest.approx(-on_free, abs=1e-9)
 
 
 def test_arrays_look_into_the_result_and_outlive_it(inflated):
@@ -77,7 +79,8 @@ def test_regions_are_named_in_memory():
     terms = [{**ELASTIC, "name": "soft", "region": "left"}, {**ELASTIC, "name": "stiff", "region": "right",
                                                             "young": "50 MPa"}, PRESSURE]
     result = coapt.minimize(V, F, terms, fixed="boundary", regions=half)
-    assert result.energies["soft"] > 2 * result.energies["stiff"] > 0
+    assert result.energies["stiff"] > 5 * result.energies["soft"] > 0
+    assert result.x[4, 0] > 5.01  # the middle moves to the stiff side
 
 
 def test_the_callback_sees_every_iterate_and_may_end_the_run():

@@ -23,4 +23,6 @@ def test_mypy_accepts_the_package(tmp_path):
 
 
 def test_the_stubs_are_those_of_the_module(tmp_path):
-    run(tmp_path, "mypy.stubtest", "coapt._core", "--ignore-missing-stub")
+    known = tmp_path / "known"  # classes of pybind11 have a metaclass of its own
+    known.write_text("coapt._core.Iterate\ncoapt._core.Solution\n")
+    run(tmp_path, "mypy.stubtest", "coapt._core", "--ignore-missing-stub", "--allowlist", str(known))

@@ -47,7 +47,7 @@ class Result(dict[str, Any]):
     metrics: dict[str, Any]  #: figures of merit (docs/metrics.md); None where a scene does not define one
     certificate: dict[str, Any]  #: stability, balance of reactions, parts that are free to move
     residual: float  #: greatest out-of-balance force over the greatest load or reaction
-    reactions: Array  #: forces of the supports, (n, 3) [N]
+    reactions: Array  #: forces of the supports on the body, (n, 3); loads on held nodes do not count [N]
     energies: dict[str, float]  #: of each term [mJ]
     vertex_count: int  #: m_v
     faces: npt.NDArray[np.int32]  #: corners of each triangle, (m, 3)
