@@ -80,7 +80,7 @@ def test_regions_are_named_in_memory():
                                                             "young": "50 MPa"}, PRESSURE]
     result = coapt.minimize(V, F, terms, fixed="boundary", regions=half)
     assert result.energies["stiff"] > 5 * result.energies["soft"] > 0
-    assert result.x[4, 0] > 5.01  # the middle moves to the stiff side
+    assert result.x[4, 0] > 5.003  # the middle moves to the stiff side
 
 
 def test_the_callback_sees_every_iterate_and_may_end_the_run():
