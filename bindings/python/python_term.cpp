@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace coapt::python {
 namespace {
@@ -90,13 +91,15 @@ void PythonTerm::read_elements() {
   if (!any || any.ndim() != 2 || any.shape(1) < 1 || (any.dtype().kind() != 'i' && any.dtype().kind() != 'u'))
     refuse("elements: expected integers of shape (m, k), the nodes of each element" +
            (any ? ", not shape " + shape_of(any) + " of " + std::string(py::str(any.dtype())) : ""));
-  const Indices nodes = Indices::ensure(any);
+  const auto nodes = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(any);
   stencils_.width = static_cast<int>(nodes.shape(1));
-  stencils_.nodes.assign(nodes.data(), nodes.data() + nodes.size());
-  for (const int node : stencils_.nodes)
+  for (py::ssize_t k = 0; k < nodes.size(); ++k) {
+    const std::int64_t node = nodes.data()[k];
     if (node < 0 || node >= node_count_)
       refuse("elements: node " + std::to_string(node) + " does not exist; the scene has " +
              std::to_string(node_count_) + ", counted from 0");
+    stencils_.nodes.push_back(static_cast<int>(node));
+  }
 }
 
 // A copy: the solver's own positions change while Python may keep what it saw.
