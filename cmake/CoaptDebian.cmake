@@ -63,11 +63,27 @@ foreach(adapter IN LISTS coapt_adapters)
                        DEPENDS ${coapt_of_same_version} ${coapt_depends_${adapter}} LINKED ${upper})
 endforeach()
 
+set(coapt_command_parts ${COAPT_COMPONENTS})
+list(REMOVE_ITEM coapt_command_parts PYTHON)
 if(TARGET coapt_command)
   coapt_combined_licence(coapt_command_licence)
   coapt_debian_package(command coapt science "The command coapt with every component of its build, and the JSON schemas of scene and result"
-                       LICENCE "${coapt_command_licence}" LINKED ${COAPT_COMPONENTS})
+                       LICENCE "${coapt_command_licence}" LINKED ${coapt_command_parts})
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+endif()
+
+if(TARGET coapt_python)
+  find_package(Python QUIET COMPONENTS Interpreter)
+  coapt_combined_licence(coapt_python_licence)
+  set(coapt_python_parts ${COAPT_COMPONENTS})
+  list(REMOVE_ITEM coapt_python_parts CLI11)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  coapt_debian_package(python python3-coapt python "The Python module coapt with every component of its build"
+                       LICENCE "${coapt_python_licence}" LINKED ${coapt_python_parts}
+                       DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})"
+                               "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})" python3-numpy)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-meshio")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 endif()
 
 set(CPACK_PACKAGE_NAME coapt)

@@ -30,6 +30,17 @@ function(coapt_room target)
                            PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
 endfunction()
 
+# coapt_link_adapters(<target>): every adapter of the build, said to src/cli/solvers.cpp by COAPT_HAS_<NAME>.
+function(coapt_link_adapters target)
+  foreach(adapter IN ITEMS cgal cholmod ceres nlopt)
+    if(TARGET coapt_${adapter})
+      string(TOUPPER ${adapter} name)
+      target_link_libraries(${target} PRIVATE coapt_${adapter})
+      target_compile_definitions(${target} PRIVATE COAPT_HAS_${name})
+    endif()
+  endforeach()
+endfunction()
+
 # coapt_precompile(<target> <headers>): where the build asks for it. Never for includes to rely on; the
 # release preset builds without.
 function(coapt_precompile target)

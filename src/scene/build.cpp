@@ -1,10 +1,13 @@
 #include "scene/build.hpp"
 
 #include "core/error.hpp"
+#include "scene/detail/given_parts.hpp"
 #include "scene/fibres.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/supports.hpp"
 #include "scene/term_types.hpp"
+
+#include <algorithm>
 
 namespace coapt {
 namespace {
@@ -20,6 +23,22 @@ Model begun(const Groundwork& ground) {
   model.closed_reference = ground.model.closed_reference;
   model.warnings = ground.model.warnings;
   return model;
+}
+
+// Terms that no scene names, beside those that it does.
+void add_given(const GivenTerms& given, const Model& model, std::vector<TermPointer>& terms,
+               std::vector<std::string>& defects) {
+  if (!given) return;
+  try {
+    for (TermPointer& term : given(model)) {
+      const auto is_same = [&term](const TermPointer& other) { return other->name() == term->name(); };
+      if (std::any_of(terms.begin(), terms.end(), is_same))
+        defects.push_back("term \"" + term->name() + "\": another term has this name too");
+      terms.push_back(std::move(term));
+    }
+  } catch (const InputError& error) {
+    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+  }
 }
 
 std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground, Model& model,
@@ -63,11 +82,14 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
 
 Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
 
-Model build(const Scene& scene, const Groundwork& ground) {
+Model build(const Scene& scene, const Groundwork& ground) { return build(scene, ground, GivenTerms()); }
+
+Model build(const Scene& scene, const Groundwork& ground, const GivenTerms& given) {
   Model model = begun(ground);
   const Prescribed& prescribed = ground.prescribed;
   std::vector<std::string> defects = ground.defects;
   std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  add_given(given, model, terms, defects);
   if (!defects.empty()) throw InputError(defects);
   warn_of_unsupported_parts(model, terms, prescribed.fixed);
 

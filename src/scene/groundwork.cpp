@@ -4,6 +4,7 @@
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/rim_order.hpp"
+#include "scene/detail/given_parts.hpp"
 #include "scene/node_selection.hpp"
 #include "scene/supports.hpp"
 #include "scene/valve_json.hpp"
@@ -242,10 +243,11 @@ void order_annulus(const Scene& scene, Assembly& assembly) {
 
 }  // namespace
 
-Groundwork lay_groundwork(const Scene& scene) {
-  Assembly assembly;
+namespace {
+
+// The surface is there.
+Groundwork laid(const Scene& scene, Assembly assembly) {
   Model& model = assembly.model;
-  read_surface(scene, assembly);
   read_reference(scene, assembly);
   read_valves(scene, assembly);
   read_obstacles(scene, assembly);
@@ -267,6 +269,20 @@ Groundwork lay_groundwork(const Scene& scene) {
   order_annulus(scene, assembly);
   hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
   return std::move(static_cast<Groundwork&>(assembly));
+}
+
+}  // namespace
+
+Groundwork lay_groundwork(const Scene& scene) {
+  Assembly assembly;
+  read_surface(scene, assembly);
+  return laid(scene, std::move(assembly));
+}
+
+Groundwork lay_groundwork(const Scene& scene, TriangleMesh mesh) {
+  Assembly assembly;
+  assembly.model.mesh = std::move(mesh);
+  return laid(scene, std::move(assembly));
 }
 
 const Groundwork& scene_ground(const Groundwork& ground) {

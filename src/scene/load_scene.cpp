@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/read_parameters.hpp"
+#include "scene/given.hpp"
 #include "scene/scene.hpp"
 #include "scene/units.hpp"
 
@@ -69,7 +70,7 @@ std::vector<BoundaryEntry> boundary_from(const Parameters& scene, double mesh_sc
   return entries;
 }
 
-std::optional<SceneFibres> fibres_from(const Parameters& scene, Reading& reading) {
+std::optional<SceneFibres> fibres_from(const Parameters& scene, bool has_mesh, Reading& reading) {
   if (!scene.has("fibres")) return std::nullopt;
   const Parameters& values = scene.object("fibres");
   SceneFibres fibres;
@@ -85,8 +86,7 @@ std::optional<SceneFibres> fibres_from(const Parameters& scene, Reading& reading
     reading.defects.push_back(fibres.where +
                               ": has `file` and `directions`; a file gives every triangle its "
                               "direction, keep one of them");
-  if (!scene.has("mesh"))
-    reading.defects.push_back(fibres.where + ": the scene has no mesh that fibres could lie in");
+  if (!has_mesh) reading.defects.push_back(fibres.where + ": the scene has no mesh that fibres could lie in");
   return fibres;
 }
 
@@ -109,7 +109,7 @@ void read_tips(const Parameters& values, SceneChords& chords, Reading& reading) 
 }
 
 // What the key `chords` says, with what is wrong in it.
-std::optional<SceneChords> chords_from(const Parameters& scene, Reading& reading) {
+std::optional<SceneChords> chords_from(const Parameters& scene, bool has_mesh, Reading& reading) {
   if (!scene.has("chords")) return std::nullopt;
   const Parameters& values = scene.object("chords");
   const size_t before = reading.defects.size();
@@ -143,8 +143,7 @@ std::optional<SceneChords> chords_from(const Parameters& scene, Reading& reading
     reading.defects.push_back(values.where("level_areas") + ": holds " +
                               std::to_string(options.level_areas.size()) + " areas for " +
                               std::to_string(options.levels) + " levels");
-  if (!scene.has("mesh"))
-    reading.defects.push_back(chords.where + ": the scene has no mesh that chords could hold");
+  if (!has_mesh) reading.defects.push_back(chords.where + ": the scene has no mesh that chords could hold");
   return chords;
 }
 
@@ -268,9 +267,8 @@ void check_substance(const Scene& scene, const Json& json, const std::string& fi
     reading.defects.push_back(file + ": mesh: missing; a scene needs a mesh, or a term with a `network`");
 }
 
-}  // namespace
-
-Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
+// The mesh is the scene's own, or the caller has it in memory.
+Scene parsed(const std::string& text, const std::filesystem::path& path, bool has_mesh_in_memory) {
   const std::string file = path.string();
   const Json json = parse_json(text, file);
   Reading reading{path.parent_path(), {}};
@@ -279,14 +277,18 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
   scene.file = path;
   scene.name = values.has("name") ? values.text("name") : path.stem().string();
   scene.mesh = mesh_from(values, reading);
+  if (has_mesh_in_memory && scene.mesh)
+    reading.defects.push_back(file + ": mesh: the mesh is given in memory; leave this key out");
+  if (has_mesh_in_memory) scene.mesh = SceneMesh{.file = kMeshInMemory, .sets = {}};
+  const bool has_mesh = scene.mesh.has_value();
   const double mesh_scale = scene.mesh ? scene.mesh->scale : 1;
   if (values.has("sets")) scene.sets = values.selections("sets");
   scene.obstacles = obstacles_from(values, mesh_scale, reading);
   scene.boundary = boundary_from(values, mesh_scale, reading);
   if (values.has("motion") && values.object("motion").has("steps"))
     scene.motion_steps = values.object("motion").integer("steps");
-  scene.fibres = fibres_from(values, reading);
-  scene.chords = chords_from(values, reading);
+  scene.fibres = fibres_from(values, has_mesh, reading);
+  scene.chords = chords_from(values, has_mesh, reading);
   scene.terms = terms_from(values, reading);
   if (values.has("reference")) {
     const Parameters& reference = values.object("reference");
@@ -301,10 +303,20 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
     scene.writes_page = output.flag("report");
   }
   check_generated(scene, file, reading);
-  check_substance(scene, json, file, reading);
+  if (!has_mesh_in_memory) check_substance(scene, json, file, reading);
   if (!reading.defects.empty()) throw InputError(reading.defects);
   scene.solver = solver_from(values.object("solver"));
   return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::filesystem::path& path) {
+  return parsed(text, path, false);
+}
+
+Scene parse_scene_around_mesh(const std::string& text, const std::filesystem::path& path) {
+  return parsed(text, path, true);
 }
 
 Scene load_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }

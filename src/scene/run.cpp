@@ -27,7 +27,7 @@ void begin_report(const Scene& scene, const SolveSetup& setup, const Model& mode
 }
 
 CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
-                              Report& report) {
+                              Report& report, const Points* start) {
   std::optional<ShapeRecord> record;
   if (report.has_page && has_shape_view()) {
     record.emplace(model, page_shapes(model));
@@ -36,7 +36,11 @@ CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Mode
       return !next || next(iteration, q);
     };
   }
-  CascadeOutcome outcome = solve_scene(scene, ground, model, setup);
+  CascadeOutcome outcome;
+  if (start == nullptr)
+    outcome = solve_scene(scene, ground, model, setup);
+  else
+    outcome.result = solve_again(*start, model, setup);
   if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
   return outcome;
 }
@@ -65,12 +69,9 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   if (options.writes) write_results(run.folder, model, report);
 }
 
-RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
-  RunReport run;
+void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,
+               RunReport& run, const Points* start) {
   Report& report = run.report;
-  SolveSetup setup = solve_setup(scene, solvers, options);
-  const Groundwork ground = lay_groundwork(scene);
-  run.model = build(scene, ground);
   Model& model = run.model;
   // Only now: a scene that is refused leaves no folder behind.
   if (options.writes) {
@@ -90,10 +91,18 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
     }
   }
   begin_report(scene, setup, model, options, report);
-  CascadeOutcome outcome = solve_recorded(scene, ground, model, setup, report);
+  CascadeOutcome outcome = solve_recorded(scene, ground, model, setup, report, start);
   if (frames) frames->finish();
   report.has_frames = frames.has_value();
   finish_run(setup, std::move(outcome), options, run);
+}
+
+RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
+  RunReport run;
+  SolveSetup setup = solve_setup(scene, solvers, options);
+  const Groundwork ground = lay_groundwork(scene);
+  run.model = build(scene, ground);
+  run_built(scene, ground, std::move(setup), options, run);
   return run;
 }
 

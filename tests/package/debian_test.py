@@ -107,6 +107,9 @@ class DebianPackages(unittest.TestCase):
                 self.assertIsNone(re.search("ceres|cgal|nlopt|suitesparse|cholmod", depends), depends)
             elif package == "coapt":
                 self.assertIn(f"Licence: {licence}\n", run(self.root / "usr/bin/coapt", "--version") + "\n")
+            elif package == "python3-coapt":
+                self.assertIn("python3-numpy", depends)
+                self.assertEqual(self.python("print(coapt.licence())").strip(), licence)
             else:
                 self.assertRegex(licence, r"^(GPL-.* as a whole|BSD-3-Clause \(with LGPL-)")
                 self.assertIn("libcoapt-dev (= ", depends)
@@ -122,9 +125,15 @@ class DebianPackages(unittest.TestCase):
                 self.assertNotIn(path, seen)
                 seen[path] = package
 
-    def libraries(self) -> list[str]:
+    def python(self, code: str) -> str:
+        """Runs it with the module of the root, which Python finds before any other."""
+        place = self.root / "usr/lib/python3/dist-packages"
+        return run("/usr/bin/python3", "-B", "-c", f"import coapt\nassert coapt.__file__.startswith({str(place)!r})\n" + code,
+                   env={"PYTHONPATH": str(place), "PATH": "/usr/bin"}, cwd="/")
+
+    def libraries(self, program: str = "usr/bin/coapt") -> list[str]:
         found = []
-        for line in run("ldd", self.root / "usr/bin/coapt").splitlines():
+        for line in run("ldd", self.root / program).splitlines():
             path = re.search(r"(/\S+) \(0x", line)
             if path:
                 found.append(path[1])
@@ -135,6 +144,18 @@ class DebianPackages(unittest.TestCase):
         for library in self.libraries():
             self.assertIn(owner(library), allowed, library)
         self.assertNotRegex(run("readelf", "-d", self.root / "usr/bin/coapt"), "R(UN)?PATH")
+
+    def test_the_python_module_solves_with_what_it_depends_on(self):
+        if "python3-coapt" not in self.files:
+            self.skipTest("the build has no Python module")
+        allowed = closure(names_in(run("dpkg-deb", "-f", self.files["python3-coapt"], "Depends")))
+        module = next(self.root.glob("usr/lib/python3/dist-packages/coapt/_core.*.so")).relative_to(self.root)
+        for library in self.libraries(str(module)):
+            self.assertIn(owner(library), allowed, library)
+        scene = pathlib.Path(__file__).resolve().parents[2] / "examples/02_pressurised_disc/scene.json"
+        self.assertIn("converged", self.python(f"print(coapt.solve({str(scene)!r}).message)"))
+        self.assertIn("coapt 0.", self.python("import importlib.metadata as m\nd = m.distribution('coapt')\n"
+                                              "print(d.metadata['Name'], d.version)"))
 
     def test_solves_a_generated_valve_in_the_clean_root(self):
         coapt = [self.root / "usr/bin/coapt"]

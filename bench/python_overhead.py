@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Times the generated mitral valve with the command and with the Python module and prints a Markdown table.
+
+    PYTHONPATH=build/release/python /usr/bin/python3 bench/python_overhead.py [path of coapt] [--runs N]
+
+For each size, best of N runs, in turn: the solver's wall time in the command, in `coapt.solve`, and there with a callback
+at every iterate that looks at the positions; then the wall time of the call of `coapt.solve` as a whole, and how much of it
+is spent outside of the library: arguments, JSON, arrays.
+"""
+import pathlib
+import subprocess
+import tempfile
+import time
+
+import coapt
+from runs import parsed_arguments, print_header, solved
+
+
+def timed(scene: pathlib.Path, callback=None) -> dict[str, float]:
+    start = time.perf_counter()
+    result = coapt.solve(scene, callback=callback)
+    whole = time.perf_counter() - start
+    return {"solver": result.seconds, "whole": whole, "outside": whole - result.library_seconds}
+
+
+def best(runs: list[dict[str, float]], key: str) -> float:
+    return min(run[key] for run in runs)
+
+
+def main() -> None:
+    options = parsed_arguments(__doc__)
+    print_header("triangles", "command [s]", "Python [s]", "with callback [s]", "whole call [s]", "outside [ms]",
+                 "outside / call")
+    for triangles in (625, 2500):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([options.coapt, "generate", "mitral", "--triangles", str(triangles), "-o", folder], check=True,
+                           stdout=subprocess.DEVNULL)
+            scene = pathlib.Path(folder) / "scene.json"
+            command, plain, seen = [], [], []
+            for _ in range(options.runs):
+                command.append(solved(options.coapt, scene, "--no-report")["time"]["wall_s"])
+                plain.append(timed(scene))
+                seen.append(timed(scene, callback=lambda at: bool(at.x.shape)))
+            outside, whole = best(plain, "outside"), best(plain, "whole")
+            print(f"| {triangles} | {min(command):.3f} | {best(plain, 'solver'):.3f} | {best(seen, 'solver'):.3f} | "
+                  f"{whole:.3f} | {1000 * outside:.2f} | {100 * outside / whole:.2f} % |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

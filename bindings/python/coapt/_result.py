@@ -1,0 +1,118 @@
+"""What a solve gives back."""
+from __future__ import annotations
+
+import enum
+import json
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+Array = npt.NDArray[np.float64]
+
+
+class Status(enum.IntEnum):
+    """Why a solve ended; `CONVERGED` (0) alone is success."""
+    CONVERGED = 0
+    ITERATION_LIMIT = 1
+    TIME_LIMIT = 2
+    STALLED = 3
+    LINE_SEARCH_FAILED = 4
+    NON_FINITE = 5
+    CANCELLED = 6
+    NO_EQUILIBRIUM = 7
+
+
+class Result(dict[str, Any]):
+    """A solved scene, shaped as the results of SciPy: a dict whose keys are attributes too.
+
+    n nodes (the m_v vertices of the mesh first, then papillary tips and branch points of chords, then obstacles),
+    m triangles, k chords and cables. Arrays look into the memory of the solver's result; nothing is copied.
+    """
+
+    x: Array  #: positions of all nodes, (n, 3), in the coordinates of the input [mm]
+    fun: float  #: potential energy [mJ]
+    jac: Array  #: its gradient with the exact loads, (n, 3); zero at prescribed coordinates [N]
+    nit: int  #: iterations
+    nfev: int  #: evaluations of the energy, with or without derivatives
+    njev: int  #: evaluations of the gradient, with or without Hessian
+    nhev: int  #: evaluations of the Hessian
+    success: bool  #: whether the residual, measured after the solver returned, is within the tolerance
+    status: Status  #: why it ended
+    message: str  #: one sentence
+    history: npt.NDArray[Any]  #: every accepted iterate: fields iteration, round, energy [mJ], residual, step [mm],
+    #: seconds [s], time [s], evaluations
+    metrics: dict[str, Any]  #: figures of merit (docs/metrics.md); None where a scene does not define one
+    certificate: dict[str, Any]  #: stability, balance of reactions, parts that are free to move
+    residual: float  #: greatest out-of-balance force over the greatest load or reaction
+    reactions: Array  #: forces of the supports on the body, (n, 3); loads on held nodes do not count [N]
+    energies: dict[str, float]  #: of each term [mJ]
+    vertex_count: int  #: m_v
+    faces: npt.NDArray[np.int32]  #: corners of each triangle, (m, 3)
+    lines: npt.NDArray[np.int32]  #: ends of each chord and cable, (k, 2)
+    fields: dict[str, npt.NDArray[Any]]  #: displacement (n, 3) [mm], principal_strain (m, 2), principal_stress (m, 2)
+    #: [MPa], regime (m,) 0 slack, 1 wrinkled, 2 taut, gap (m_v,) [mm], is_contact (m_v,), reference_distance (m_v,) [mm],
+    #: line_force (k,) [N]; those that the scene has
+    warnings: list[str]  #: whole sentences
+    seconds: float  #: wall time of the solver [s]
+    library_seconds: float  #: wall time of reading, building, solving and measuring [s]
+    document: dict[str, Any]  #: all of result.json (schema/result.schema.json)
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"a result has no {name!r}; it has {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+    def __repr__(self) -> str:
+        return (f"<coapt.Result: {self.message}; energy {self.fun:.8g} mJ, {self.nit} iterations, "
+                f"{self.x.shape[0]} nodes, {self.faces.shape[0]} triangles>")
+
+    def to_meshio(self) -> Any:
+        """The closed shape as a `meshio.Mesh` [mm]: triangles, chords as lines, and all fields.
+
+        Raises:
+            ImportError: meshio is not installed (nothing else needs it).
+        """
+        try:
+            import meshio
+        except ImportError as error:
+            raise ImportError("to_meshio() needs the package meshio (Debian: python3-meshio)") from error
+        blocks = [("triangle", self.faces), ("line", self.lines)]
+        at_vertices = {"gap", "is_contact", "reference_distance"}
+        point_data, cell_data = {}, {}
+        for name, values in self.fields.items():
+            values = values.astype(np.uint8) if values.dtype == bool else values
+            if name == "displacement":
+                point_data[name] = values
+            elif name in at_vertices:
+                padding = np.full(self.x.shape[0] - self.vertex_count, np.nan if values.dtype.kind == "f" else 0)
+                point_data[name] = np.concatenate([values, padding.astype(values.dtype)])
+            elif name == "line_force":
+                cell_data[name] = [np.full(len(self.faces), np.nan), values]
+            else:
+                rest = np.full((len(self.lines), *values.shape[1:]), np.nan if values.dtype.kind == "f" else -1)
+                cell_data[name] = [values, rest.astype(values.dtype)]
+        used = [k for k, (_, cells) in enumerate(blocks) if len(cells)]
+        cell_data = {name: [blocks_of[k] for k in used] for name, blocks_of in cell_data.items()}
+        return meshio.Mesh(self.x, [blocks[k] for k in used], point_data=point_data, cell_data=cell_data)
+
+
+def result_of(solution: _core.Solution) -> Result:
+    document: dict[str, Any] = json.loads(solution.document)
+    values, gradients, hessians = solution.evaluations
+    status = Status[document["status"].upper()]
+    return Result(
+        x=solution.x, fun=document["energy"], jac=solution.gradient, nit=document["iterations"],
+        nfev=values + gradients + hessians, njev=gradients + hessians, nhev=hessians,
+        success=status is Status.CONVERGED, status=status, message=document["message"], history=solution.history,
+        metrics=document["metrics"], certificate=document["certificate"], residual=document["residual"],
+        reactions=solution.reactions, energies={term["name"]: term["energy"] for term in document["terms"]},
+        vertex_count=document["mesh"]["vertices"], faces=solution.faces, lines=solution.lines, fields=solution.fields,
+        warnings=document["warnings"], seconds=document["time"]["wall_s"],
+        library_seconds=solution.seconds, document=document)

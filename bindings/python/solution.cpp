@@ -1,0 +1,118 @@
+#include "solution.hpp"
+
+#include "core/timing.hpp"
+
+#include <vector>
+
+namespace coapt::python {
+namespace {
+
+Points free_gradient(Objective& objective, const Vector& q) {
+  Vector g;
+  objective.gradient(q, g);  // loads without a potential are held at q: exact there
+  const Points none = Points::Zero(3, objective.node_count());
+  return objective.fixed().select(none, objective.positions(g));
+}
+
+// What the body pulls with at prescribed coordinates. The potential of a pressure is that of the free nodes:
+// its gradient at held ones is no force that a support feels.
+Points support_forces(const Model& model, const Points& x) {
+  const Points none = Points::Zero(3, x.cols());
+  Points gradient = none;
+  Sink sink(gradient.data());
+  for (const auto& term : model.objective->terms())
+    if (term->role() != TermRole::Load) term->evaluate(x, sink);
+  return model.objective->fixed().select(gradient, none);
+}
+
+// Arrays that look into a solution and keep it alive.
+template <typename T, typename Matrix>
+py::array rows(const py::object& self, const Matrix& columns) {
+  return py::array_t<T>({columns.cols(), columns.rows()}, columns.data(), self);
+}
+
+py::array numbers(const py::object& self, const Vector& values) {
+  return py::array_t<double>({values.size()}, values.data(), self);
+}
+
+py::array flags(const py::object& self, const std::vector<char>& values) {
+  return py::array(py::dtype("?"), {values.size()}, values.data(), self);
+}
+
+const Solution& in(const py::object& self) { return self.cast<const Solution&>(); }
+
+py::array lines(const py::object& self) {
+  const std::vector<Line>& all = in(self).run.model.lines;
+  py::array_t<int> ends({all.size(), size_t{2}});
+  for (size_t k = 0; k < all.size(); ++k) {
+    ends.mutable_at(k, 0) = all[k].a;
+    ends.mutable_at(k, 1) = all[k].b;
+  }
+  return ends;
+}
+
+py::array regimes(const Fields& fields) {
+  py::array_t<int> codes(fields.regime.size());
+  for (size_t k = 0; k < fields.regime.size(); ++k) codes.mutable_at(k) = static_cast<int>(fields.regime[k]);
+  return codes;
+}
+
+// Those that the scene has.
+py::dict fields(const py::object& self) {
+  const Fields& found = in(self).run.report.fields;
+  py::dict all;
+  all["displacement"] = rows<double>(self, found.displacement);
+  if (found.principal_strain.cols() > 0) all["principal_strain"] = rows<double>(self, found.principal_strain);
+  if (found.principal_stress.cols() > 0) all["principal_stress"] = rows<double>(self, found.principal_stress);
+  if (!found.regime.empty()) all["regime"] = regimes(found);
+  if (found.gap.size() > 0) {
+    all["gap"] = numbers(self, found.gap);
+    all["is_contact"] = flags(self, found.is_contact);
+  }
+  if (found.reference_distance.size() > 0)
+    all["reference_distance"] = numbers(self, found.reference_distance);
+  if (found.line_force.size() > 0) all["line_force"] = numbers(self, found.line_force);
+  return all;
+}
+
+py::array history(const py::object& self) {
+  const std::vector<Iteration>& trace = in(self).run.report.result.trace;
+  return py::array_t<Iteration>({static_cast<py::ssize_t>(trace.size())}, trace.data(), self);
+}
+
+py::tuple evaluations(const Solution& solution) {
+  const EvaluationCounts& counts = solution.run.report.result.evaluations;
+  return py::make_tuple(counts.value, counts.gradient, counts.hessian);
+}
+
+}  // namespace
+
+Solution::Solution(RunReport report, double start) : run(std::move(report)) {
+  Model& model = run.model;
+  const Vector& q = run.report.result.q;
+  x = run.report.fields.x.colwise() + model.origin;
+  gradient = free_gradient(*model.objective, q);
+  reactions = support_forces(model, run.report.fields.x);
+  document = result_json(model, run.report);
+  seconds = wall_seconds() - start;
+  model.objective.reset();
+}
+
+void define_solution(py::module_& module) {
+  py::class_<Solution>(module, "Solution", "One solved scene; its arrays look into it and keep it alive.")
+      .def_property_readonly("x", [](const py::object& self) { return rows<double>(self, in(self).x); })
+      .def_property_readonly("gradient",
+                             [](const py::object& self) { return rows<double>(self, in(self).gradient); })
+      .def_property_readonly("reactions",
+                             [](const py::object& self) { return rows<double>(self, in(self).reactions); })
+      .def_property_readonly(
+          "faces", [](const py::object& self) { return rows<int>(self, in(self).run.model.mesh.triangles); })
+      .def_property_readonly("lines", &lines)
+      .def_property_readonly("fields", &fields)
+      .def_property_readonly("history", &history)
+      .def_property_readonly("evaluations", &evaluations)
+      .def_readonly("document", &Solution::document)
+      .def_readonly("seconds", &Solution::seconds);
+}
+
+}  // namespace coapt::python

@@ -1,0 +1,39 @@
+#include "scene/given.hpp"
+
+#include "core/error.hpp"
+#include "scene/build.hpp"
+#include "scene/detail/finish_run.hpp"
+#include "scene/detail/given_parts.hpp"
+
+namespace coapt {
+namespace {
+
+Points relative_start(const Points& start, const Model& model) {
+  if (start.cols() != model.X.cols())
+    throw InputError("start: has " + std::to_string(start.cols()) + " nodes; the scene has " +
+                     std::to_string(model.X.cols()));
+  if (!start.allFinite()) throw InputError("start: holds a coordinate that is not finite");
+  return start.colwise() - model.origin;
+}
+
+}  // namespace
+
+RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options) {
+  if (given.terms && scene.solver.cascade)
+    throw InputError(scene.file.string() +
+                     ": solver.cascade: the terms that are given know the scene's own mesh alone; leave the "
+                     "cascade out");
+  SolveSetup setup = solve_setup(scene, solvers, options);
+  if (!given.has_hessians) setup.stability = {};
+  const Groundwork ground =
+      given.mesh ? lay_groundwork(scene, std::move(*given.mesh)) : lay_groundwork(scene);
+  RunReport run;
+  run.model = build(scene, ground, given.terms);
+  if (given.observer) setup.observer = given.observer(run.model);
+  std::optional<Points> start;
+  if (given.start) start = relative_start(*given.start, run.model);
+  run_built(scene, ground, std::move(setup), options, run, start ? &*start : nullptr);
+  return run;
+}
+
+}  // namespace coapt

@@ -1,0 +1,106 @@
+"""Scenes from files and dicts, result folders, interrupts and threads."""
+import json
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import coapt
+from meshes import ELASTIC, PRESSURE, ROOT, disc
+
+DISC = ROOT / "examples/02_pressurised_disc"
+
+
+def scene() -> dict:
+    return {"mesh": {"file": DISC / "mesh.obj"}, "boundary": [{"nodes": "boundary", "fix": True}],
+            "terms": [ELASTIC, PRESSURE], "solver": {"tolerance": np.float64(1e-8)}}
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return coapt.solve(DISC / "scene.json")
+
+
+def test_a_file_a_dict_and_a_mesh_in_memory_give_the_same_bits(solved):
+    assert solved.success
+    by_dict = coapt.solve(scene())
+    assert np.array_equal(by_dict.x, solved.x) and by_dict.fun == solved.fun
+    lines = [line.split() for line in (DISC / "mesh.obj").read_text().splitlines()]
+    V = np.array([line[1:4] for line in lines if line[:1] == ["v"]], dtype=float)
+    F = np.array([[int(word.split("/")[0]) - 1 for word in line[1:4]] for line in lines if line[:1] == ["f"]])
+    in_memory = coapt.minimize(V, F, [ELASTIC, PRESSURE], fixed="boundary", tol=1e-8)
+    assert np.array_equal(in_memory.x, solved.x)
+
+
+def test_arguments_win_over_the_scene():
+    result = coapt.solve(scene(), method="lbfgs", tol=1e-3, modes=2)
+    assert result.document["solver"]["type"] == "lbfgs" and result.document["solver"]["tolerance"] == 1e-3
+    assert 1e-8 < result.residual <= 1e-3
+    assert result.history.dtype.names == ("iteration", "round", "energy", "residual", "step", "seconds", "time",
+                                          "evaluations")
+    if coapt.components()["Spectra"]:
+        assert len(result.certificate["smallest_eigenvalues"]) == 2
+
+
+def test_writes_a_result_folder_only_where_one_is_asked_for(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    coapt.solve(scene())
+    assert not list(tmp_path.iterdir())
+    result = coapt.solve(scene(), folder=tmp_path / "out", report=False)
+    assert {"result.json", "closed.vtp", "trace.csv"} <= {path.name for path in (tmp_path / "out").iterdir()}
+    assert json.loads((tmp_path / "out/result.json").read_text())["energy"] == result.fun
+
+
+def test_every_defect_of_a_scene_is_said_in_one_pass(tmp_path):
+    bad = scene()
+    bad["terms"][0] = {**ELASTIC, "yuong": "1 MPa", "poisson": 0.7}
+    with pytest.raises(coapt.InputError) as caught:
+        coapt.solve(bad)
+    assert len(caught.value.defects) == 2
+    assert "scene: terms[0].yuong: unknown key" in str(caught.value) and "terms[0].poisson" in str(caught.value)
+    for wrong, piece in ((tmp_path / "none.json", "none.json"), (7, "scene: is a int"), ({"name": {1}}, "holds a set"),
+                         ({"terms": [], "mesh": 3}, "mesh")):
+        with pytest.raises(coapt.InputError, match=piece):
+            coapt.solve(wrong)
+    with pytest.raises(coapt.InputError, match="belong to the scene"):
+        coapt.solve(scene(), terms=[ELASTIC])
+
+
+def slow(seconds: float, **more) -> coapt.Result:
+    """Runs until its time limit: no machine reaches this tolerance."""
+    return coapt.minimize(*disc(30), [ELASTIC, PRESSURE], fixed="boundary", tol=1e-300, method="lbfgs",
+                          max_seconds=seconds, **more)
+
+
+def test_ctrl_c_ends_a_run_at_once():
+    start = time.monotonic()
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        slow(30)
+    timer.join()
+    assert time.monotonic() - start < 15
+
+
+def test_other_threads_run_during_a_solve():
+    results = []
+    threads = [threading.Thread(target=lambda: results.append(slow(0.5))) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    ticks, start = 0, time.monotonic()
+    while any(thread.is_alive() for thread in threads):
+        ticks += 1
+        time.sleep(0.01)
+    assert ticks >= 5
+    both = results[0].history, results[1].history
+    count = min(map(len, both))
+    assert count > 1 and np.array_equal(both[0]["energy"][:count], both[1]["energy"][:count])
+
+
+def test_says_what_it_is():
+    assert {"newton", "lbfgs", "bfgs"} <= set(coapt.methods())
+    assert "BSD-3-Clause" in coapt.licence() and coapt.__version__.count(".") == 2
+    assert coapt.scene_schema()["properties"]["terms"]
