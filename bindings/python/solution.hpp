@@ -15,9 +15,9 @@ class Solution {
   Solution(RunReport run, double start);
 
   RunReport run;
-  Points x;              // in the coordinates of the input, 3 x node_count [mm]
-  Points gradient;       // of the energy, exact loads; zero at prescribed coordinates [N]
-  Points reactions;      // of the supports on the body, without loads on held nodes; zero at free coordinates [N]
+  Points x;          // in the coordinates of the input, 3 x node_count [mm]
+  Points gradient;   // of the energy, exact loads; zero at prescribed coordinates [N]
+  Points reactions;  // of the supports on the body, without loads on held nodes; zero at free coordinates [N]
   std::string document;  // result.json
   double seconds;        // in the library, from reading to measuring [s]
 };

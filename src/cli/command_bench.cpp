@@ -99,8 +99,8 @@ void print_summary(const Benchmark& bench) {
     if (mesh.order) std::printf("  observed order at %s: %.2f\n", mesh_text(mesh).c_str(), *mesh.order);
   for (size_t method = 0; method < bench.methods.size(); ++method)
     if (const auto found = growth(bench, method))
-      std::printf("  %s: CPU time grows with triangles^%.2f (tolerance %g)\n", bench.methods[method].name.c_str(),
-                  found->exponent, found->tolerance);
+      std::printf("  %s: CPU time grows with triangles^%.2f (tolerance %g)\n",
+                  bench.methods[method].name.c_str(), found->exponent, found->tolerance);
   for (const double mm : kTotalAccuracies) std::printf("%s\n", recommendation(bench, mm).c_str());
 }
 

@@ -36,7 +36,8 @@ const BenchRun* fastest_run(const Benchmark& bench, ErrorKind kind, double mm, c
 const BenchRun* most_exact_run(const Benchmark& bench, ErrorKind kind);
 
 // p of time ~ triangles^p, of the best CPU times at the tightest tolerance that the method reached on the
-// most meshes (wall times of a shared machine show its other users); least squares over the meshes. Empty with fewer than two.
+// most meshes (wall times of a shared machine show its other users); least squares over the meshes. Empty
+// with fewer than two.
 struct Growth {
   double exponent = 0;
   double tolerance = 0;

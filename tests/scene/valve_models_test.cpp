@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(All, ValveModels, testing::ValuesIn(valve_model_names()
   return instance.param.substr(instance.param.find('-') + 1);
 });
 
-// The sizes of the sources: at once, in time, and by position-based dynamics, which comes to rest near a closed
-// shape without being one of the energy.
+// The sizes of the sources: at once, in time, and by position-based dynamics, which comes to rest near a
+// closed shape without being one of the energy.
 TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
   for (const std::string& model : valve_model_names())
     for (const int triangles : {625, 2500, 10000})
