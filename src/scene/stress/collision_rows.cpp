@@ -11,7 +11,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kKept = 0.1;  // share of the distance that a step has to leave, as contact wants it
+constexpr double kKept = 0.1;  // share of the distance that a step has to leave
 constexpr int kQueries = 20000;
 
 struct Query {
