@@ -1,8 +1,8 @@
 // A solve to a wanted accuracy: its estimate against a truth that is computed later.
 #include "scene/accuracy.hpp"
 
+#include "mesh/cut_in_four.hpp"
 #include "scene/bench_fixture.hpp"
-#include "scene/discretisation.hpp"
 #include "scene/mesh_study.hpp"
 
 #include <nlohmann/json.hpp>
@@ -31,10 +31,10 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
     const auto& level = study.levels[static_cast<size_t>(estimate.cuts)];
     const TriangleMesh closed = surface_at(found.model, found.report.fields.x);
     ASSERT_EQ(closed.triangle_count(), level.triangles);
-    std::vector<TriangleMesh> shapes = {closed};
+    TriangleMesh sampled = closed;
     for (auto k = static_cast<size_t>(estimate.cuts) + 1; k < study.levels.size(); ++k)
-      shapes.push_back(study.levels[k].closed);
-    const double later = distances_between_meshes(shapes).to_finest.front().p95;
+      sampled = cut_in_four(sampled).mesh;
+    const double later = distance_between(sampled, study.levels.back().closed).p95;
     std::printf("  wanted %g mm: %s; later %.4f mm, order %.2f\n", wanted, estimate.message.c_str(), later,
                 estimate.order.value_or(-1));
     EXPECT_LE(later, wanted);
