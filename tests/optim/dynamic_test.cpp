@@ -59,7 +59,11 @@ struct Bob : Masses {
       : Masses(rest(), fixed_nodes(2, {0}),
                terms_of(cable_term(link(), stiffness, Vector::Ones(1)), weights(rest(), kMasses, 9.81)),
                kMasses) {}
-  static Points rest() { return (Points(3, 2) << 0, 0, 0, 0, 0, -1).finished(); }
+  static Points rest() {
+    Points ends = Points::Zero(3, 2);
+    ends(2, 1) = -1;
+    return ends;
+  }
   static Segments link() { return Segments(Eigen::Vector2i(0, 1)); }
   inline static const Vector kMasses = Vector::Constant(2, 2.0);
 };
