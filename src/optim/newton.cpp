@@ -20,8 +20,11 @@ constexpr double kNear = 1e-3;                   // residual at which an equilib
 constexpr double kForcing = 1e-3;                // GMRES, relative
 constexpr int kKrylovVectors = 30;
 
-// Iterates in a row that better neither the energy nor the residual, before the rest is left to round-off.
-constexpr int kPatience = 10;
+// Iterates in a row near an equilibrium that better neither the energy nor the residual, before the rest is
+// left to round-off. Towards a flat minimum, as after a saddle, 34 were seen; far from one the monitor
+// judges.
+constexpr int kPatience = 40;
+constexpr double kNearEnough = 1e-6;
 constexpr double kBetter = 0.9;  // of the least residual so far
 
 // Conjugate gradients: how many at most, to which share of the gradient, and the share of the projected
@@ -110,7 +113,7 @@ class Newton {
     const double residual = objective_.relative_residual(at_.g);
     const bool is_better = residual < kBetter * least_residual_ ||
                            at_.energy < least_energy_ - monitor_.energy_noise(at_.energy);
-    idle_ = is_better ? 0 : idle_ + 1;
+    idle_ = is_better || residual > kNearEnough ? 0 : idle_ + 1;
     if (is_better) {
       least_residual_ = std::min(least_residual_, residual);
       least_energy_ = std::min(least_energy_, at_.energy);

@@ -13,9 +13,9 @@ namespace coapt {
 // equilibrium whose symmetric part is indefinite GMRES solves with the exact tangent. The shift mu
 // (pseudo-transient continuation; Kelley & Keyes 1998) starts at five times force over length of the scene,
 // falls five- or twenty-fivefold with each full step that keeps what the quadratic model promised, and rises
-// where a step has to be shortened. Ten iterates in a row that better neither the energy, beyond its
-// round-off, nor the residual by a tenth end it as stalled, with a remark that says so. Of the options:
-// globalisation, factorisation.
+// where a step has to be shortened. Forty iterates in a row below a residual of 1e-6 that better neither
+// the energy, beyond its round-off, nor the residual by a tenth end it as stalled, with a remark that says
+// so. Of the options: globalisation, factorisation.
 std::unique_ptr<Solver> make_newton(const SolverOptions& options = {});
 
 }  // namespace coapt
