@@ -1,6 +1,7 @@
 #include "optim/xpbd/contact.hpp"
 
 #include "mesh/triangle_mesh.hpp"
+#include "optim/xpbd/contact_features.hpp"
 
 #include <algorithm>
 
@@ -13,22 +14,10 @@ constexpr double kCorrection = 0.125;  // h: that sweeps may add to the predicte
 constexpr double kLongest = 6;        // h
 constexpr double kLongestEdge = 0.2;  // mean edge lengths
 
-PairCorners corners(const Points& x, const std::array<int, 4>& nodes) {
-  PairCorners c;
-  for (int k = 0; k < 4; ++k) c.col(k) = x.col(nodes[static_cast<size_t>(k)]);
-  return c;
-}
-
-Triangles all_triangles(const XpbdBody& body) {
-  Triangles all(3, body.triangles.cols() + body.obstacles.cols());
-  all << body.triangles, body.obstacles;
-  return all;
-}
-
 }  // namespace
 
 ConstraintValue<4> ContactConstraint::at(const Points& x) const {
-  const PairCorners c = corners(x, nodes);
+  const PairCorners c = pair_corners(x, nodes);
   const ClosestPair closest = closest_points(kind, c);
   const Vec3 difference = c * closest.weights;
   const double d = difference.norm(), sign = difference.dot(side) < 0 ? -1 : 1;
@@ -40,7 +29,7 @@ ConstraintValue<4> ContactConstraint::at(const Points& x) const {
 }
 
 XpbdContact::XpbdContact(const XpbdBody& body, double thickness, double alpha, double stiffness)
-    : surface_(body.rest, all_triangles(body), static_cast<int>(body.triangles.cols()), body.excluded),
+    : surface_(contact_surface(body)),
       neighbours_(static_cast<size_t>(body.rest.cols())),
       thickness_(thickness),
       alpha_(alpha),
@@ -67,13 +56,13 @@ void XpbdContact::begin_step(const Points& x, const Points& predicted) {
   const double margin = 2 * kCorrection * thickness_, all_of_it = 1;
   std::vector<ContactConstraint> active;
   surface_.visit_swept(x, predicted - x, thickness_ + margin, all_of_it, [&](const FeaturePair& pair) {
-    const PairCorners c = corners(x, pair.nodes);
+    const PairCorners c = pair_corners(x, pair.nodes);
     const ClosestPair closest = closest_points(pair.kind, c);
     // What moves along together does not come nearer.
-    const Vec3 approach = (corners(predicted, pair.nodes) - c) * closest.weights;
+    const Vec3 approach = (pair_corners(predicted, pair.nodes) - c) * closest.weights;
     const double near = closest.distance - approach.norm() - margin;
     if (near > thickness_ || is_joined(pair)) return;
-    const double apart = closest_points(pair.kind, corners(surface_.rest(), pair.nodes)).distance;
+    const double apart = closest_points(pair.kind, pair_corners(surface_.rest(), pair.nodes)).distance;
     const double thickness = std::min(thickness_, 0.5 * apart);
     if (near > thickness || !(thickness > 0)) return;
     ContactConstraint contact;

@@ -1,6 +1,7 @@
 #include "optim/xpbd/separating_planes.hpp"
 
 #include "mesh/triangle_mesh.hpp"
+#include "optim/xpbd/contact_features.hpp"
 
 #include <algorithm>
 
@@ -13,18 +14,6 @@ constexpr double kKept = 0.25;    // share of its distance that a pair keeps
 constexpr double kLeast = 0.1;    // of the thickness: nothing comes nearer
 constexpr double kShareOfRest = 0.5;
 constexpr int kSlides = 8;  // sweeps over the planes of a node
-
-PairCorners corners(const Points& x, const std::array<int, 4>& nodes) {
-  PairCorners c;
-  for (int k = 0; k < 4; ++k) c.col(k) = x.col(nodes[static_cast<size_t>(k)]);
-  return c;
-}
-
-Triangles all_triangles(const XpbdBody& body) {
-  Triangles all(3, body.triangles.cols() + body.obstacles.cols());
-  all << body.triangles, body.obstacles;
-  return all;
-}
 
 double longest(const Points& d) {
   return d.cols() == 0 ? 0 : std::sqrt(d.colwise().squaredNorm().maxCoeff());
@@ -40,7 +29,7 @@ double share_of_first(double first, double second, double room) {
 }  // namespace
 
 SeparatingPlanes::SeparatingPlanes(const XpbdBody& body, double thickness)
-    : surface_(body.rest, all_triangles(body), static_cast<int>(body.triangles.cols()), body.excluded),
+    : surface_(contact_surface(body)),
       thickness_(thickness),
       longest_(kLongest * mean_edge_length(body.rest, body.triangles)) {}
 
@@ -50,8 +39,8 @@ void SeparatingPlanes::search(const Points& x) {
       std::max(2 * longest_ / (1 - kKept), 2 * longest_ + kLeast * thickness_) + 2 * kSkin * longest_;
   pairs_.clear();
   surface_.visit_near(x, reach, [&](const FeaturePair& pair) {
-    if (closest_points(pair.kind, corners(x, pair.nodes)).distance > reach) return;
-    const double at_rest = closest_points(pair.kind, corners(surface_.rest(), pair.nodes)).distance;
+    if (closest_points(pair.kind, pair_corners(x, pair.nodes)).distance > reach) return;
+    const double at_rest = closest_points(pair.kind, pair_corners(surface_.rest(), pair.nodes)).distance;
     pairs_.push_back({pair.kind, pair.nodes, kLeast * std::min(thickness_, kShareOfRest * at_rest)});
   });
   searched_at_ = x;
@@ -68,7 +57,7 @@ void SeparatingPlanes::place_planes(const Points& x, const Points& d) {
       approach[k < in_first ? 0 : 1] =
           std::max(approach[k < in_first ? 0 : 1], lengths[pair.nodes[static_cast<size_t>(k)]]);
     if (approach[0] + approach[1] == 0) continue;
-    const PairCorners c = corners(x, pair.nodes);
+    const PairCorners c = pair_corners(x, pair.nodes);
     const ClosestPair closest = closest_points(pair.kind, c);
     if (closest.distance * (1 - kKept) > approach[0] + approach[1] &&
         closest.distance - pair.least > approach[0] + approach[1])
@@ -76,7 +65,7 @@ void SeparatingPlanes::place_planes(const Points& x, const Points& d) {
     const Vec3 between = c * closest.weights;
     const Vec3 normal = closest.distance > 0 ? Vec3(between / closest.distance) : Vec3::UnitZ();
     const Eigen::RowVector4d now = normal.transpose() * c,
-                             end = now + normal.transpose() * corners(d, pair.nodes);
+                             end = now + normal.transpose() * pair_corners(d, pair.nodes);
     const double low = now.head(in_first).minCoeff(), high = now.tail(4 - in_first).maxCoeff(),
                  gap = low - high;
     const double room = std::max(gap - std::max(kKept * gap, std::min(gap, pair.least)), 0.0);
