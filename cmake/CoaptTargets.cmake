@@ -21,13 +21,33 @@ function(coapt_library target)
   coapt_warnings(${target})
 endfunction()
 
-# coapt_room(<target> HEADERS <files> SOURCES <files>): the files of one folder.
+# coapt_room(<target> HEADERS <files> SOURCES <files>): the files of one folder. With COAPT_UNITY_BUILD eight sources
+# of the list, in its order, are one translation unit; a source with flags of its own stays one by itself.
 function(coapt_room target)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES" ${ARGN})
   list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   target_sources(${target} PRIVATE ${ARG_SOURCES}
                            PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
+  if(COAPT_UNITY_BUILD)
+    coapt_unite(${target} ${ARG_SOURCES})
+  endif()
+endfunction()
+
+# coapt_unite(<target> <sources>): groups of eight, named after the folder and the first source.
+function(coapt_unite target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME room)
+  set(count 0)
+  foreach(source IN LISTS ARGN)
+    math(EXPR place "${count} % 8")
+    if(place EQUAL 0)
+      cmake_path(GET source STEM first)
+      set(group ${room}_${first})
+    endif()
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+    math(EXPR count "${count} + 1")
+  endforeach()
 endfunction()
 
 # coapt_link_adapters(<target>): every adapter of the build, said to src/cli/solvers.cpp by COAPT_HAS_<NAME>.

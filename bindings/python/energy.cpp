@@ -24,8 +24,7 @@ py::dict report_of(const DerivativeReport& report, bool has_hessian) {
   return dict;
 }
 
-py::dict check_term(const py::object& term, const py::array_t<double, py::array::c_style>& x, double step,
-                    unsigned seed) {
+py::dict check_term(const py::object& term, const Numbers& x, double step, unsigned seed) {
   Failure failure;
   const Points positions = points_in(x);
   const bool has_hessian = PythonTerm::has_hessian(term);

@@ -57,4 +57,5 @@ PYBIND11_MODULE(_core, module) {
   coapt::python::define_energy(module);
   coapt::python::define_optim(module);
   coapt::python::define_scene(module);
+  coapt::python::define_equilibrium(module);
 }

@@ -82,7 +82,8 @@ void Checkpointing::finish(const std::string& scene) {
   }
   keep(recorder_->record());
   if (failure_.empty())
-    std::printf("go on with: coapt solve %s --resume %s\n", scene.c_str(), file_.string().c_str());
+    std::printf("go on with the same options and: coapt solve %s --resume %s\n", scene.c_str(),
+                file_.string().c_str());
   else
     std::printf("  warning: the run could not be kept: %s\n", failure_.c_str());
 }

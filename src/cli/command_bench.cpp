@@ -19,6 +19,7 @@ namespace {
 struct Arguments : StudyArguments {
   std::string methods = "newton,lbfgs,dynamic", tolerances = "1e-2,1e-4,1e-6,1e-8", reference, closed;
   int levels = 1, repeats = 3;
+  double truth_seconds = 0;  // 0: not given
   bool prints_json = false;
 };
 
@@ -95,6 +96,8 @@ void print_summary(const Benchmark& bench) {
       std::printf("  %s failed: %s\n", bench.methods[end.method].name.c_str(), end.failure.c_str());
   print_times(bench);
   std::printf("\n");
+  for (const std::string& missing : missing_equilibria(bench))
+    std::printf("  warning: %s\n", missing.c_str());
   for (const BenchMesh& mesh : bench.meshes)
     if (mesh.order) std::printf("  observed order at %s: %.2f\n", mesh_text(mesh).c_str(), *mesh.order);
   for (size_t method = 0; method < bench.methods.size(); ++method)
@@ -116,6 +119,7 @@ void bench_scene(const Arguments& arguments, int& exit_code) {
   options.levels = arguments.levels;
   options.repeats = arguments.repeats;
   options.closed = arguments.closed;
+  if (arguments.truth_seconds > 0) options.truth_seconds = arguments.truth_seconds;
   options.report = [&](const Benchmark& bench, const BenchRun& done) {
     end_progress();
     if (!arguments.prints_json) print_progress(bench, done);
@@ -161,6 +165,12 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--closed", arguments->closed,
                       "Given closed surface, in the unit of the scene's mesh (default: the scene's)");
   command->add_option("--max-seconds", arguments->max_seconds, "Of each solve (default: the scene's)")
+      ->check(positive_defect);
+  command
+      ->add_option(
+          "--truth-seconds", arguments->truth_seconds,
+          "Of each solve that errors are measured to: on the finest mesh, and on to 1e-12 (default: as "
+          "--max-seconds)")
       ->check(positive_defect);
   command->add_flag("--json", arguments->prints_json, "Print bench.json instead of the tables");
   command->callback([arguments, &exit_code] { bench_scene(*arguments, exit_code); });

@@ -35,7 +35,10 @@ int run_command(int argc, char** argv) {
   add_schema_command(app, exit_code);
   add_mesh_study_command(app, exit_code);
   add_sensitivity_command(app, exit_code);
+  add_tune_command(app, exit_code);
   add_tune_regions_command(app, exit_code);
+  add_intervene_command(app, exit_code);
+  add_study_command(app, exit_code);
   add_compare_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);

@@ -4,12 +4,14 @@
 #include "mesh/cgal/intersections_cgal.hpp"
 #endif
 #ifdef COAPT_HAS_CERES
+#include "optim/ceres/ceres_least_squares.hpp"
 #include "optim/ceres/ceres_solver.hpp"
 #endif
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"
 #endif
 #ifdef COAPT_HAS_NLOPT
+#include "optim/nlopt/nlopt_minimisers.hpp"
 #include "optim/nlopt/nlopt_solver.hpp"
 #endif
 
@@ -30,6 +32,17 @@ FactorisationTable all_factorisations() {
   FactorisationTable table{{"eigen", make_eigen_factorisation}};
 #ifdef COAPT_HAS_CHOLMOD
   table["cholmod"] = [] { return make_cholmod_factorisation(); };
+#endif
+  return table;
+}
+
+BoundedMinimiserTable all_minimisers() {
+  BoundedMinimiserTable table = built_in_minimisers();
+#ifdef COAPT_HAS_CERES
+  add_ceres_minimiser(table);
+#endif
+#ifdef COAPT_HAS_NLOPT
+  add_nlopt_minimisers(table);
 #endif
   return table;
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "mesh/intersections.hpp"
+#include "optim/bounded_minimiser.hpp"
 #include "optim/solver.hpp"
 
 namespace coapt::cli {
 
 SolverTable all_solvers();
 FactorisationTable all_factorisations();
+BoundedMinimiserTable all_minimisers();
 
 // The most independent one of this build: CGAL where it is in.
 IntersectionJudge intersection_judge();

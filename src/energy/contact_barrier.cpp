@@ -75,6 +75,24 @@ class ContactBarrier final : public EnergyTerm {
     return energy;
   }
 
+  std::vector<BarrierContact> contacts(const Points& x) const {
+    std::vector<BarrierContact> found;
+    for (size_t k = 0; k < rest_.size(); ++k) {
+      const int* nodes = &stencils_.nodes[4 * k];
+      const ClosestPair closest = closest_points(rest_[k].kind, gather(x, nodes));
+      if (closest.distance >= rest_[k].range) continue;
+      BarrierContact contact{{nodes[0], nodes[1], nodes[2], nodes[3]},
+                             rest_[k].kind == PairKind::EdgeEdge,
+                             0,
+                             closest.distance,
+                             rest_[k].range};
+      for (int a = 0; a < 4; ++a)
+        if (closest.weights[a] != 0) contact.inside |= 1 << a;
+      found.push_back(contact);
+    }
+    return found;
+  }
+
   bool limits_steps() const override { return true; }
 
   double step_limit(const Points& x, const Points& d, double most) const override {
@@ -153,6 +171,11 @@ class ContactBarrier final : public EnergyTerm {
 };
 
 }  // namespace
+
+std::vector<BarrierContact> barrier_contacts(const EnergyTerm& term, const Points& x) {
+  const auto* barrier = dynamic_cast<const ContactBarrier*>(&term);
+  return barrier == nullptr ? std::vector<BarrierContact>{} : barrier->contacts(x);
+}
 
 std::unique_ptr<EnergyTerm> make_contact_barrier(std::string name, const Points& X,
                                                  const Triangles& triangles,

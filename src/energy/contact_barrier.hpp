@@ -37,4 +37,17 @@ std::unique_ptr<EnergyTerm> make_contact_barrier(std::string name, const Points&
                                                  const Triangles& triangles,
                                                  const ContactBarrierOptions& options);
 
+// A pair of features within its range, and where their closest points lie.
+struct BarrierContact {
+  std::array<int, 4> nodes;  // point and corners of the triangle, or the ends of both edges
+  bool is_edge_edge = false;
+  int inside = 0;       // bit a: the closest points depend on node a
+  double distance = 0;  // [length]
+  double range = 0;     // at which the repulsion begins [length]
+};
+
+// All of them at x (3 x node_count), in the order of the term's list; none for a term that
+// make_contact_barrier() has not made. Pre: the term was prepared for positions near x.
+std::vector<BarrierContact> barrier_contacts(const EnergyTerm& term, const Points& x);
+
 }  // namespace coapt

@@ -60,6 +60,12 @@ class ElementTerm final : public EnergyTerm {
   const Stencils& stencils() const override { return stencils_; }
   const std::vector<typename K::Rest>& rest() const { return rest_; }
 
+  // Other data of the same elements, as after a change of a parameter. Pre: as many as there were.
+  void set_rest(std::vector<typename K::Rest> rest) {
+    rest_ = std::move(rest);
+    sharp_.clear();
+  }
+
   bool round_kinks(double share) override {
     if constexpr (HasKink<K>) {
       if (sharp_.empty()) sharp_ = rest_;

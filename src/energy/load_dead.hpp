@@ -17,11 +17,18 @@ class LoadDead final : public EnergyTerm {
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(const Points& x, Sink& sink) const override;
 
+  // Of the loaded nodes, in the order of the stencils [force].
+  const Points& forces() const { return forces_; }
+  // Others on the same nodes, as after a change of a parameter. Pre: as many as there were.
+  void set_forces(Points forces) { forces_ = std::move(forces); }
+  // X of the same nodes [length].
+  const Points& reference() const { return reference_; }
+
  private:
   std::string type_;
   Stencils stencils_;
-  Points forces_;     // of the loaded nodes, in the order of the stencils
-  Points reference_;  // of the loaded nodes
+  Points forces_;
+  Points reference_;
 };
 
 // Nodal forces of a pressure that stays as it is on X: p/3 of each facet's area vector to its corners.

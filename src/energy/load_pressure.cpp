@@ -120,6 +120,12 @@ class LoadPressureFollower final : public EnergyTerm {
       }
   }
 
+  double pressure() const { return rest_.pressure; }
+  void set_pressure(double p) {
+    rest_.pressure = p;
+    set_fans({fans_.data(), fans_.data() + fans_.size()});
+  }
+
   bool renew(const Points& x) override {
     std::vector<int> fan_corners;
     for (const auto& rim : rims_) {
@@ -157,6 +163,26 @@ class LoadPressureFollower final : public EnergyTerm {
 
 Points follower_pressure_forces(const Points& x, const Triangles& triangles, double p) {
   return frozen_pressure_forces(x, triangles, p);
+}
+
+std::optional<double> pressure_of(const EnergyTerm& term) {
+  if (const auto* follower = dynamic_cast<const LoadPressureFollower*>(&term)) return follower->pressure();
+  const auto* volume = dynamic_cast<const ElementTerm<FacetVolume>*>(&term);
+  if (volume == nullptr || volume->rest().empty()) return std::nullopt;
+  return volume->rest().front().pressure;
+}
+
+bool set_pressure(EnergyTerm& term, double p) {
+  if (auto* follower = dynamic_cast<LoadPressureFollower*>(&term)) {
+    follower->set_pressure(p);
+    return true;
+  }
+  auto* volume = dynamic_cast<ElementTerm<FacetVolume>*>(&term);
+  if (volume == nullptr) return false;
+  std::vector<FacetVolume::Rest> rest = volume->rest();
+  for (FacetVolume::Rest& facet : rest) facet.pressure = p;
+  volume->set_rest(std::move(rest));
+  return true;
 }
 
 std::unique_ptr<EnergyTerm> make_volume_pressure(std::string name, const Points& X,

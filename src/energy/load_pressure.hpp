@@ -10,6 +10,7 @@
 #include "energy/term.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace coapt {
@@ -17,6 +18,11 @@ namespace coapt {
 // Exact consistent nodal forces of the pressure, 3 x node_count [force]: (p/6)(x1-x0)x(x2-x0) to each
 // corner. p > 0 pushes along the normals.
 Points follower_pressure_forces(const Points& x, const Triangles& triangles, double p);
+
+// Pressure along the normals [force/length^2] of a term that one of the functions below has made, nothing for
+// any other; and another one in its place. set_pressure returns whether it is such a term.
+std::optional<double> pressure_of(const EnergyTerm& term);
+bool set_pressure(EnergyTerm& term, double p);
 
 // The term of model "volume". Throws InputError when the surface has a rim that moves other than
 // within a coordinate plane that all such rims can share an origin with: the potential would be wrong.

@@ -127,7 +127,7 @@ class Objective {
   double true_residual(const Vector& q);
 
   std::vector<TermReport> breakdown(const Vector& q);
-  // Reactions of the supports, 3 x node_count [force], zero at free coordinates; exact loads.
+  // Reactions of the supports, 3 x node_count [force], zero where free; of fixed rims see docs/theory.md.
   Points reactions(const Vector& q);
   Balance balance(const Vector& q);
 

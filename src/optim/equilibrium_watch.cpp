@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;            // of a resultant, relative to the sum of the forces' magnitudes
 constexpr int kInterval = 50;                 // iterates from one look to the next
-constexpr double kFar = 100;                  // drift, relative to the extent of the start
+constexpr double kFarDrift = 100;             // drift, relative to the extent of the start
 constexpr double kCollapsed = 1e-4;           // area, relative to the start
 constexpr double kFarFromEquilibrium = 1e-2;  // residual
 constexpr int kCollapsedLooks = 4;            // in a row
@@ -81,7 +81,7 @@ void EquilibriumWatch::find_obstacle(const Objective& objective, const Points& x
 
 bool EquilibriumWatch::has_drifted(const Points& x) {
   for (const Adrift& part : adrift_) {
-    if ((centre(x, part.nodes) - part.start).norm() <= kFar * extent_) continue;
+    if ((centre(x, part.nodes) - part.start).norm() <= kFarDrift * extent_) continue;
     reason_ = part.name + ", and its loads carry it away";
     return true;
   }

@@ -12,7 +12,7 @@ constexpr size_t kUsualTrace = 1000;    // iterates for which the trace never gr
 constexpr int kPatience = 1000;         // iterates without gain
 constexpr int kPathPatience = 10000;    // iterates whose residual gains nothing, where no energy has to
 constexpr double kRunaway = 1e12;       // growth of the unknowns' extent that no equilibrium explains
-constexpr double kFar = 1e4;            // growth that few do: only while the residual falls
+constexpr double kFarGrowth = 1e4;      // growth that few do: only while the residual falls
 constexpr int kFarPatience = 400;       // iterates
 
 template <typename Evaluate>
@@ -74,7 +74,8 @@ void Monitor::begin_round(int round, double tolerance) {
 }
 
 std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g, double time) {
-  if (!std::isfinite(energy) || !g.allFinite()) return Status::NonFinite;
+  // Forces whose squares overflow cannot be measured either.
+  if (!std::isfinite(energy) || !std::isfinite(g.squaredNorm())) return Status::NonFinite;
   if (!is_first_of_round_) ++iterations_;
   is_first_of_round_ = false;
 
@@ -102,7 +103,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   }
   // Before the residual is asked: what is out of balance on a shape that has run away may be nothing beside
   // the reactions there.
-  const bool is_far = extent_ > kFar * first_extent_;
+  const bool is_far = extent_ > kFarGrowth * first_extent_;
   if (extent_ > kRunaway * first_extent_ || (is_far && iterations_ - last_residual_gain_ > kFarPatience))
     return Status::NoEquilibrium;
   if (now.residual <= tolerance_) return Status::Converged;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFirstShift = 5;  // times force over length of the scene
 constexpr double kFall = 0.2;      // of the shift after a step that kept its promise
 constexpr double kRise = 4;        // after one that was shortened much
-constexpr double kMostShift = 1e9;
+constexpr double kMostShiftOverUnit = 1e9;
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
 constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
@@ -23,7 +23,7 @@ constexpr int kKrylovVectors = 30;
 // Iterates in a row near an equilibrium that better neither the energy nor the residual, before the rest is
 // left to round-off. Towards a flat minimum, as after a saddle, 34 were seen; far from one the monitor
 // judges.
-constexpr int kPatience = 40;
+constexpr int kIdlePatience = 40;
 constexpr double kNearEnough = 1e-6;
 constexpr double kBetter = 0.9;  // of the least residual so far
 
@@ -66,7 +66,8 @@ class Newton {
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
         if (is_found) break;
         if (monitor_.is_out_of_time()) return Status::TimeLimit;
-        if (shift_ > kMostShift * unit_ || !hessian_.raise(monitor_, shift_)) return Status::LineSearchFailed;
+        if (shift_ > kMostShiftOverUnit * unit_ || !hessian_.raise(monitor_, shift_))
+          return Status::LineSearchFailed;
       }
       std::swap(at_, next_);
       q = at_.q;
@@ -74,8 +75,8 @@ class Newton {
   }
 
   std::string remark() const {
-    if (idle_ < kPatience) return {};
-    return "round-off forbids more, as " + std::to_string(kPatience) +
+    if (idle_ < kIdlePatience) return {};
+    return "round-off forbids more, as " + std::to_string(kIdlePatience) +
            " iterates in a row bettered neither the residual nor the energy";
   }
 
@@ -118,7 +119,7 @@ class Newton {
       least_residual_ = std::min(least_residual_, residual);
       least_energy_ = std::min(least_energy_, at_.energy);
     }
-    return idle_ >= kPatience;
+    return idle_ >= kIdlePatience;
   }
 
   // Force over length: what resists a displacement of the scene's size with the scene's force.

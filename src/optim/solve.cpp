@@ -19,15 +19,15 @@ constexpr int kMostSaddles = 2;      // that are left in one run
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
 
-std::string number(double value) {
+std::string residual_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
 
 std::string sentence(const Result& result, double tolerance, const std::string& note) {
-  const std::string wanted = " (tolerance " + number(tolerance) + ")";
-  const std::string at = " at residual " + number(result.residual);
+  const std::string wanted = " (tolerance " + residual_text(tolerance) + ")";
+  const std::string at = " at residual " + residual_text(result.residual);
   std::string text;
   switch (result.status) {
     case Status::Converged:

@@ -3,6 +3,7 @@
 #include "mesh/triangle_mesh.hpp"
 #include "scene/build.hpp"
 #include "scene/detail/bench_pair.hpp"
+#include "scene/detail/mesh_error_view.hpp"
 #include "scene/detail/method_list.hpp"
 #include "scene/detail/unit_cost.hpp"
 #include "scene/refining.hpp"
@@ -27,6 +28,8 @@ void check_options(const Scene& scene, const SolverTable& solvers, const BenchOp
   if (std::any_of(tolerances.begin(), tolerances.end(),
                   [&](double t) { return std::count(tolerances.begin(), tolerances.end(), t) > 1; }))
     defects.emplace_back("--tolerances: one is named twice");
+  if (options.truth_seconds && !(*options.truth_seconds > 0))
+    defects.emplace_back("--truth-seconds: must be above 0");
   if (options.repeats < 1) defects.emplace_back("--repeats: each run is made at least once");
   if (options.levels < 0 || options.levels > kMostLevels)
     defects.push_back("--levels: between 0 and " + std::to_string(kMostLevels));
@@ -57,26 +60,38 @@ BenchMesh described(const Groundwork& ground, bool is_benchmarked) {
 }
 
 // Distances between the reference equilibria from mesh to mesh, and what they say of the error of each.
-// Nothing where one of them is missing.
+// Meshes from the first whose equilibrium is missing on are left out: two that are there say something.
 void estimate_meshes(const std::list<Groundwork>& grounds, const std::vector<Equilibrium>& equilibria,
                      Benchmark& found) {
-  if (found.meshes.size() < 2 || equilibria.size() != found.meshes.size()) return;
+  if (found.meshes.size() < 2) return;
   std::vector<TriangleMesh> shapes;
   auto ground = grounds.begin();
   for (const Equilibrium& equilibrium : equilibria) {
-    if (!equilibrium.is_found) return;
+    if (!equilibrium.is_found) break;
     shapes.push_back(surface_at((ground++)->model, equilibrium.x));
   }
+  if (shapes.size() < 2) return;
   const MeshDistances distances = distances_between_meshes(shapes);
   const std::vector<DistanceFigures>& to_next = distances.to_next;
   const DiscretisationEstimate estimate = estimate_discretisation(distances);
   found.assumed_order = estimate.assumed_order;
-  for (size_t k = 0; k < found.meshes.size(); ++k) {
+  for (size_t k = 0; k < shapes.size(); ++k) {
     BenchMesh& mesh = found.meshes[k];
     mesh.error_mm = estimate.error_mm[k];
     if (k < to_next.size()) mesh.to_next = to_next[k];
     if (k > 0 && k < to_next.size()) mesh.order = observed_order(to_next[k - 1], to_next[k]);
   }
+}
+
+// The scene's own mesh beside the finest that is known.
+std::optional<ShapeView> mesh_view(const Scene& scene, const std::list<Groundwork>& grounds,
+                                   const std::vector<Equilibrium>& equilibria, const Benchmark& found) {
+  if (!found.meshes.front().error_mm || !has_shape_view()) return std::nullopt;
+  size_t last = 0;
+  while (last + 1 < found.meshes.size() && found.meshes[last + 1].error_mm) ++last;
+  const Model model = build(scene, grounds.front());
+  const Model& finest = std::next(grounds.begin(), static_cast<std::ptrdiff_t>(last))->model;
+  return mesh_error_view(model, equilibria.front().x, surface_at(finest, equilibria[last].x));
 }
 
 // What all errors of a run come to; needs the estimates of the meshes.
@@ -99,9 +114,11 @@ void add_totals(Benchmark& found) {
 bool Benchmark::has_converged() const {
   const bool have_all_run =
       std::all_of(ends.begin(), ends.end(), [](const BenchEnd& end) { return end.failure.empty(); });
-  return !is_cancelled && have_all_run && std::all_of(runs.begin(), runs.end(), [](const BenchRun& run) {
-    return run.status == Status::Converged;
-  });
+  const bool are_known =
+      std::all_of(meshes.begin(), meshes.end(), [](const BenchMesh& mesh) { return mesh.missing.empty(); });
+  return !is_cancelled && have_all_run && are_known &&
+         std::all_of(runs.begin(), runs.end(),
+                     [](const BenchRun& run) { return run.status == Status::Converged; });
 }
 
 Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const BenchOptions& options,
@@ -141,6 +158,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
       const Equilibrium end = bench_pair(course, ground, mesh, method, equilibria.back(), found);
       if (method == 0) equilibria.back() = end;
     }
+    found.meshes.back().missing = found.is_cancelled ? "cancelled" : equilibria.back().missing;
     if (const Equilibrium& reference = equilibria.back(); reference.is_found) {
       found.meshes.back().residual = reference.residual;
       if (is_benchmarked && !found.is_cancelled)
@@ -150,6 +168,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
   }
   estimate_meshes(grounds, equilibria, found);
   add_totals(found);
+  if (run.writes) found.mesh_view = mesh_view(scene, grounds, equilibria, found);
   return found;
 }
 

@@ -17,6 +17,7 @@
 
 #include "scene/comparison.hpp"
 #include "scene/discretisation.hpp"
+#include "scene/shape_view.hpp"
 
 #include <functional>
 #include <map>
@@ -74,6 +75,7 @@ struct BenchMesh {
   int triangles = 0, vertices = 0, nodes = 0;
   bool is_benchmarked = true;                   // the last one only says what the others lack
   std::optional<double> residual = {};          // of the reference equilibrium; none: it was not found
+  std::string missing = {};                     // why it was not found; empty where it was
   std::optional<DistanceFigures> to_next = {};  // between the reference equilibria here and on the next mesh
   std::optional<double> order = {};             // log2 of the mean distance from the mesh before over that
   std::optional<double> error_mm = {};          // estimate of the discretisation error, 95 % of the surface
@@ -97,10 +99,14 @@ struct Benchmark {
   std::vector<BenchRun> runs;
   std::vector<BenchEnd> ends;
   double assumed_order = 1;  // of what is beyond the last mesh
+  // Where on the scene's own mesh its error is, for the page; empty where that is not known, or nothing is
+  // written.
+  std::optional<ShapeView> mesh_view = {};
   bool is_cancelled = false;
   std::filesystem::path folder;  // empty: nothing was written
 
-  bool has_converged() const;  // every run, and no method failed
+  // Every run, and every solve for an equilibrium that errors are measured to; no method failed.
+  bool has_converged() const;
 };
 
 struct BenchOptions {
@@ -109,7 +115,10 @@ struct BenchOptions {
   std::vector<double> tolerances;    // on the residual, each once
   int levels = 1;                    // how often the mesh is cut into four; 0 ... 4
   int repeats = 3;                   // of each run, at least one; one that takes long is not repeated
-  std::filesystem::path closed;      // given closed surface; empty: the scene's
+  // Of each solve that is no run but finds an equilibrium to measure errors to, above 0; empty: as of a run
+  // [s].
+  std::optional<double> truth_seconds = {};
+  std::filesystem::path closed;  // given closed surface; empty: the scene's
   std::function<void(const Benchmark&, const BenchRun&)>
       report;  // after each run, errors still to come; may be empty
 };

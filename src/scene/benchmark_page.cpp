@@ -4,6 +4,7 @@
 #include "scene/report_page.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace coapt {
 namespace {
@@ -48,6 +49,8 @@ PageSection recommendation_section(const Benchmark& bench) {
     const bool is_reached = fastest_run(bench, ErrorKind::Total, mm) != nullptr;
     list.items.push_back({recommendation(bench, mm), is_reached ? Tone::Good : Tone::Caution});
   }
+  for (const std::string& missing : missing_equilibria(bench))
+    list.items.push_back({"Warning: " + missing, Tone::Caution});
   PageSection section{.title = "Which method on which mesh"};
   section.blocks.emplace_back(list);
   return section;
@@ -151,53 +154,82 @@ PageTable ends_table(const Benchmark& bench) {
   return table;
 }
 
-PageTable runs_table(const Benchmark& bench) {
-  PageTable table{.caption = "Every run"};
-  table.columns = {{"method", true},
-                   {"mesh", true},
-                   {"tolerance"},
-                   {"status", true},
-                   {"residual"},
-                   {"wall [s]"},
-                   {"best"},
-                   {"CPU [s]"},
-                   {"in factorisations"},
-                   {"iterations"},
-                   {"gradients"},
-                   {"Hessians"},
-                   {"factorisations"},
-                   {"memory [MB]"},
-                   {"algebraic [mm]"},
-                   {"method [mm]"},
-                   {"to the closed surface [mm]"},
-                   {"total [mm]"}};
+// The first cells of a row: which run it is.
+std::vector<PageCell> run_cells(const Benchmark& bench, const BenchRun& run) {
+  return {{bench.methods[run.method].name}, {mesh_text(bench.meshes[run.mesh])}, number_cell(run.tolerance)};
+}
+
+PageTable runs_table(const Benchmark& bench, const std::string& caption,
+                     const std::vector<PageColumn>& columns,
+                     const std::function<std::vector<PageCell>(const BenchRun&)>& cells) {
+  PageTable table{.caption = caption, .columns = {{"method", true}, {"mesh"}, {"tolerance"}}};
+  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
   for (const BenchRun& run : bench.runs) {
-    const bool is_good = run.status == Status::Converged;
-    const RunErrors& errors = run.errors;
-    table.rows.push_back({{bench.methods[run.method].name},
-                          {mesh_text(bench.meshes[run.mesh])},
-                          number_cell(run.tolerance),
-                          {words(status_name(run.status)), is_good ? Tone::Plain : Tone::Caution},
-                          number_cell(run.residual, 2),
-                          number_cell(run.wall.median),
-                          number_cell(run.wall.best),
-                          number_cell(run.cpu.median),
-                          number_cell(factorisations_worth(bench, run)),
-                          {std::to_string(run.iterations)},
-                          {std::to_string(run.evaluations.gradient)},
-                          {std::to_string(run.evaluations.hessian)},
-                          {std::to_string(run.factorisations)},
-                          number_cell(run.peak_memory_mb),
-                          number_cell(error_of(run, ErrorKind::Algebraic), 2),
-                          number_cell(errors.method, 2),
-                          number_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt),
-                          number_cell(errors.total, 2)});
+    const std::vector<PageCell> more = cells(run);
+    std::vector<PageCell>& row = table.rows.emplace_back(run_cells(bench, run));
+    row.insert(row.end(), more.begin(), more.end());
   }
+  return table;
+}
+
+PageTable work_table(const Benchmark& bench) {
+  const auto cells = [&](const BenchRun& run) {
+    return std::vector<PageCell>{number_cell(run.wall.median),
+                                 number_cell(run.wall.best),
+                                 number_cell(run.cpu.median),
+                                 number_cell(factorisations_worth(bench, run)),
+                                 {std::to_string(run.iterations)},
+                                 {std::to_string(run.evaluations.gradient)},
+                                 {std::to_string(run.evaluations.hessian)},
+                                 {std::to_string(run.factorisations)},
+                                 number_cell(run.peak_memory_mb)};
+  };
+  PageTable table = runs_table(bench, "Work of every run",
+                               {{"wall [s]"},
+                                {"best [s]"},
+                                {"CPU [s]"},
+                                {"CPU [units]"},
+                                {"iterations"},
+                                {"gradients"},
+                                {"Hessians"},
+                                {"factors"},
+                                {"memory [MB]"}},
+                               cells);
   table.note =
-      "Wall and CPU time are medians over the repeats, CPU time also in units of a Hessian and its "
-      "factorisation "
-      "on the same mesh in the same run; memory is what terms and solve add to the process; "
-      "distances to the closed surface are means of both directions.";
+      "Wall and CPU time are medians over the repeats, best: the least wall time of one. A unit is the CPU "
+      "time of a Hessian and its factorisation on the same mesh in the same run. Memory is what terms and "
+      "solve add to the process.";
+  return table;
+}
+
+PageTable errors_table(const Benchmark& bench) {
+  const auto cells = [](const BenchRun& run) {
+    const RunErrors& errors = run.errors;
+    const bool is_good = run.status == Status::Converged;
+    return std::vector<PageCell>{
+        {words(status_name(run.status)), is_good ? Tone::Plain : Tone::Caution},
+        number_cell(run.residual, 2),
+        number_cell(error_of(run, ErrorKind::Algebraic), 2),
+        number_cell(errors.algebraic ? std::optional(errors.algebraic->rms) : std::nullopt, 2),
+        number_cell(errors.discretisation, 2),
+        number_cell(errors.method, 2),
+        number_cell(errors.total, 2),
+        number_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt)};
+  };
+  PageTable table = runs_table(bench, "Errors of every run [mm]",
+                               {{"status", true},
+                                {"residual"},
+                                {"algebraic"},
+                                {"root mean square"},
+                                {"of the mesh"},
+                                {"of the method"},
+                                {"total"},
+                                {"to the closed surface"}},
+                               cells);
+  table.note =
+      "Algebraic: of the vertex farthest from the equilibrium on the same mesh, and the root of the mean "
+      "square over all. Total: greatest algebraic, mesh and method together. Distances to a given closed "
+      "surface are means of both directions.";
   return table;
 }
 
@@ -214,7 +246,7 @@ PageTable phases_table(const Benchmark& bench) {
     for (const auto& [phase, seconds] : run.phase_s)
       if (std::find(phases.begin(), phases.end(), phase) == phases.end()) phases.push_back(phase);
   }
-  table.columns = {{"method", true}, {"mesh", true}};
+  table.columns = {{"method", true}, {"mesh"}};
   for (const std::string& phase : phases) table.columns.push_back({words(phase)});
   for (const BenchRun* run : last) {
     std::vector<PageCell> row = {{bench.methods[run->method].name}, {mesh_text(bench.meshes[run->mesh])}};
@@ -236,10 +268,13 @@ std::string benchmark_page(const Benchmark& bench) {
   page.tone = bench.is_cancelled ? Tone::Caution : Tone::Plain;
   page.sections.push_back(recommendation_section(bench));
   page.sections.push_back(plots_section(bench));
-  page.sections.push_back({"Time to an accuracy", {times_table(bench), growth_table(bench)}});
+  page.sections.push_back({"Time to an accuracy", {times_table(bench)}});
+  if (PageTable grown = growth_table(bench); !grown.rows.empty())
+    page.sections.back().blocks.emplace_back(std::move(grown));
   page.sections.push_back({"What the mesh leaves", {meshes_table(bench)}});
+  if (bench.mesh_view) page.sections.back().blocks.emplace_back(shape_view_html(*bench.mesh_view));
   page.sections.push_back({"Methods", {ends_table(bench)}});
-  page.sections.push_back({"Runs", {runs_table(bench), phases_table(bench)}});
+  page.sections.push_back({"Runs", {errors_table(bench), work_table(bench), phases_table(bench)}});
   return report_page(page);
 }
 

@@ -12,30 +12,30 @@
 namespace coapt {
 namespace {
 
-Json spread_json(const Spread& spread) {
+OrderedJson spread_json(const Spread& spread) {
   return {{"median", number_json(spread.median)}, {"best", number_json(spread.best)}};
 }
 
 // What names a run: its method and its mesh.
-Json place_json(const Benchmark& bench, size_t method, size_t mesh) {
+OrderedJson place_json(const Benchmark& bench, size_t method, size_t mesh) {
   return {
       {"method", bench.methods[method].name}, {"mesh", mesh}, {"triangles", bench.meshes[mesh].triangles}};
 }
 
-Json errors_json(const RunErrors& errors) {
-  Json json;
+OrderedJson errors_json(const RunErrors& errors) {
+  OrderedJson json;
   json["algebraic"] = nullptr;
   if (const auto& algebraic = errors.algebraic)
     json["algebraic"] = {{"max_mm", number_json(algebraic->max)}, {"rms_mm", number_json(algebraic->rms)}};
   json["discretisation_mm"] = number_json(errors.discretisation);
   json["method_mm"] = number_json(errors.method);
-  json["model"] = errors.model ? distances_json(*errors.model) : Json(nullptr);
+  json["model"] = errors.model ? distances_json(*errors.model) : OrderedJson(nullptr);
   json["total_mm"] = number_json(errors.total);
   return json;
 }
 
-Json run_json(const Benchmark& bench, const BenchRun& run) {
-  Json json = place_json(bench, run.method, run.mesh);
+OrderedJson run_json(const Benchmark& bench, const BenchRun& run) {
+  OrderedJson json = place_json(bench, run.method, run.mesh);
   json["tolerance"] = run.tolerance;
   json["status"] = std::string(status_name(run.status));
   json["converged"] = run.status == Status::Converged;
@@ -52,44 +52,45 @@ Json run_json(const Benchmark& bench, const BenchRun& run) {
   json["wall_s"] = spread_json(run.wall);
   json["cpu_s"] = spread_json(run.cpu);
   json["cpu_in_factorisations"] = number_json(factorisations_worth(bench, run));
-  json["time_by_phase_s"] = Json::object();
+  json["time_by_phase_s"] = OrderedJson::object();
   for (const auto& [phase, seconds] : run.phase_s) json["time_by_phase_s"][phase] = number_json(seconds);
   json["peak_memory_mb"] = number_json(run.peak_memory_mb);
   json["errors"] = errors_json(run.errors);
   return json;
 }
 
-Json mesh_json(const BenchMesh& mesh) {
-  Json json = {{"triangles", mesh.triangles},
-               {"vertices", mesh.vertices},
-               {"nodes", mesh.nodes},
-               {"benchmarked", mesh.is_benchmarked},
-               {"residual_of_equilibrium", number_json(mesh.residual)}};
-  json["distance_to_next"] = mesh.to_next ? distances_json(*mesh.to_next) : Json(nullptr);
+OrderedJson mesh_json(const BenchMesh& mesh) {
+  OrderedJson json = {{"triangles", mesh.triangles},
+                      {"vertices", mesh.vertices},
+                      {"nodes", mesh.nodes},
+                      {"benchmarked", mesh.is_benchmarked},
+                      {"residual_of_equilibrium", number_json(mesh.residual)}};
+  json["no_equilibrium"] = mesh.missing.empty() ? OrderedJson(nullptr) : OrderedJson(mesh.missing);
+  json["distance_to_next"] = mesh.to_next ? distances_json(*mesh.to_next) : OrderedJson(nullptr);
   json["order"] = number_json(mesh.order);
   json["discretisation_mm"] = number_json(mesh.error_mm);
   json["factorisation_s"] = number_json(mesh.factorisation_s);
   return json;
 }
 
-Json end_json(const Benchmark& bench, const BenchEnd& end) {
-  Json json = place_json(bench, end.method, end.mesh);
+OrderedJson end_json(const Benchmark& bench, const BenchEnd& end) {
+  OrderedJson json = place_json(bench, end.method, end.mesh);
   json["verdict"] = std::string(verdict_name(end.verdict));
   json["failure"] = end.failure;
   json["residual_of_equilibrium"] = number_json(end.residual);
-  json["distance_to_reference_method"] = end.gap ? gap_json(*end.gap) : Json(nullptr);
+  json["distance_to_reference_method"] = end.gap ? gap_json(*end.gap) : OrderedJson(nullptr);
   return json;
 }
 
 // Times to an accuracy: of each method and mesh by the algebraic error, of each method by the total one.
-Json times_json(const Benchmark& bench) {
-  Json json = Json::array();
-  const auto add = [&](const char* kind, double mm, Json place, const BenchRun* run) {
+OrderedJson times_json(const Benchmark& bench) {
+  OrderedJson json = OrderedJson::array();
+  const auto add = [&](const char* kind, double mm, OrderedJson place, const BenchRun* run) {
     place["error"] = kind;
     place["accuracy_mm"] = mm;
-    place["wall_s"] = run ? number_json(run->wall.median) : Json(nullptr);
-    place["cpu_s"] = run ? number_json(run->cpu.median) : Json(nullptr);
-    place["tolerance"] = run ? Json(run->tolerance) : Json(nullptr);
+    place["wall_s"] = run ? number_json(run->wall.median) : OrderedJson(nullptr);
+    place["cpu_s"] = run ? number_json(run->cpu.median) : OrderedJson(nullptr);
+    place["tolerance"] = run ? OrderedJson(run->tolerance) : OrderedJson(nullptr);
     json.push_back(std::move(place));
   };
   for (size_t method = 0; method < bench.methods.size(); ++method) {
@@ -100,17 +101,18 @@ Json times_json(const Benchmark& bench) {
               fastest_run(bench, ErrorKind::Algebraic, mm, {method, mesh}));
     for (const double mm : kTotalAccuracies) {
       const BenchRun* run = fastest_run(bench, ErrorKind::Total, mm, {.method = method});
-      Json place =
+      OrderedJson place =
           run ? place_json(bench, method, run->mesh)
-              : Json{{"method", bench.methods[method].name}, {"mesh", nullptr}, {"triangles", nullptr}};
+              : OrderedJson{
+                    {"method", bench.methods[method].name}, {"mesh", nullptr}, {"triangles", nullptr}};
       add("total", mm, std::move(place), run);
     }
   }
   return json;
 }
 
-Json growth_json(const Benchmark& bench) {
-  Json json = Json::array();
+OrderedJson growth_json(const Benchmark& bench) {
+  OrderedJson json = OrderedJson::array();
   for (size_t method = 0; method < bench.methods.size(); ++method)
     if (const auto found = growth(bench, method))
       json.push_back({{"method", bench.methods[method].name},
@@ -120,29 +122,30 @@ Json growth_json(const Benchmark& bench) {
   return json;
 }
 
-Json benchmark_as_json(const Benchmark& bench) {
-  Json json = {{"version", version()},
-               {"scene", bench.scene_file},
-               {"reference", bench.methods.front().name},
-               {"tolerances", bench.tolerances},
-               {"equilibrium_tolerance", kEquilibrium},
-               {"extent_mm", number_json(bench.extent_mm)},
-               {"same_shape_mm", number_json(kSameShape * bench.extent_mm)}};
-  json["closed_surface"] = bench.closed_surface.empty() ? Json(nullptr) : Json(bench.closed_surface);
+OrderedJson benchmark_as_json(const Benchmark& bench) {
+  OrderedJson json = {{"version", version()},
+                      {"scene", bench.scene_file},
+                      {"reference", bench.methods.front().name},
+                      {"tolerances", bench.tolerances},
+                      {"equilibrium_tolerance", kEquilibrium},
+                      {"extent_mm", number_json(bench.extent_mm)},
+                      {"same_shape_mm", number_json(kSameShape * bench.extent_mm)}};
+  json["closed_surface"] =
+      bench.closed_surface.empty() ? OrderedJson(nullptr) : OrderedJson(bench.closed_surface);
   json["converged"] = bench.has_converged();
   json["cancelled"] = bench.is_cancelled;
   json["assumed_order"] = bench.assumed_order;
-  json["methods"] = Json::array();
+  json["methods"] = OrderedJson::array();
   for (const BenchMethod& method : bench.methods)
     json["methods"].push_back(
         {{"name", method.name}, {"model", std::string(method_model_name(method.model))}});
-  for (const char* list : {"meshes", "runs", "ends"}) json[list] = Json::array();
+  for (const char* list : {"meshes", "runs", "ends"}) json[list] = OrderedJson::array();
   for (const BenchMesh& mesh : bench.meshes) json["meshes"].push_back(mesh_json(mesh));
   for (const BenchRun& run : bench.runs) json["runs"].push_back(run_json(bench, run));
   for (const BenchEnd& end : bench.ends) json["ends"].push_back(end_json(bench, end));
   json["time_to"] = times_json(bench);
   json["growth"] = growth_json(bench);
-  json["recommendations"] = Json::array();
+  json["recommendations"] = OrderedJson::array();
   for (const double mm : kTotalAccuracies) json["recommendations"].push_back(recommendation(bench, mm));
   return json;
 }

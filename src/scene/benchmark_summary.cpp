@@ -2,6 +2,7 @@
 
 #include "scene/report_page.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
@@ -22,6 +23,20 @@ std::string grouped(int count) {
 std::string described(const Benchmark& bench, const BenchRun& run) {
   return bench.methods[run.method].name + ", " + mesh_text(bench.meshes[run.mesh]) + ", " +
          page_number(run.wall.median, 2) + " s";
+}
+
+std::string not_found(const BenchMesh& mesh) {
+  return "the equilibrium on " + mesh_text(mesh) + " was not found";
+}
+
+// Why no run has a total error.
+std::string why_unknown(const Benchmark& bench) {
+  if (bench.is_cancelled) return "the benchmark was cancelled";
+  const auto is_converged = [](const BenchRun& run) { return run.status == Status::Converged; };
+  if (std::none_of(bench.runs.begin(), bench.runs.end(), is_converged)) return "no run reached its tolerance";
+  for (const BenchMesh& mesh : bench.meshes)
+    if (!mesh.missing.empty()) return not_found(mesh);
+  return "no error is";
 }
 
 // Slope of log(time) over log(size). Pre: sizes that differ, two or more.
@@ -90,13 +105,20 @@ std::string mesh_text(const BenchMesh& mesh) {
   return mesh.triangles > 0 ? grouped(mesh.triangles) + " triangles" : grouped(mesh.nodes) + " nodes";
 }
 
+std::vector<std::string> missing_equilibria(const Benchmark& bench) {
+  std::vector<std::string> all;
+  for (const BenchMesh& mesh : bench.meshes)
+    if (!mesh.missing.empty()) all.push_back(not_found(mesh) + ": " + mesh.missing);
+  return all;
+}
+
 std::string recommendation(const Benchmark& bench, double mm) {
   const std::string begin = "for " + page_number(mm) + " mm on this scene: ";
   if (const BenchRun* run = fastest_run(bench, ErrorKind::Total, mm))
     return begin + described(bench, *run) + " (tolerance " + page_number(run->tolerance) + ", error " +
            page_number(*run->errors.total, 2) + " mm)";
   const BenchRun* exact = most_exact_run(bench, ErrorKind::Total);
-  if (exact == nullptr) return begin + "not known, as no error is";
+  if (exact == nullptr) return begin + "not known, as " + why_unknown(bench);
   const RunErrors& errors = exact->errors;
   const bool lacks_mesh = errors.discretisation.value_or(0) > 0.5 * *errors.total;
   return begin + "none of these runs; the most exact is " + described(bench, *exact) + " with an error of " +

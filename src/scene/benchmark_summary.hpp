@@ -46,8 +46,13 @@ struct Growth {
 std::optional<Growth> growth(const Benchmark& bench, size_t method);
 
 // In the form "for MM mm on this scene: SOLVER, N triangles, S s (tolerance T, error E mm)"; where no run is
-// that exact the most exact one, and whether a finer mesh or a tighter tolerance is what it lacks.
+// that exact the most exact one, and whether a finer mesh or a tighter tolerance is what it lacks; where no
+// error is known, why.
 std::string recommendation(const Benchmark& bench, double mm);
+
+// "the equilibrium on 10,080 triangles was not found: ...": what errors could not be measured to, mesh by
+// mesh. The error of the mesh is then known less well, or not at all.
+std::vector<std::string> missing_equilibria(const Benchmark& bench);
 
 // "2,500 triangles", or nodes in a scene without a mesh.
 std::string mesh_text(const BenchMesh& mesh);

@@ -58,7 +58,9 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
                        [&]() -> const Points& {
                          find_fibres(scene, ground, model);
                          return model.fibres;
-                       }};
+                       },
+                       ground.links,
+                       scene_ground(ground).patches};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
@@ -79,6 +81,14 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
 }
 
 }  // namespace
+
+std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground) {
+  Model model = begun(ground);
+  std::vector<std::string> defects;
+  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  if (!defects.empty()) throw InputError(defects);
+  return terms;
+}
 
 Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
 

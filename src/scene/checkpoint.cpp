@@ -1,14 +1,11 @@
-// A line of text, `coapt checkpoint FORMAT CHECKSUM`, then CBOR (RFC 8949).
 #include "scene/checkpoint.hpp"
 
 #include "core/error.hpp"
-#include "mesh/formats/durable_file.hpp"
 #include "mesh/formats/whole_file.hpp"
-#include "scene/detail/read_json.hpp"
+#include "scene/detail/sealed_json.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <string_view>
@@ -18,31 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "coapt checkpoint ";
-constexpr std::string_view kFormat = "1";
 constexpr const char* kBeginAnew = "; solve without --resume to begin anew";
-
-// FNV-1a, 64 bits (Fowler, Noll and Vo): tells files apart, and finds damage that nobody intended.
-class Fingerprint {
- public:
-  void add(std::string_view bytes) {
-    for (const char byte : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  }
-  std::string digits() const {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
-    return text;
-  }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
-std::string fingerprint(std::string_view bytes) {
-  Fingerprint result;
-  result.add(bytes);
-  return result.digits();
-}
+constexpr Seal kSeal = {"coapt checkpoint", "checkpoint of coapt", "1", kBeginAnew};
 
 void add_named_files(const Json& json, const fs::path& folder, Fingerprint& result) {
   if (json.is_structured()) {
@@ -101,8 +75,8 @@ RunRecord record_of(const Json& json) {
   for (const Json& end : json.at("ends")) record.ends.push_back(end_of(end));
   record.iterate = vector_of(json.at("iterate"));
   if (!record.iterate.allFinite()) throw std::domain_error("positions that are none");
-  record.iterations = json.at("iterations").get<long>();
-  record.seconds = json.at("seconds").get<double>();
+  record.iterations = count_of(json.at("iterations").get<double>());
+  record.seconds = seconds_of(json.at("seconds").get<double>());
   return record;
 }
 
@@ -149,23 +123,6 @@ std::vector<std::string> differences(const std::string& file, const Json& known,
   return defects;
 }
 
-// The bytes after the line of text.
-std::string_view checked_body(const std::string& file, std::string_view bytes) {
-  const size_t end = bytes.find('\n');
-  if (!bytes.starts_with(kMagic) || end == std::string_view::npos)
-    throw InputError(file + ": is no checkpoint of coapt; name the file that was given to --checkpoint");
-  const std::string_view line = bytes.substr(kMagic.size(), end - kMagic.size()),
-                         body = bytes.substr(end + 1);
-  const size_t space = line.find(' ');
-  if (line.substr(0, space) != kFormat)
-    throw InputError(file + ": is a checkpoint of format " +
-                     std::string(line.substr(0, space).substr(0, 20)) + ", this version reads format " +
-                     std::string(kFormat) + kBeginAnew);
-  if (space == std::string_view::npos || line.substr(space + 1) != fingerprint(body))
-    throw InputError(file + ": is damaged or cut off" + kBeginAnew);
-  return body;
-}
-
 }  // namespace
 
 std::string scene_fingerprint(const Scene& scene) {
@@ -179,21 +136,22 @@ std::string scene_fingerprint(const Scene& scene) {
   return result.digits();
 }
 
+std::string named_files_fingerprint(const std::string& scene, const fs::path& folder) {
+  Fingerprint result;
+  add_named_files(parse_json(scene, folder.string()), folder, result);
+  return result.digits();
+}
+
 void write_checkpoint(const fs::path& path, const RunIdentity& identity, const RunRecord& record) {
-  const Json json = {{"run", identity_json(identity)}, {"record", record_json(record)}};
-  std::string body;
-  Json::to_cbor(json, body);
-  formats::write_durable(path,
-                         std::string(kMagic) + std::string(kFormat) + " " + fingerprint(body) + "\n" + body);
+  write_sealed(path, kSeal, {{"run", identity_json(identity)}, {"record", record_json(record)}});
 }
 
 RunRecord read_checkpoint(const fs::path& path, const RunIdentity& identity) {
-  const std::string bytes = formats::read_whole(path), file = path.string();
-  const std::string_view body = checked_body(file, bytes);
+  const std::string file = path.string();
+  const Json json = read_sealed(path, kSeal);
   std::vector<std::string> defects;
   RunRecord record;
   try {
-    const Json json = Json::from_cbor(body);
     defects = differences(file, json.at("run"), identity);
     if (defects.empty()) record = record_of(json.at("record"));
   } catch (const std::exception& error) {  // of the library, or of a number that is none

@@ -25,6 +25,10 @@ struct RunIdentity {
 // read from a file.
 std::string scene_fingerprint(const Scene& scene);
 
+// 16 hexadecimal digits of all that the files hold which the text of a scene in `folder` names. Throws
+// InputError for what is no JSON.
+std::string named_files_fingerprint(const std::string& scene, const std::filesystem::path& folder);
+
 // The file appears whole or not at all, and is on the disk when this returns. Throws InputError where it
 // cannot be written.
 void write_checkpoint(const std::filesystem::path& path, const RunIdentity& identity,

@@ -1,6 +1,6 @@
 // report.html of a comparison.
+#include "scene/compared_view.hpp"
 #include "scene/comparison_report.hpp"
-#include "scene/solve_view.hpp"
 
 #include <algorithm>
 
@@ -27,13 +27,13 @@ std::optional<double> mean_gap(const ComparedMethod& method) {
   return method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt;
 }
 
-PageCell cell(const std::optional<double>& value, int digits = 3) {
+PageCell number_cell(const std::optional<double>& value, int digits = 3) {
   return {value ? page_number(*value, digits) : "–"};
 }
 
 void add_cells(const std::optional<DistanceFigures>& figures, std::vector<PageCell>& row) {
   for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95, &DistanceFigures::max})
-    row.push_back(cell(figures ? std::optional((*figures).*figure) : std::nullopt));
+    row.push_back(number_cell(figures ? std::optional((*figures).*figure) : std::nullopt));
 }
 
 PageTable distance_table(const Comparison& comparison) {
@@ -46,14 +46,15 @@ PageTable distance_table(const Comparison& comparison) {
     for (const char* figure : {"mean", "95 %", "greatest"})
       table.columns.push_back({"to " + comparison.closed_surface + ", " + figure});
   for (const ComparedMethod& method : comparison.methods) {
-    const std::string status =
+    std::string status =
         method.run ? std::string(status_name(method.run->report.result.status)) : std::string("failed");
+    std::replace(status.begin(), status.end(), '_', ' ');
     std::vector<PageCell> row = {{method.name},
                                  {status, has_converged(method) ? Tone::Good : Tone::Bad},
                                  {std::string(verdict_name(method.verdict))}};
     add_cells(to_reference(method), row);
-    row.push_back(cell(method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt));
-    row.push_back(cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt));
+    row.push_back(number_cell(method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt));
+    row.push_back(number_cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt));
     if (has_closed) add_cells(to_closed(method), row);
     table.rows.push_back(row);
   }
@@ -85,13 +86,13 @@ PageTable figure_table(const Comparison& comparison) {
       const Result& result = method.run->report.result;
       for (const auto& value :
            {metrics.orifice_area_mm2, metrics.coaptation_area_mm2, metrics.coaptation_height_mm})
-        row.push_back(cell(value, 4));
+        row.push_back(number_cell(value, 4));
       row.push_back({std::to_string(metrics.intersections)});
-      row.push_back(cell(result.residual));
-      row.push_back(cell(result.energy, 8));
+      row.push_back(number_cell(result.residual));
+      row.push_back(number_cell(result.energy, 8));
       row.push_back({std::to_string(result.iterations)});
-      row.push_back(cell(result.cpu_s));
-      row.push_back(cell(result.wall_s));
+      row.push_back(number_cell(result.cpu_s));
+      row.push_back(number_cell(result.wall_s));
     }
     table.rows.push_back(row);
   }
@@ -114,53 +115,14 @@ PagePlot work_plot(const Comparison& comparison) {
   return plot;
 }
 
-// The nodes that are drawn: obstacles, which come last, are not.
-Eigen::Index drawn_nodes(const Model& model) {
-  int last = model.mesh.vertex_count() - 1;
-  for (const Line& line : model.lines) last = std::max({last, line.a, line.b});
-  return last + 1;
-}
-
-// Puts the fields of a state, the last so far, to those of the same title; others have no values in it.
-void add_fields(const std::vector<ViewField>& fields, size_t state_count, std::vector<ViewField>& all) {
-  for (const ViewField& field : fields) {
-    auto same =
-        std::find_if(all.begin(), all.end(), [&](const ViewField& f) { return f.title == field.title; });
-    if (same == all.end()) {
-      same = all.insert(all.end(), field);
-      same->values.clear();
-    }
-    same->values.resize(state_count - 1);
-    same->values.push_back(field.values.front());
-  }
-  for (ViewField& field : all) field.values.resize(state_count);
-}
-
-// Every method's shape; null where there is none.
+// Every method's shape, the reference's first; none where nothing was solved.
 std::optional<ShapeView> shapes(const Comparison& comparison) {
-  std::optional<ShapeView> view;
-  Vec3 origin = Vec3::Zero();
-  Eigen::Index nodes = 0;
-  for (const ComparedMethod& method : comparison.methods) {
-    if (!method.run) continue;
-    const Model& model = method.run->model;
-    const Report& report = method.run->report;
-    if (!view) {
-      view = bare_view(model, report.fields);
-      view->name = "comparison";
-      view->slider = "Method";
-      view->obstacles.resize(3, 0);
-      origin = model.origin;
-      nodes = drawn_nodes(model);
-      if (!model.lines.empty())
-        view->line_force = {.title = "Force in chords and cables", .unit = "N", .place = ViewPlace::Line};
-    }
-    if (drawn_nodes(model) != nodes) continue;
-    const Points x = report.fields.x.leftCols(nodes).colwise() + (model.origin - origin);
-    view->states.push_back({method.name + ": " + std::string(verdict_name(method.verdict)), x});
-    add_fields(view_fields(model, report.fields), view->states.size(), view->fields);
-    if (view->line_force) view->line_force->values.push_back(report.fields.line_force);
-  }
+  std::vector<ComparedShape> all;
+  for (const ComparedMethod& method : comparison.methods)
+    if (method.run)
+      all.push_back({method.name + ": " + std::string(verdict_name(method.verdict)), &method.run->model,
+                     &method.run->report});
+  std::optional<ShapeView> view = compared_view(all, 0, "comparison", "Method");
   if (!view) return view;
   const auto is_distance = [](const ViewField& field) { return field.title.starts_with("Distance"); };
   std::stable_partition(view->fields.begin(), view->fields.end(), is_distance);

@@ -11,7 +11,7 @@
 namespace coapt {
 namespace {
 
-Json refined_json(const RefinedPair& refined) {
+OrderedJson refined_json(const RefinedPair& refined) {
   return {{"tolerance", refined.tolerance},
           {"residual", number_json(refined.residual)},
           {"residual_of_reference", number_json(refined.reference_residual)},
@@ -20,10 +20,11 @@ Json refined_json(const RefinedPair& refined) {
           {"same_vertex_max_mm", number_json(refined.largest_mm)}};
 }
 
-Json metrics_json(const Metrics& metrics) {
-  Json json = Json::object();
+OrderedJson metrics_json(const Metrics& metrics) {
+  OrderedJson json = OrderedJson::object();
   for (const MetricRow& row : metric_rows(metrics))
-    json[row.name] = row.value && row.is_count ? Json(std::lround(*row.value)) : number_json(row.value);
+    json[row.name] =
+        row.value && row.is_count ? OrderedJson(std::lround(*row.value)) : number_json(row.value);
   return json;
 }
 
@@ -33,7 +34,7 @@ std::optional<double> simulated_s(const Result& result) {
   return result.trace.back().time;
 }
 
-void add_result(const RunReport& run, Json& json) {
+void add_result(const RunReport& run, OrderedJson& json) {
   const Report& report = run.report;
   const Result& result = report.result;
   json["solver"] = report.solver;
@@ -57,17 +58,17 @@ void add_result(const RunReport& run, Json& json) {
   json["warnings"] = report.warnings;
 }
 
-Json method_json(const ComparedMethod& method) {
-  Json json = {{"name", method.name},
-               {"model", std::string(method_model_name(method.model))},
-               {"verdict", std::string(verdict_name(method.verdict))},
-               {"message", method.message}};
-  json["distance_to_reference_method"] = method.gap ? gap_json(*method.gap) : Json(nullptr);
-  json["refined"] = method.refined ? refined_json(*method.refined) : Json(nullptr);
+OrderedJson method_json(const ComparedMethod& method) {
+  OrderedJson json = {{"name", method.name},
+                      {"model", std::string(method_model_name(method.model))},
+                      {"verdict", std::string(verdict_name(method.verdict))},
+                      {"message", method.message}};
+  json["distance_to_reference_method"] = method.gap ? gap_json(*method.gap) : OrderedJson(nullptr);
+  json["refined"] = method.refined ? refined_json(*method.refined) : OrderedJson(nullptr);
   json["energy_above_reference_mj"] = number_json(method.energy_above);
   const bool has_closed = method.run && method.run->report.reference;
   json["distance_to_closed_surface"] =
-      has_closed ? distance_json(*method.run->report.reference) : Json(nullptr);
+      has_closed ? distance_json(*method.run->report.reference) : OrderedJson(nullptr);
   if (method.run) add_result(*method.run, json);
   return json;
 }
@@ -111,8 +112,8 @@ void add_figures(const ComparedMethod& method, Row& row) {
 
 }  // namespace
 
-Json distance_json(const ReferenceDistance& distance) {
-  Json json = distances_json(both_directions(distance));
+OrderedJson distance_json(const ReferenceDistance& distance) {
+  OrderedJson json = distances_json(both_directions(distance));
   json["to_reference"] = distances_json(distance.to_reference);
   json["from_reference"] = distances_json(distance.from_reference);
   if (const auto& same = distance.same_vertex)
@@ -120,25 +121,25 @@ Json distance_json(const ReferenceDistance& distance) {
   return json;
 }
 
-Json gap_json(const MethodGap& gap) {
-  Json json = gap.surfaces ? distance_json(*gap.surfaces) : Json::object();
+OrderedJson gap_json(const MethodGap& gap) {
+  OrderedJson json = gap.surfaces ? distance_json(*gap.surfaces) : OrderedJson::object();
   json["same_vertex"] = {{"mean_mm", number_json(gap.same_vertex.mean)},
                          {"max_mm", number_json(gap.same_vertex.max)}};
   return json;
 }
 
-Json comparison_as_json(const Comparison& comparison) {
-  Json json = {{"version", version()},
-               {"scene", comparison.scene_file},
-               {"reference", comparison.reference().name},
-               {"tolerance", comparison.tolerance},
-               {"extent_mm", number_json(comparison.extent_mm)},
-               {"same_shape_mm", number_json(kSameShape * comparison.extent_mm)}};
+OrderedJson comparison_as_json(const Comparison& comparison) {
+  OrderedJson json = {{"version", version()},
+                      {"scene", comparison.scene_file},
+                      {"reference", comparison.reference().name},
+                      {"tolerance", comparison.tolerance},
+                      {"extent_mm", number_json(comparison.extent_mm)},
+                      {"same_shape_mm", number_json(kSameShape * comparison.extent_mm)}};
   json["closed_surface"] =
-      comparison.closed_surface.empty() ? Json(nullptr) : Json(comparison.closed_surface);
+      comparison.closed_surface.empty() ? OrderedJson(nullptr) : OrderedJson(comparison.closed_surface);
   json["converged"] = comparison.has_converged();
   json["cancelled"] = comparison.is_cancelled;
-  json["methods"] = Json::array();
+  json["methods"] = OrderedJson::array();
   for (const ComparedMethod& method : comparison.methods) json["methods"].push_back(method_json(method));
   return json;
 }

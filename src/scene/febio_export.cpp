@@ -264,15 +264,9 @@ class FebioWriter {
       for (const Chord& chord : placed.network.chords)
         for (const TermSpec* term : cables_)
           if (term->parameters.has("network") && term->parameters.text("network") == network &&
-              covers(*term, chord))
+              takes_material(term->parameters, chord.material))
             add_spring(*term, chord, placed);
     }
-  }
-
-  static bool covers(const TermSpec& term, const Chord& chord) {
-    if (!term.parameters.has("materials")) return true;
-    const std::vector<std::string>& materials = term.parameters.texts("materials");
-    return std::find(materials.begin(), materials.end(), chord.material) != materials.end();
   }
 
   void add_spring(const TermSpec& term, const Chord& chord, const PlacedNetwork& placed) {

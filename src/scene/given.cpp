@@ -6,7 +6,6 @@
 #include "scene/detail/given_parts.hpp"
 
 namespace coapt {
-namespace {
 
 Points relative_start(const Points& start, const Model& model) {
   if (start.cols() != model.X.cols())
@@ -16,17 +15,24 @@ Points relative_start(const Points& start, const Model& model) {
   return start.colwise() - model.origin;
 }
 
-}  // namespace
-
-RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options) {
+SolveSetup given_setup(const Scene& scene, const Given& given, const SolverTable& solvers,
+                       const RunOptions& options) {
   if (given.terms && scene.solver.cascade)
     throw InputError(scene.file.string() +
                      ": solver.cascade: the terms that are given know the scene's own mesh alone; leave the "
                      "cascade out");
   SolveSetup setup = solve_setup(scene, solvers, options);
   if (!given.has_hessians) setup.stability = {};
-  const Groundwork ground =
-      given.mesh ? lay_groundwork(scene, std::move(*given.mesh)) : lay_groundwork(scene);
+  return setup;
+}
+
+Groundwork given_ground(const Scene& scene, Given& given) {
+  return given.mesh ? lay_groundwork(scene, std::move(*given.mesh)) : lay_groundwork(scene);
+}
+
+RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options) {
+  SolveSetup setup = given_setup(scene, given, solvers, options);
+  const Groundwork ground = given_ground(scene, given);
   RunReport run;
   run.model = build(scene, ground, given.terms);
   if (given.observer) setup.observer = given.observer(run.model);

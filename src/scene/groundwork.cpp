@@ -5,6 +5,7 @@
 #include "mesh/mesh_io.hpp"
 #include "mesh/rim_order.hpp"
 #include "scene/detail/given_parts.hpp"
+#include "scene/interventions/intervention.hpp"
 #include "scene/node_selection.hpp"
 #include "scene/supports.hpp"
 #include "scene/valve_json.hpp"
@@ -57,6 +58,12 @@ void read_reference(const Scene& scene, Assembly& assembly) {
   }
 }
 
+// Whether the mesh can be worked on; one with errors is refused later on, with all of them named.
+bool is_sound(const Assembly& assembly) {
+  return assembly.defects.empty() &&
+         !has_error(check_mesh(assembly.model.mesh, {.orientation_matters = false}));
+}
+
 // Paths of the networks in the order in which the terms name them, each once.
 std::vector<std::string> network_paths(const Scene& scene) {
   std::vector<std::string> paths;
@@ -99,29 +106,13 @@ ChordNetwork generated_chords(const Scene& scene, const Valve& sets_file, Assemb
   return network;
 }
 
-// Gives the points of a network their numbers, behind those of `blocks`.
-void place_network(const std::string& path, ChordNetwork network, std::vector<Points>& blocks, int& next,
-                   Assembly& assembly) {
-  const auto papillary = static_cast<int>(network.papillary.cols()),
-             junctions = static_cast<int>(network.junctions.cols());
-  std::map<std::string, std::vector<int>>& sets = assembly.model.sets;
-  for (int node = 0; node < papillary; ++node) sets["papillary"].push_back(next + node);
-  for (int node = 0; node < junctions; ++node) sets["junctions"].push_back(next + papillary + node);
-  blocks.push_back(network.papillary);
-  blocks.push_back(network.junctions);
-  assembly.networks[path] = {std::move(network), next, next + papillary};
-  next += papillary + junctions;
-}
-
-// Reads the file of sets and the networks; the nodes of the networks follow those of the mesh.
-void read_valves(const Scene& scene, Assembly& assembly) {
+// Reads the file of sets and the networks of the terms; the chords of the key `chords` come last.
+NamedNetworks read_valves(const Scene& scene, Assembly& assembly) {
   std::vector<std::string> paths = network_paths(scene);
   const size_t network_count = paths.size();
   if (scene.mesh && scene.mesh->sets) paths.push_back(scene.mesh->sets->string());
   Model& model = assembly.model;
-  std::map<std::string, std::vector<int>>& sets = model.sets;
-  int next = model.mesh.vertex_count();
-  std::vector<Points> blocks{model.mesh.vertices};
+  NamedNetworks networks;
   std::set<std::string> done;
   Valve sets_file;
   for (size_t k = 0; k < paths.size(); ++k) {
@@ -134,22 +125,44 @@ void read_valves(const Scene& scene, Assembly& assembly) {
       if (scene.mesh)
         for (const auto& [name, nodes] : file.sets)
           if (nodes.empty() || *std::max_element(nodes.begin(), nodes.end()) < model.mesh.vertex_count())
-            sets[name] = nodes;
+            model.sets[name] = nodes;
       for (auto& [name, positions] : file.points) assembly.points.try_emplace(name, std::move(positions));
       if (scene.mesh && scene.mesh->sets && paths[k] == scene.mesh->sets->string()) sets_file = file.valve;
-      if (k < network_count) place_network(paths[k], std::move(file.valve.chords), blocks, next, assembly);
+      if (k < network_count) networks.emplace_back(paths[k], std::move(file.valve.chords));
     } catch (const InputError& error) {
       assembly.keep(error);
     }
   }
-  // A mesh with errors is refused later on, with all of them named.
-  if (scene.chords && assembly.defects.empty() &&
-      !has_error(check_mesh(model.mesh, {.orientation_matters = false})))
-    try {
-      place_network(kGeneratedNetwork, generated_chords(scene, sets_file, assembly), blocks, next, assembly);
+  if (scene.chords && is_sound(assembly)) try {
+      networks.emplace_back(kGeneratedNetwork, generated_chords(scene, sets_file, assembly));
     } catch (const InputError& error) {
       assembly.keep(error);
     }
+  return networks;
+}
+
+void operate(const Scene& scene, NamedNetworks& networks, Assembly& assembly) {
+  if (scene.interventions.empty() || !assembly.defects.empty() || (scene.mesh && !is_sound(assembly))) return;
+  Model& model = assembly.model;
+  ValveEdit edit{scene, model.mesh, networks, model.sets, assembly.links, assembly.patches, model.warnings};
+  edit_valve(edit, assembly.defects);
+}
+
+// Gives the points of the networks their numbers, behind the vertices of the mesh.
+void place_networks(NamedNetworks networks, Assembly& assembly) {
+  Model& model = assembly.model;
+  std::vector<Points> blocks{model.mesh.vertices};
+  int next = model.mesh.vertex_count();
+  for (auto& [path, network] : networks) {
+    const auto papillary = static_cast<int>(network.papillary.cols()),
+               junctions = static_cast<int>(network.junctions.cols());
+    for (int node = 0; node < papillary; ++node) model.sets["papillary"].push_back(next + node);
+    for (int node = 0; node < junctions; ++node) model.sets["junctions"].push_back(next + papillary + node);
+    blocks.push_back(network.papillary);
+    blocks.push_back(network.junctions);
+    assembly.networks[path] = {std::move(network), next, next + papillary};
+    next += papillary + junctions;
+  }
   model.X.resize(3, next);
   int column = 0;
   for (const Points& block : blocks) {
@@ -249,7 +262,9 @@ namespace {
 Groundwork laid(const Scene& scene, Assembly assembly) {
   Model& model = assembly.model;
   read_reference(scene, assembly);
-  read_valves(scene, assembly);
+  NamedNetworks networks = read_valves(scene, assembly);
+  operate(scene, networks, assembly);
+  place_networks(std::move(networks), assembly);
   read_obstacles(scene, assembly);
   warn_of_idle_obstacles(scene, assembly);
   assembly.stop_on_defects();
@@ -267,6 +282,8 @@ Groundwork laid(const Scene& scene, Assembly assembly) {
         scene.file.string() +
         ": boundary: sets nodes of an obstacle free; they have no stiffness of their own");
   order_annulus(scene, assembly);
+  SupportEdit supports{scene, model, assembly.prescribed, model.warnings};
+  if (assembly.defects.empty()) edit_supports(supports, assembly.defects);
   hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
   return std::move(static_cast<Groundwork&>(assembly));
 }

@@ -34,6 +34,9 @@ struct Groundwork {
   bool is_refined = false;
   const Groundwork* coarser = nullptr;
   std::vector<std::array<int, 2>> parents = {};
+
+  std::map<std::string, std::vector<std::array<int, 2>>> links = {};  // as in BuildContext
+  std::map<std::string, Vector> patches = {};  // likewise; of the scene's own mesh alone
 };
 
 // Reads the scene's files, checks the mesh and numbers the nodes. Throws InputError with all defects of

@@ -1,4 +1,5 @@
 #include "scene/detail/json_text.hpp"
+#include "scene/interventions/intervention.hpp"
 #include "scene/schema.hpp"
 #include "scene/term_types.hpp"
 
@@ -48,6 +49,11 @@ OrderedJson value_schema(const KeySpec& key) {
       for (const std::string& choice : key.choices) schema["enum"].push_back(std::stoi(choice));
       return schema;
     }
+    case KeyKind::Integers: {
+      OrderedJson number{{"type", "integer"}};
+      add_limits(key, number);
+      return one_or_list(number);
+    }
     case KeyKind::Flag:
       return {{"type", "boolean"}};
     case KeyKind::Text:
@@ -89,6 +95,8 @@ OrderedJson value_schema(const KeySpec& key) {
       return {{"type", "array"}, {"items", object_schema(key.object)}};
     case KeyKind::Terms:
       return {{"type", "array"}, {"items", reference("term")}, {"minItems", 1}};
+    case KeyKind::Interventions:
+      return {{"type", "array"}, {"items", reference("intervention")}};
   }
   return {};
 }
@@ -124,9 +132,11 @@ OrderedJson nodes_schema() {
   return schema;
 }
 
-OrderedJson term_schema(const TermType& type) {
+// Of a term or an intervention.
+template <class Type>
+OrderedJson typed_schema(const Type& type, const std::vector<KeySpec>& common) {
   ObjectSpec spec = type.spec;
-  spec.keys.insert(spec.keys.begin(), common_term_keys().begin(), common_term_keys().end());
+  spec.keys.insert(spec.keys.begin(), common.begin(), common.end());
   OrderedJson schema{{"description", type.summary}};
   schema.update(object_schema(spec));
   schema["properties"]["type"] = {{"const", type.name}};
@@ -151,9 +161,15 @@ std::string json_schema() {
   OrderedJson terms = OrderedJson::array();
   for (const TermType& type : term_types()) {
     terms.push_back(reference("term_" + type.name));
-    definitions["term_" + type.name] = term_schema(type);
+    definitions["term_" + type.name] = typed_schema(type, common_term_keys());
   }
   definitions["term"]["oneOf"] = terms;
+  OrderedJson interventions = OrderedJson::array();
+  for (const InterventionType& type : intervention_types()) {
+    interventions.push_back(reference("intervention_" + type.name));
+    definitions["intervention_" + type.name] = typed_schema(type, common_intervention_keys());
+  }
+  definitions["intervention"]["oneOf"] = interventions;
   return json_text(schema, 2) + "\n";
 }
 

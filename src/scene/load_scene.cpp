@@ -2,6 +2,7 @@
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/read_parameters.hpp"
 #include "scene/given.hpp"
+#include "scene/interventions/intervention.hpp"
 #include "scene/scene.hpp"
 #include "scene/units.hpp"
 
@@ -161,28 +162,30 @@ void check_generated(const Scene& scene, const std::string& file, Reading& readi
     reading.defects.push_back(file + ": chords: no term takes them; give one \"network\": \"generated\"");
 }
 
-// Names default to the type; where several terms share it they are numbered from the second on.
-std::vector<TermSpec> terms_from(const Parameters& scene, Reading& reading) {
-  std::vector<TermSpec> terms;
-  if (!scene.has("terms")) return terms;
-  std::set<std::string> names;
-  const std::vector<Parameters>& all = scene.objects("terms");
+// Terms or interventions. Names default to the type; where several share it they are numbered from the second
+// on. names: those that are taken.
+template <class Spec>
+std::vector<Spec> named(const Parameters& scene, const std::string& key, std::set<std::string>& names,
+                        Reading& reading) {
+  std::vector<Spec> specs;
+  if (!scene.has(key)) return specs;
+  const std::vector<Parameters>& all = scene.objects(key);
   for (const Parameters& values : all)
     if (values.has("name") && !names.insert(values.text("name")).second)
       reading.defects.push_back(values.where("name") + ": \"" + values.text("name") +
-                                "\" is the name of another term too");
+                                "\" is the name of another term or intervention too");
   for (const Parameters& values : all) {
-    TermSpec term{values.text("type"), "", values};
+    Spec spec{values.text("type"), "", values};
     if (values.has("name")) {
-      term.name = values.text("name");
+      spec.name = values.text("name");
     } else {
-      term.name = term.type;
-      for (int number = 2; !names.insert(term.name).second; ++number)
-        term.name = term.type + "_" + std::to_string(number);
+      spec.name = spec.type;
+      for (int number = 2; !names.insert(spec.name).second; ++number)
+        spec.name = spec.type + "_" + std::to_string(number);
     }
-    terms.push_back(std::move(term));
+    specs.push_back(std::move(spec));
   }
-  return terms;
+  return specs;
 }
 
 DynamicOptions dynamics_from(const Parameters& values) {
@@ -289,7 +292,10 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
     scene.motion_steps = values.object("motion").integer("steps");
   scene.fibres = fibres_from(values, has_mesh, reading);
   scene.chords = chords_from(values, has_mesh, reading);
-  scene.terms = terms_from(values, reading);
+  std::set<std::string> names;
+  scene.terms = named<TermSpec>(values, "terms", names, reading);
+  scene.interventions = named<InterventionSpec>(values, "interventions", names, reading);
+  if (reading.defects.empty()) add_terms_of_interventions(scene, reading.defects);
   if (values.has("reference")) {
     const Parameters& reference = values.object("reference");
     if (reference.has("closed_surface")) scene.closed_surface = reference.text("closed_surface");

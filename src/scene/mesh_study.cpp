@@ -44,9 +44,11 @@ void compare(MeshLevel& level, const MeshLevel& before) {
     level.order = std::log2(before.to_previous->mean / level.to_previous->mean);
 }
 
-Json optional_number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+OrderedJson optional_number(const std::optional<double>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
+}
 
-Json mean_of(const std::optional<DistanceFigures>& distance) {
+OrderedJson mean_of(const std::optional<DistanceFigures>& distance) {
   if (!distance) return nullptr;
   return {{"mean_mm", distance->mean}, {"p95_mm", distance->p95}, {"max_mm", distance->max}};
 }
@@ -85,11 +87,11 @@ MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels,
 }
 
 void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& study) {
-  Json json = {{"scene", study.scene_file},
-               {"solver", study.solver},
-               {"tolerance", study.tolerance},
-               {"converged", study.has_converged()},
-               {"levels", Json::array()}};
+  OrderedJson json = {{"scene", study.scene_file},
+                      {"solver", study.solver},
+                      {"tolerance", study.tolerance},
+                      {"converged", study.has_converged()},
+                      {"levels", OrderedJson::array()}};
   std::ostringstream csv = csv_begun(
       "triangles,vertices,status,residual,iterations,wall_s,cpu_s,intersections,mean_to_previous_mm,"
       "p95_to_previous_mm,max_to_previous_mm,order,orifice_area_mm2,max_chord_force_n,mean_to_reference_mm");
@@ -102,7 +104,7 @@ void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& stud
         {{"triangles", level.triangles},
          {"vertices", level.vertices},
          {"status", std::string(status_name(level.status))},
-         {"residual", std::isfinite(level.residual) ? Json(level.residual) : Json(nullptr)},
+         {"residual", std::isfinite(level.residual) ? OrderedJson(level.residual) : OrderedJson(nullptr)},
          {"iterations", level.iterations},
          {"wall_s", level.wall_s},
          {"cpu_s", level.cpu_s},

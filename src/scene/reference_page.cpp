@@ -1,3 +1,4 @@
+#include "scene/interventions/intervention.hpp"
 #include "scene/schema.hpp"
 #include "scene/term_types.hpp"
 
@@ -25,6 +26,8 @@ std::string kind_text(const KeySpec& key) {
                                                    dimension_example(key.dimension) + "\"`";
     case KeyKind::Integer:
       return key.choices.empty() ? "whole number" : "one of " + joined(key.choices);
+    case KeyKind::Integers:
+      return "whole number or list of them";
     case KeyKind::Flag:
       return "`true` or `false`";
     case KeyKind::Text:
@@ -56,6 +59,8 @@ std::string kind_text(const KeySpec& key) {
       return "list of objects";
     case KeyKind::Terms:
       return "list of [terms](#terms)";
+    case KeyKind::Interventions:
+      return "list of [interventions](#interventions)";
   }
   return "";
 }
@@ -131,6 +136,10 @@ std::string reference_page() {
     if (!key.object.keys.empty()) text += "`" + key.name + "`:\n\n" + table(key.object);
   text += "## Terms\n\n" + table({common_term_keys(), {}});
   for (const TermType& type : term_types())
+    text += "### " + type.name + "\n\n" + type.summary + "\n\n" + table(type.spec);
+  text += "## Interventions\n\nWhat each does to the valve: [interventions](interventions.md).\n\n" +
+          table({common_intervention_keys(), {}});
+  for (const InterventionType& type : intervention_types())
     text += "### " + type.name + "\n\n" + type.summary + "\n\n" + table(type.spec);
   while (text.ends_with("\n\n")) text.pop_back();
   return text;

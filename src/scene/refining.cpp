@@ -80,6 +80,20 @@ std::vector<int> refined_set(const std::vector<int>& set, const Cut& cut, Eigen:
   return result;
 }
 
+// The pairs with those of the middles of edges whose ends are joined, so that a seam stays one.
+std::vector<std::array<int, 2>> refined_links(const std::vector<std::array<int, 2>>& pairs, const Cut& cut) {
+  std::vector<std::array<int, 2>> result;
+  for (const auto& [a, b] : pairs) result.push_back({cut.moved(a), cut.moved(b)});
+  for (size_t i = 0; i < pairs.size(); ++i)
+    for (size_t j = i + 1; j < pairs.size(); ++j) {
+      const long first = cut.edge_between(pairs[i][0], pairs[j][0]),
+                 second = cut.edge_between(pairs[i][1], pairs[j][1]);
+      if (first >= 0 && second >= 0)
+        result.push_back({cut.middle(static_cast<size_t>(first)), cut.middle(static_cast<size_t>(second))});
+    }
+  return result;
+}
+
 Prescribed refined_supports(const Prescribed& coarse, const Points& X, const Cut& cut, int old_vertices) {
   Prescribed fine;
   fine.fixed = FixedMask::Constant(3, X.cols() + cut.added(), false);
@@ -143,6 +157,7 @@ Groundwork refined(const Groundwork& ground) {
     placed.first_papillary += cut.added();
     placed.first_junction += cut.added();
   }
+  for (const auto& [name, pairs] : ground.links) fine.links[name] = refined_links(pairs, cut);
   fine.prescribed = refined_supports(ground.prescribed, coarse.X, cut, old_vertices);
   return fine;
 }

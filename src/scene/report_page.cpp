@@ -49,10 +49,20 @@ std::string cell_html(const PageCell& cell, bool is_name, bool is_text) {
   return html + (is_name ? "</th>" : "</td>");
 }
 
+// Widths of the columns, where they are given.
+std::string shares(const std::vector<PageColumn>& columns) {
+  std::string html;
+  for (const PageColumn& column : columns)
+    if (column.share > 0) html += "<col style=\"width:" + std::to_string(column.share) + "%\">";
+  return html.empty() ? html : "<colgroup>" + html + "</colgroup>\n";
+}
+
 std::string html(const PageTable& table) {
+  const std::string widths = shares(table.columns);
   std::string html = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                     xml_escaped(table.caption) + "\">\n<table>\n<caption>" + xml_escaped(table.caption) +
-                     "</caption>\n<thead><tr>";
+                     xml_escaped(table.caption) + "\">\n<table" +
+                     (widths.empty() ? "" : " class=\"shared\"") + ">\n<caption>" +
+                     xml_escaped(table.caption) + "</caption>\n" + widths + "<thead><tr>";
   for (const PageColumn& column : table.columns)
     html += std::string("<th scope=\"col\"") + (column.is_text ? " class=\"text\"" : "") + ">" +
             xml_escaped(column.title) + "</th>";

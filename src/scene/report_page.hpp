@@ -36,6 +36,8 @@ struct PageCell {
 struct PageColumn {
   std::string title = {};  // with its unit: "CPU time [s]"
   bool is_text = false;    // to the left; numbers stand to the right
+  int share = 0;           // of the page's width, in percent: tables of the same shares stand in line; 0 in
+                           // all columns: as wide as what they hold
 };
 
 // The first cell of a row names it. Rows may be shorter than the columns, the rest stays empty.

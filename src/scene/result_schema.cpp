@@ -9,33 +9,35 @@
 namespace coapt {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 enum class Need { Required, Optional };
 
 struct Property {
   std::string name;
-  Json schema;
+  OrderedJson schema;
   Need need = Need::Required;
 };
 
-Json described(Json schema, std::string_view meaning) {
+OrderedJson described(OrderedJson schema, std::string_view meaning) {
   schema["description"] = meaning;
   return schema;
 }
 
-Json text(std::string_view meaning) { return described({{"type", "string"}}, meaning); }
-Json flag(std::string_view meaning) { return described({{"type", "boolean"}}, meaning); }
-Json count(std::string_view meaning) { return described({{"type", "integer"}, {"minimum", 0}}, meaning); }
+OrderedJson text(std::string_view meaning) { return described({{"type", "string"}}, meaning); }
+OrderedJson flag(std::string_view meaning) { return described({{"type", "boolean"}}, meaning); }
+OrderedJson count(std::string_view meaning) {
+  return described({{"type", "integer"}, {"minimum", 0}}, meaning);
+}
 // A number that could not be computed (infinite energy, residual of a failed run) is null.
-Json number(std::string_view meaning) {
-  return described({{"type", Json::array({"number", "null"})}}, meaning);
+OrderedJson number(std::string_view meaning) {
+  return described({{"type", OrderedJson::array({"number", "null"})}}, meaning);
 }
 
-Json object(const std::vector<Property>& properties, std::string_view meaning) {
-  Json schema = {{"type", "object"}, {"description", meaning}, {"additionalProperties", false}};
-  Json required = Json::array();
-  schema["properties"] = Json::object();
+OrderedJson object(const std::vector<Property>& properties, std::string_view meaning) {
+  OrderedJson schema = {{"type", "object"}, {"description", meaning}, {"additionalProperties", false}};
+  OrderedJson required = OrderedJson::array();
+  schema["properties"] = OrderedJson::object();
   for (const Property& property : properties) {
     schema["properties"][property.name] = property.schema;
     if (property.need == Need::Required) required.push_back(property.name);
@@ -44,18 +46,18 @@ Json object(const std::vector<Property>& properties, std::string_view meaning) {
   return schema;
 }
 
-Json list(const Json& items, std::string_view meaning) {
+OrderedJson list(const OrderedJson& items, std::string_view meaning) {
   return {{"type", "array"}, {"description", meaning}, {"items", items}};
 }
 
-Json distance(std::string_view meaning) {
+OrderedJson distance(std::string_view meaning) {
   return object({{"mean_mm", number("mean [mm]")},
                  {"p95_mm", number("95th percentile [mm]")},
                  {"max_mm", number("greatest [mm]")}},
                 meaning);
 }
 
-Json terms() {
+OrderedJson terms() {
   return list(
       object({{"name", text("as in the scene")},
               {"type", text("as in the scene")},
@@ -73,24 +75,24 @@ std::vector<Property> properties_of(const std::vector<MetricRow>& rows) {
   std::vector<Property> properties;
   for (const MetricRow& row : rows) {
     const std::string meaning = row.meaning + (row.unit.empty() ? "" : " [" + row.unit + "]");
-    Json schema = {{"type", Json::array({row.is_count ? "integer" : "number", "null"})}};
+    OrderedJson schema = {{"type", OrderedJson::array({row.is_count ? "integer" : "number", "null"})}};
     properties.push_back({row.name, described(schema, meaning)});
   }
   return properties;
 }
 
-Json leaflets() {
+OrderedJson leaflets() {
   std::vector<Property> properties = properties_of(leaflet_rows({}));
   properties.insert(properties.begin(), {"name", text("of the mesh region")});
   return list(object(properties, "one leaflet"), "the regions of the mesh, of a scene with an annulus");
 }
 
-Json metrics() {
+OrderedJson metrics() {
   return object(properties_of(metric_rows({})),
                 "what was measured on the closed shape; null where not defined for the scene");
 }
 
-Json reference_distance() {
+OrderedJson reference_distance() {
   return object(
       {{"mean_mm", number("mean over both directions of their means [mm]")},
        {"p95_mm", number("the worse of both 95th percentiles [mm]")},
@@ -105,12 +107,12 @@ Json reference_distance() {
 }
 
 // Of modes or nodes; null where nobody counted.
-Json count_or_null(std::string_view meaning) {
-  return described({{"type", Json::array({"integer", "null"})}, {"minimum", 0}}, meaning);
+OrderedJson count_or_null(std::string_view meaning) {
+  return described({{"type", OrderedJson::array({"integer", "null"})}, {"minimum", 0}}, meaning);
 }
 
-Json certificate() {
-  const Json stabilities = {"not_known", "strict_minimum", "flat", "saddle", "nothing_to_judge"};
+OrderedJson certificate() {
+  const OrderedJson stabilities = {"not_known", "strict_minimum", "flat", "saddle", "nothing_to_judge"};
   return object(
       {{"summary", text("all of it in one sentence")},
        {"stability",
@@ -140,7 +142,7 @@ Json certificate() {
       "what is known of the state beyond its residual");
 }
 
-Json levels(const Json& statuses) {
+OrderedJson levels(const OrderedJson& statuses) {
   return list(
       object({{"triangles", count("of its mesh")},
               {"iterations", count("accepted iterates")},
@@ -153,7 +155,7 @@ Json levels(const Json& statuses) {
       "figures are those of the scene's own mesh");
 }
 
-Json branch_changes() {
+OrderedJson branch_changes() {
   return list(object({{"step", count("that left the branch, from 1")},
                       {"before", count("a step before it, where both branches have an equilibrium")},
                       {"distance_mm", number("of the two there: of the node farthest apart [mm]")}},
@@ -162,8 +164,8 @@ Json branch_changes() {
               "equilibria; told from the third step on");
 }
 
-Json accuracy(const Json& statuses) {
-  const Json solve =
+OrderedJson accuracy(const OrderedJson& statuses) {
+  const OrderedJson solve =
       object({{"triangles", count("of its mesh")},
               {"tolerance", number("on the residual")},
               {"status", described({{"enum", statuses}}, "how it ended")},
@@ -171,7 +173,7 @@ Json accuracy(const Json& statuses) {
               {"wall_s", number("wall time [s]")},
               {"cpu_s", number("CPU time [s]")},
               {"distance_to_previous",
-               described({{"type", Json::array({"object", "null"})}},
+               described({{"type", OrderedJson::array({"object", "null"})}},
                          "from the closed surface on the mesh before: mean_mm, p95_mm, max_mm")}},
              "one solve");
   return object({{"wanted_mm", number("by --accuracy [mm]")},
@@ -186,7 +188,7 @@ Json accuracy(const Json& statuses) {
                 "mesh and tolerance that a wanted accuracy led to; errors of the model are not known to it");
 }
 
-Json counters() {
+OrderedJson counters() {
   return object({{"membrane_elements", count("triangles of elastic terms")},
                  {"spring_elements", count("edge springs of membranes")},
                  {"cable_elements", count("cables and tethers")},
@@ -196,7 +198,7 @@ Json counters() {
                 "work by kind: zero for what the scene does not use");
 }
 
-Json potential_changes() {
+OrderedJson potential_changes() {
   return list(
       count("number of the iterate"),
       "iterates from which on another energy is minimised, a new round of trace.csv: a step of a motion or "
@@ -208,9 +210,9 @@ Json potential_changes() {
 }  // namespace
 
 std::string result_schema() {
-  const Json statuses = {"converged",          "iteration_limit", "time_limit", "stalled",
-                         "line_search_failed", "non_finite",      "cancelled",  "no_equilibrium"};
-  Json schema =
+  const OrderedJson statuses = {"converged",          "iteration_limit", "time_limit", "stalled",
+                                "line_search_failed", "non_finite",      "cancelled",  "no_equilibrium"};
+  OrderedJson schema =
       object({{"version", text("of coapt")},
               {"scene", text("file name of the scene")},
               {"status", described({{"enum", statuses}}, "how the run ended")},

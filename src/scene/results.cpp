@@ -17,16 +17,18 @@
 #include <system_error>
 
 namespace coapt {
+
+using OrderedJson = nlohmann::ordered_json;
+
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 // JSON knows no NaN and no infinity.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+OrderedJson number(double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); }
 
-Json terms_json(const Result& result) {
-  Json terms = Json::array();
+OrderedJson terms_json(const Result& result) {
+  OrderedJson terms = OrderedJson::array();
   for (const TermReport& term : result.terms)
     terms.push_back({{"name", term.name},
                      {"type", term.type},
@@ -39,8 +41,8 @@ Json terms_json(const Result& result) {
   return terms;
 }
 
-Json rows_json(const std::vector<MetricRow>& rows) {
-  Json json = Json::object();
+OrderedJson rows_json(const std::vector<MetricRow>& rows) {
+  OrderedJson json = OrderedJson::object();
   for (const MetricRow& row : rows) {
     if (!row.value)
       json[row.name] = nullptr;
@@ -56,23 +58,23 @@ bool has_leaflets(const Report& report) {
   return report.metrics.closure && !report.metrics.closure->leaflets.empty();
 }
 
-Json leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
-  Json json = Json::array();
+OrderedJson leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
+  OrderedJson json = OrderedJson::array();
   for (const LeafletMetrics& leaflet : leaflets) {
-    Json entry = {{"name", leaflet.name}};
+    OrderedJson entry = {{"name", leaflet.name}};
     entry.update(rows_json(leaflet_rows(leaflet)));
     json.push_back(entry);
   }
   return json;
 }
 
-Json figures_json(const DistanceFigures& figures) {
+OrderedJson figures_json(const DistanceFigures& figures) {
   return {
       {"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
 }
 
-Json reference_json(const ReferenceDistance& distance) {
-  Json json = figures_json(both_directions(distance));
+OrderedJson reference_json(const ReferenceDistance& distance) {
+  OrderedJson json = figures_json(both_directions(distance));
   json["to_reference"] = figures_json(distance.to_reference);
   json["from_reference"] = figures_json(distance.from_reference);
   if (distance.same_vertex)
@@ -81,7 +83,7 @@ Json reference_json(const ReferenceDistance& distance) {
   return json;
 }
 
-Json counters_json(const Model& model, const Result& result) {
+OrderedJson counters_json(const Model& model, const Result& result) {
   long membrane = 0, springs = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
   for (const auto& term : model.objective->terms()) {
     const long elements = term->counters().elements;
@@ -100,27 +102,27 @@ Json counters_json(const Model& model, const Result& result) {
           {"contact_candidates", candidates}, {"contact_searches", searches}};
 }
 
-Json counted(int count) { return count < 0 ? Json(nullptr) : Json(count); }
+OrderedJson counted(int count) { return count < 0 ? OrderedJson(nullptr) : OrderedJson(count); }
 
-Json certificate_json(const Model& model, const Certificate& certificate) {
+OrderedJson certificate_json(const Model& model, const Certificate& certificate) {
   const StabilityReport& stability = certificate.stability;
   const bool is_judged = stability.verdict != Stability::NotKnown;
-  Json smallest = Json::array(), parts = Json::array();
+  OrderedJson smallest = OrderedJson::array(), parts = OrderedJson::array();
   for (const double value : stability.smallest) smallest.push_back(number(value));
   for (const FreePart& part : certificate.free_parts)
     parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
-  Json json = {
-      {"summary", summary(certificate)},
-      {"stability", stability_name(stability.verdict)},
-      {"conservative", certificate.is_conservative},
-      {"smallest_pivot_ratio", stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : Json(nullptr)},
-      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
-      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
-      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
-      {"smallest_eigenvalues", smallest},
-      {"free_parts", parts},
-      {"force_balance", number(certificate.balance.force)},
-      {"moment_balance", number(certificate.balance.moment)}};
+  OrderedJson json = {{"summary", summary(certificate)},
+                      {"stability", stability_name(stability.verdict)},
+                      {"conservative", certificate.is_conservative},
+                      {"smallest_pivot_ratio",
+                       stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : OrderedJson(nullptr)},
+                      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
+                      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
+                      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
+                      {"smallest_eigenvalues", smallest},
+                      {"free_parts", parts},
+                      {"force_balance", number(certificate.balance.force)},
+                      {"moment_balance", number(certificate.balance.moment)}};
   if (const auto& worst = certificate.imbalance) {
     const Vec3 at = worst->position + model.origin;
     json["imbalance"] = {{"node", worst->node},
@@ -132,8 +134,8 @@ Json certificate_json(const Model& model, const Certificate& certificate) {
   return json;
 }
 
-Json levels_json(const std::vector<CascadeLevel>& levels) {
-  Json json = Json::array();
+OrderedJson levels_json(const std::vector<CascadeLevel>& levels) {
+  OrderedJson json = OrderedJson::array();
   for (const CascadeLevel& level : levels)
     json.push_back({{"triangles", level.triangles},
                     {"iterations", level.iterations},
@@ -144,20 +146,20 @@ Json levels_json(const std::vector<CascadeLevel>& levels) {
   return json;
 }
 
-Json accuracy_json(const AccuracyEstimate& accuracy) {
+OrderedJson accuracy_json(const AccuracyEstimate& accuracy) {
   const auto optional = [](const std::optional<double>& value) {
-    return value ? number(*value) : Json(nullptr);
+    return value ? number(*value) : OrderedJson(nullptr);
   };
-  Json levels = Json::array();
+  OrderedJson levels = OrderedJson::array();
   for (const AccuracyLevel& level : accuracy.levels)
-    levels.push_back(
-        {{"triangles", level.triangles},
-         {"tolerance", number(level.tolerance)},
-         {"status", status_name(level.status)},
-         {"iterations", level.iterations},
-         {"wall_s", number(level.wall_s)},
-         {"cpu_s", number(level.cpu_s)},
-         {"distance_to_previous", level.to_previous ? figures_json(*level.to_previous) : Json(nullptr)}});
+    levels.push_back({{"triangles", level.triangles},
+                      {"tolerance", number(level.tolerance)},
+                      {"status", status_name(level.status)},
+                      {"iterations", level.iterations},
+                      {"wall_s", number(level.wall_s)},
+                      {"cpu_s", number(level.cpu_s)},
+                      {"distance_to_previous",
+                       level.to_previous ? figures_json(*level.to_previous) : OrderedJson(nullptr)}});
   return {{"wanted_mm", number(accuracy.wanted_mm)},
           {"reached", accuracy.is_reached},
           {"message", accuracy.message},
@@ -169,8 +171,8 @@ Json accuracy_json(const AccuracyEstimate& accuracy) {
           {"solves", levels}};
 }
 
-Json branch_changes_json(const std::vector<BranchChange>& changes) {
-  Json json = Json::array();
+OrderedJson branch_changes_json(const std::vector<BranchChange>& changes) {
+  OrderedJson json = OrderedJson::array();
   for (const BranchChange& change : changes)
     json.push_back(
         {{"step", change.step}, {"before", change.before}, {"distance_mm", number(change.distance)}});
@@ -178,8 +180,8 @@ Json branch_changes_json(const std::vector<BranchChange>& changes) {
 }
 
 // Iterates at which a round begins, but for the first.
-Json potential_changes_json(const std::vector<Iteration>& trace) {
-  Json json = Json::array();
+OrderedJson potential_changes_json(const std::vector<Iteration>& trace) {
+  OrderedJson json = OrderedJson::array();
   for (size_t k = 1; k < trace.size(); ++k)
     if (trace[k].round != trace[k - 1].round) json.push_back(trace[k].iteration);
   return json;
@@ -244,9 +246,9 @@ std::string pressure_route(const Model& model, const Result& result) {
 
 std::string result_json(const Model& model, const Report& report) {
   const Result& result = report.result;
-  Json phases = Json::object();
+  OrderedJson phases = OrderedJson::object();
   for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number(seconds);
-  Json json = {
+  OrderedJson json = {
       {"version", version()},
       {"scene", report.scene_file},
       {"status", status_name(result.status)},

@@ -65,6 +65,12 @@ struct TermSpec {
   Parameters parameters;
 };
 
+// One edit of the valve, made between mesh and terms (docs/interventions.md).
+struct InterventionSpec {
+  std::string type, name;  // the name is unique among the interventions and the terms
+  Parameters parameters;
+};
+
 struct SolverSpec {
   std::string type = "newton";
   double tolerance = 1e-6;  // on the relative residual
@@ -93,13 +99,14 @@ struct Scene {
   int motion_steps = 0;  // 0 = no prescribed node moves by more than one mean edge length in a step
   std::optional<SceneFibres> fibres;
   std::optional<SceneChords> chords;
-  std::vector<TermSpec> terms;
+  std::vector<TermSpec> terms;  // with those that interventions bring
   SolverSpec solver;
   std::optional<std::filesystem::path> closed_surface;  // reference
   double closed_surface_scale = 1;                      // mm per unit of that file
   std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
   int frame_interval = 0;                               // accepted iterates from frame to frame; 0: no frames
   bool writes_page = true;                              // report.html
+  std::vector<InterventionSpec> interventions;          // in the order in which they are made
 };
 
 // Reads and validates a scene file (docs/scene.md). Throws InputError with all defects, each as

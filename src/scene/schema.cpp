@@ -235,6 +235,11 @@ const ObjectSpec& scene_spec() {
            .doc = "How the prescribed nodes travel."},
           chords_key(),
           fibres_key(),
+          {.name = "interventions",
+           .kind = KeyKind::Interventions,
+           .doc =
+               "Repairs and other edits of the valve, a list of objects with a `type`, made in their order "
+               "between mesh and terms."},
           {.name = "terms",
            .kind = KeyKind::Terms,
            .required = true,
@@ -316,6 +321,16 @@ const std::vector<KeySpec>& common_term_keys() {
       {.name = "name",
        .kind = KeyKind::Text,
        .doc = "Name in results; default: the type, with a number where it stands more than once."}};
+  return kKeys;
+}
+
+const std::vector<KeySpec>& common_intervention_keys() {
+  static const std::vector<KeySpec> kKeys{
+      {.name = "type", .kind = KeyKind::Text, .required = true, .doc = "Which intervention."},
+      {.name = "name",
+       .kind = KeyKind::Text,
+       .doc = "Name in results and for `coapt study`; default: the type, with a number where it stands more "
+              "than once."}};
   return kKeys;
 }
 

@@ -16,19 +16,21 @@ enum class KeyKind {
   Integer,
   Flag,  // true or false
   Text,
-  Texts,      // one text or a list of them
-  Choice,     // one of `choices`
-  File,       // path of an existing file, relative to the scene's folder
-  Triple,     // three quantities
-  Axes,       // true, false, or a list of "x", "y", "z"
-  Nodes,      // node selection
-  NodeSets,   // object: name -> node selection
-  Targets,    // one target of a motion or a list of them
-  Line,       // two nodes or two points
-  Direction,  // "along", "across" or a vector
-  Object,     // `keys`
-  Objects,    // list of objects with `keys`
-  Terms       // list of objects, each with the keys of its type
+  Texts,          // one text or a list of them
+  Choice,         // one of `choices`
+  File,           // path of an existing file, relative to the scene's folder
+  Triple,         // three quantities
+  Axes,           // true, false, or a list of "x", "y", "z"
+  Nodes,          // node selection
+  NodeSets,       // object: name -> node selection
+  Targets,        // one target of a motion or a list of them
+  Line,           // two nodes or two points
+  Direction,      // "along", "across" or a vector
+  Object,         // `keys`
+  Objects,        // list of objects with `keys`
+  Terms,          // list of objects, each with the keys of its type
+  Interventions,  // likewise
+  Integers        // one whole number or a list of them
 };
 
 struct KeySpec;
@@ -65,8 +67,9 @@ const ObjectSpec& scene_spec();
 const ObjectSpec& selection_spec();
 const ObjectSpec& target_spec();
 
-// Keys that every term has besides those of its type.
+// Keys that every term, and every intervention, has besides those of its type.
 const std::vector<KeySpec>& common_term_keys();
+const std::vector<KeySpec>& common_intervention_keys();
 
 // JSON Schema (draft 2020-12) of the scene file, as text.
 std::string json_schema();

@@ -8,7 +8,7 @@
 namespace coapt {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 template <class Numbers>
 std::string floats(const Numbers& numbers) {
@@ -22,7 +22,7 @@ std::string integers(const Indices& indices) {
   return base64(std::span<const std::uint32_t>(words.data(), static_cast<size_t>(words.size())));
 }
 
-Json numbers(const Vec3& v) { return {v[0], v[1], v[2]}; }
+OrderedJson numbers(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 std::string_view place_name(ViewPlace place) {
   switch (place) {
@@ -36,11 +36,11 @@ std::string_view place_name(ViewPlace place) {
   return "";
 }
 
-Json field_json(const ViewField& field) {
-  Json values = Json::array();
+OrderedJson field_json(const ViewField& field) {
+  OrderedJson values = OrderedJson::array();
   for (const Vector& state : field.values)
-    values.push_back(state.size() > 0 ? Json(floats(state)) : Json(nullptr));
-  Json json = {
+    values.push_back(state.size() > 0 ? OrderedJson(floats(state)) : OrderedJson(nullptr));
+  OrderedJson json = {
       {"title", field.title}, {"unit", field.unit}, {"at", place_name(field.place)}, {"values", values}};
   if (!field.categories.empty()) json["categories"] = field.categories;
   if (field.is_reversed) json["map"] = "reversed";
@@ -48,8 +48,8 @@ Json field_json(const ViewField& field) {
   return json;
 }
 
-Json view_json(const ShapeView& view) {
-  Json states = Json::array(), fields = Json::array(), outlines = Json::array();
+OrderedJson view_json(const ShapeView& view) {
+  OrderedJson states = OrderedJson::array(), fields = OrderedJson::array(), outlines = OrderedJson::array();
   for (const ViewState& state : view.states)
     states.push_back({{"label", state.label}, {"nodes", floats(state.x)}});
   for (const ViewField& field : view.fields) fields.push_back(field_json(field));
@@ -67,7 +67,7 @@ Json view_json(const ShapeView& view) {
           {"obstacles", integers(view.obstacles)},
           {"states", states},
           {"fields", fields},
-          {"line_force", view.line_force ? field_json(*view.line_force) : Json(nullptr)},
+          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)},
           {"outlines", outlines},
           {"orifice_text", view.orifice_text}};
 }
@@ -87,9 +87,8 @@ PageMarkup shape_view_html(const ShapeView& view) {
   namespace files = report_files;
   if (!has_shape_view())
     return {
-        "<p class=\"quiet\">This build of coapt has no 3-D view (three.js was not found when it was "
-        "configured): the "
-        "shape is left out. closed.vtp holds it.</p>\n"};
+        "<p class=\"quiet\">This build of coapt has no 3-D view (three.js was not found, or was turned off, "
+        "when it was configured): the shape is left out. closed.vtp holds it.</p>\n"};
   std::string markup(files::viewer_markup);
   replace(markup, "@ABOVE@", view.is_valve ? "From the atrium" : "From above");
   replace(markup, "@BELOW@", view.is_valve ? "From the ventricle" : "From below");

@@ -118,11 +118,13 @@ PagePlot residual_plot(const Report& report, bool against_time) {
                              .y = trace[k].residual,
                              .label = "iterate " + std::to_string(trace[k].iteration),
                              .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
-  return {.title = against_time ? "Residual against wall time" : "Residual against iterates",
-          .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
-          .y = {"residual (largest out-of-balance force over the largest force)", Scale::Logarithmic},
-          .series = {series},
-          .levels = {{report.tolerance, "tolerance"}}};
+  return {
+      .title = against_time ? "Residual against wall time" : "Residual against iterates",
+      .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
+      .y = {"residual", Scale::Logarithmic},
+      .series = {series},
+      .levels = {{report.tolerance, "tolerance"}},
+      .note = "Residual: the largest out-of-balance nodal force over the largest applied or reaction force."};
 }
 
 PageSection convergence(const Report& report) {

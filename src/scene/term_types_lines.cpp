@@ -22,18 +22,17 @@ struct RestLine {
 
 std::vector<RestLine> network_lines(const Parameters& p, const BuildContext& context) {
   const PlacedNetwork& placed = context.networks.at(p.text("network"));
-  std::set<std::string> wanted, known;
-  if (p.has("materials")) wanted.insert(p.texts("materials").begin(), p.texts("materials").end());
+  std::set<std::string> known;
   std::vector<RestLine> lines;
   for (size_t k = 0; k < placed.network.chords.size(); ++k) {
     const Chord& chord = placed.network.chords[k];
     known.insert(chord.material);
-    if (!wanted.empty() && !wanted.contains(chord.material)) continue;
+    if (!takes_material(p, chord.material)) continue;
     lines.push_back({placed.node(chord.from), placed.node(chord.to), chord.rest_length, chord.area,
                      p.text("network") + ": chords[" + std::to_string(k) + "]"});
   }
   if (lines.empty())
-    throw InputError(p.where(wanted.empty() ? "network" : "materials") +
+    throw InputError(p.where(p.has("materials") ? "materials" : "network") +
                      ": no chord is left; the network's materials: " +
                      listed(std::vector<std::string>(known.begin(), known.end())));
   return lines;

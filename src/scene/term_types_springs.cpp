@@ -96,7 +96,7 @@ Springs edge_springs(const Parameters& p, const Model& model, const std::vector<
 TermPointer build_spring(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
   const TriangleMesh& mesh = context.model.mesh;
-  const std::vector<int> triangles = region_triangles(p, mesh);
+  const std::vector<int> triangles = membrane_triangles(spec, context);
   const ElementValues values(spec, context);
   std::vector<std::optional<Sheet>> sheets(static_cast<size_t>(mesh.triangle_count()));
   std::vector<MembraneProperties> properties;

@@ -42,6 +42,12 @@ void add_named(const Parameters& p, const Groundwork& ground, std::vector<int>& 
     if (selection.kind == Kind::Indices || selection.kind == Kind::Nearest)
       keep.insert(keep.end(), nodes.begin(), nodes.end());
   }
+  if (p.has("to")) {  // of a link, one node for each of `nodes`
+    for (const char* end : {"nodes", "to"}) {
+      const std::vector<int> nodes = selected_nodes(p.nodes(end), ground, p.where(end));
+      keep.insert(keep.end(), nodes.begin(), nodes.end());
+    }
+  }
   if (p.has("toward_line") && p.line("toward_line").nodes) {
     const std::vector<int> nodes =
         selected_nodes(*p.line("toward_line").nodes, ground, p.where("toward_line"));
@@ -58,6 +64,8 @@ CoarsenOptions coarsen_options(const Scene& scene, const Groundwork& finest) {
   for (const auto& [path, placed] : finest.networks)
     for (const Chord& chord : placed.network.chords)
       for (const ChordEnd& end : {chord.from, chord.to}) keep.push_back(placed.node(end));
+  for (const auto& [name, pairs] : finest.links)
+    for (const auto& pair : pairs) keep.insert(keep.end(), pair.begin(), pair.end());
   for (const TermSpec& term : scene.terms) {
     if (term.parameters.has("edges")) add_lines(term.parameters, finest, options.lines);
     add_named(term.parameters, finest, keep);
@@ -96,6 +104,10 @@ Groundwork thinned(const Groundwork& finest, const TriangleMesh& coarse, const s
       for (ChordEnd* end : {&chord.from, &chord.to})
         if (end->kind == ChordEnd::Kind::Leaflet) end->index = ground.number[static_cast<size_t>(end->index)];
   }
+  ground.links = finest.links;
+  for (auto& [name, pairs] : ground.links)
+    for (auto& pair : pairs)
+      for (int& node : pair) node = ground.number[static_cast<size_t>(node)];
   ground.prescribed.fixed = finest.prescribed.fixed(Eigen::all, nodes);
   for (const auto& [node, path] : finest.prescribed.paths)
     if (const int number = ground.number[static_cast<size_t>(node)]; number >= 0)

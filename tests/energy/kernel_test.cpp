@@ -3,6 +3,7 @@
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/kernels/facet_volume.hpp"
+#include "energy/kernels/link.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "membrane_patch.hpp"
@@ -99,6 +100,39 @@ TermCase tether_case(double stretch) {
         return TetherCubic::Rest{2.0 * f.force * f.length, 1.0 * f.length, 0.5 * f.length};
       },
       1.0, stretch);
+}
+
+TermCase link_case(double length, double stretch) {
+  TermCase c = line_case<Link>(
+      "link",
+      [length](const Frame& f) {
+        return Link::Rest{2.0 * f.force / f.length, length * f.length};
+      },
+      1.0, stretch);
+  c.is_zero_at_rest = false;  // its length is its own
+  c.reach = 0.05;
+  return c;
+}
+
+TEST(Link, PassesTheSuitePulledPushedAndWithoutLength) {
+  for (const double length : {0.0, 0.3, 1.4}) {
+    const TermCase c = link_case(length, 1.1);
+    EXPECT_EQ(examine_term(c), "") << length;
+    EXPECT_EQ(compare_with_autodiff(c, oracle::Links{chain(), 2.0, length}), "") << length;
+  }
+}
+
+TEST(Link, HoldsCoincidentEndsWithoutADirection) {
+  const Eigen::Vector<double, 6> x = Eigen::Vector<double, 6>::Ones();
+  Eigen::Vector<double, 6> g;
+  Eigen::Matrix<double, 6, 6> H;
+  EXPECT_EQ(Link::evaluate({3, 0}, x, &g, &H), 0);
+  EXPECT_EQ(g.norm(), 0);
+  EXPECT_EQ(H(0, 0), 3);
+  EXPECT_EQ(H(1, 4), -3);
+  EXPECT_DOUBLE_EQ(Link::evaluate({3, 2}, x, &g, &H), 6);  // 3/2 2^2
+  EXPECT_EQ(g.norm(), 0);
+  EXPECT_TRUE(H.allFinite());
 }
 
 TEST(TetherCubic, PassesTheSuiteWhenAllAreTaut) {

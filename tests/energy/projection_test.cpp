@@ -3,6 +3,7 @@
 #include "energy/kernels/bending.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
+#include "energy/kernels/link.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "membrane_patch.hpp"
@@ -13,7 +14,8 @@ namespace coapt {
 namespace {
 
 static_assert(ProjectsItself<CstStVK> && ProjectsItself<CstTensionField> && ProjectsItself<BendingHinge> &&
-              ProjectsItself<Cable> && ProjectsItself<TetherCubic> && ProjectsItself<SurfaceTension>);
+              ProjectsItself<Cable> && ProjectsItself<TetherCubic> && ProjectsItself<Link> &&
+              ProjectsItself<SurfaceTension>);
 
 template <typename Kernel>
 struct Both {
@@ -155,6 +157,8 @@ TEST(ClosedFormProjection, HoldsForHingesAndLines) {
     ends << 0, stretch, 0, 0, 0, 0;
     Both<Cable>({3, 1, 0.02, 0.4}, ends).expect_sound("cable");
     Both<TetherCubic>({3, 1, 0.5}, ends).expect_sound("tether");
+    Both<Link>({3, 1}, ends).expect_sound("link");
+    Both<Link>({3, 0}, ends).expect_sound("suture");
   }
 }
 

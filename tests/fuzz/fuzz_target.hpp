@@ -3,10 +3,14 @@
 // (replay.cpp).
 #pragma once
 
+#include "core/error.hpp"
+
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace coapt::fuzz {
 
@@ -21,6 +25,18 @@ class Defect : public std::logic_error {
 
 inline void require(bool holds, const std::string& promise) {
   if (!holds) throw Defect("broken promise: " + promise);
+}
+
+// Lets each of several readers try; refuses, as "neither ...", what none of them takes.
+inline void try_each(const std::vector<std::function<void()>>& readers, const std::string& neither) {
+  bool is_read = false;
+  for (const auto& read : readers) try {
+      read();
+      is_read = true;
+    } catch (const InputError& error) {
+      require(!error.defects().empty(), "a refusal has a reason");
+    }
+  if (!is_read) throw InputError("input: neither " + neither);
 }
 
 // For readers that take a path: a folder of this process, gone with it.

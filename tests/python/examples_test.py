@@ -1,6 +1,7 @@
 """The examples run from top to bottom and find what they say."""
 import runpy
 
+import numpy as np
 import pytest
 from matplotlib import pyplot
 
@@ -34,6 +35,24 @@ def test_sail(run):
     assert 0.03 < found["draft"] < 0.2 and found["clew_force"] > 1
 
 
+def test_tuning(run):
+    found = run("tuning.py")
+    assert found["fit"].success and found["after"] < 0.02 * found["before"]
+    assert found["is_determined"].any() and found["worst"] < 0.05
+
+
+def test_ring_sweep(run):
+    found = run("ring_sweep.py")
+    table, eq, width = found["table"], found["eq"], found["width"]
+    assert (table[:, 1] > 0).all() and table[0, 1] > 2 * table[-1, 1]
+    ring, step, values = eq["annulus.ring"], 1e-5, []
+    for sign in (1, -1):
+        eq["annulus.ring"] = ring + sign * step * np.array([1, 1, 0, 0])
+        assert eq.settle().success
+        values.append([eq.evaluate(metric) for metric in found["figures"].values()])
+    assert np.subtract(*values) / (2 * step * width) == pytest.approx(table[-1, [2, 4]], rel=1e-4)
+
+
 def test_every_example_is_tested():
     names = {path.stem for path in (ROOT / "examples/python").glob("*.py")}
-    assert names == {"closure", "comparing_backends", "sail"}
+    assert names == {"closure", "comparing_backends", "ring_sweep", "sail", "tuning"}

@@ -37,16 +37,28 @@ function solved(name, shape, ...options) {
 const browser = await chromium.launch(
     { executablePath, args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"] });
 
-// A page whose errors and requests are counted; closed() asserts that there were none.
-async function opened(folder, options = {}) {
+const kPatience = 120000;  // ms: pictures are drawn by the processor, which other tests may keep busy
+
+// The page of another command on a scene.
+function written(file, scene, command, ...options) {
+  const folder = join(scratch, command);
+  execFileSync(coapt, [command, scene, "-o", folder, ...options], { stdio: "pipe" });
+  return join(folder, file);
+}
+
+// A page, named by its file or the folder of its report.html, whose errors and requests are counted; closed() asserts
+// that there were none.
+async function opened(place, options = {}) {
   const page = await browser.newPage({ viewport: { width: 900, height: 760 }, ...options });
-  const errors = [], requests = [], url = pathToFileURL(join(folder, "report.html")).href;
+  const file = place.endsWith(".html") ? place : join(place, "report.html");
+  const errors = [], requests = [], url = pathToFileURL(file).href;
   page.on("console", message => message.type() === "error" && errors.push(message.text()));
   page.on("pageerror", error => errors.push(error.message));
   page.on("request", request => request.url() !== url && !request.url().startsWith("data:") && requests.push(request.url()));
+  page.setDefaultTimeout(kPatience);
   await page.goto(url);
   if (await page.locator("#viewer").count() > 0)
-    await page.waitForSelector("#viewer[data-ready=yes]", { timeout: 60000 });
+    await page.waitForSelector("#viewer[data-ready=yes]");
   const closed = async () => {
     await page.close();
     assert.deepEqual(errors, [], "errors on the console");
@@ -67,6 +79,14 @@ const near = (text, value, digits) =>
 async function pick(page, node) {
   await page.getByLabel("Node", { exact: true }).fill(String(node));
   assert.match(await page.getByRole("status").textContent(), new RegExp(`^Node ${node}\\.`));
+}
+
+async function assertPlotsHoldTheirTexts(page) {
+  for (const plot of await page.locator("figure.plot svg[role=img]").all())
+    assert.deepEqual(await plot.evaluate(svg => [...svg.querySelectorAll("text")].filter(text => {
+      const box = text.getBoundingClientRect(), all = svg.getBoundingClientRect();
+      return box.left < all.left - 1 || box.right > all.right + 1 || box.top < all.top - 1 || box.bottom > all.bottom + 1;
+    }).map(text => text.textContent)), [], "texts that are cut off");
 }
 
 const tests = {
@@ -159,6 +179,7 @@ const tests = {
     assert.equal(await page.locator("header .lead").textContent(), result.message);
     assert.ok(await page.getByText(result.certificate.summary).count() > 0);
     assert.equal(await page.locator("figure.plot svg[role=img]").count(), 2);
+    await assertPlotsHoldTheirTexts(page);
   },
 
   async "the valve looks as it did, closed and open"({ page }) {
@@ -234,6 +255,30 @@ await run("plots look as they did, in light and dark", async () => {
     await plot.locator("polyline").first().evaluate(curve => curve.remove());
     await looksLike(browser, "plot_" + colorScheme, drawn, await framed(sample.page, plot, 720, 400), scratch);
     await sample.closed();
+  }
+});
+await run("pages of compare, bench and stress work as that of solve does, and fit on paper", async () => {
+  solved("disc", ["disc", "--triangles", "100"]);
+  const scene = join(scratch, "disc", "scene.json"), few = ["--methods", "newton,lbfgs"];
+  for (const [title, place] of [
+         ["Comparison of methods on scene.json", written("report.html", scene, "compare", ...few)],
+         ["Benchmark of scene.json",
+          written("bench.html", scene, "bench", ...few, "--tolerances", "1e-2,1e-6", "--repeats", "1")],
+         ["Stability matrix of scene.json", written("stress.html", scene, "stress", "--rows", "S1,S4,S8", "--quick")]]) {
+    const { page, closed } = await opened(place);
+    assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
+    assert.ok(await page.getByRole("table").count() > 0);
+    await assertPlotsHoldTheirTexts(page);
+    if (await page.locator("#viewer").count() > 0) {
+      await pick(page, 3);
+      const before = await page.locator("#state-label").textContent();
+      await page.locator("#state").fill("0");
+      assert.notEqual(await page.locator("#state-label").textContent(), before, "the slider leads to another shape");
+    }
+    await page.emulateMedia({ media: "print" });
+    await page.setViewportSize({ width: 718, height: 1000 });  // A4 without its margins, 96 to an inch
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), title + " is wider than paper");
+    await closed();
   }
 });
 await run("10,000 triangles take less than 5 MB", async () => {

@@ -181,6 +181,33 @@ TEST_F(BenchmarkTest, ACancelledOneKeepsWhatThereIs) {
   EXPECT_TRUE(nlohmann::json::parse(benchmark_json(found)).at("cancelled").get<bool>());
 }
 
+// The finest mesh is solved for its equilibrium alone: without time for that the two others judge each other.
+TEST_F(BenchmarkTest, SaysWhichEquilibriumIsMissing) {
+  const Scene scene = disc_scene();
+  BenchOptions options = two_methods();
+  options.repeats = 1;
+  options.truth_seconds = 1e-9;
+  const Benchmark found = bench(scene, options);
+  EXPECT_FALSE(found.has_converged());
+  ASSERT_EQ(found.runs.size(), 12u);
+  for (const BenchRun& timed : found.runs) EXPECT_EQ(timed.status, Status::Converged);
+  EXPECT_EQ(found.meshes[0].missing + found.meshes[1].missing, "");
+  EXPECT_TRUE(found.meshes[0].error_mm && found.meshes[1].error_mm);
+  EXPECT_FALSE(found.meshes[1].to_next || found.meshes[2].error_mm);
+  const std::vector<std::string> missing = missing_equilibria(found);
+  ASSERT_EQ(missing.size(), 1u);
+  for (const char* piece : {"triangles was not found: stopped at the time limit", "--truth-seconds"})
+    EXPECT_NE(missing[0].find(piece), std::string::npos) << missing[0];
+  EXPECT_NE(benchmark_page(found).find("Warning: the equilibrium on "), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(benchmark_json(found)).at("meshes").at(2).at("no_equilibrium"),
+            found.meshes[2].missing);
+
+  options.levels = 0;
+  const Benchmark coarse = bench(scene, options);
+  EXPECT_FALSE(coarse.meshes[0].error_mm);
+  EXPECT_NE(recommendation(coarse, 1).find("not known, as the equilibrium on "), std::string::npos);
+}
+
 TEST_F(BenchmarkTest, RefusesAllBadInputAtOnce) {
   const Scene scene = disc_scene();
   BenchOptions options;
@@ -189,11 +216,12 @@ TEST_F(BenchmarkTest, RefusesAllBadInputAtOnce) {
   options.tolerances = {1e-2, 2, std::nan(""), 1e-2};
   options.levels = 7;
   options.repeats = 0;
+  options.truth_seconds = 0;
   options.closed = folder_.path() / "nowhere.obj";
   const std::string defects = refusal([&] { bench(scene, options); });
   for (const char* piece :
        {"did you mean \"newton\"", "\"bfgs\" is not among", "above 0 and at most 1", "one is named twice",
-        "--levels: between 0 and 4", "--repeats", "nowhere.obj not found"})
+        "--levels: between 0 and 4", "--repeats", "--truth-seconds", "nowhere.obj not found"})
     EXPECT_NE(defects.find(piece), std::string::npos) << piece << " in " << defects;
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "result"));
 }
@@ -220,6 +248,16 @@ TEST_F(BenchmarkTest, TellsTheSameInJsonRowsAndPage) {
   const std::string page = benchmark_page(found);
   EXPECT_NE(page.find(json.at("recommendations").at(0).get<std::string>()), std::string::npos);
   EXPECT_EQ(page.find("<script src"), std::string::npos);
+
+  // Where on the mesh its error is: what the figures of the mesh say of the same two surfaces.
+  ASSERT_EQ(found.mesh_view.has_value(), has_shape_view());
+  if (!found.mesh_view) return;
+  const ViewField& distance = found.mesh_view->fields.front();
+  EXPECT_EQ(distance.title, "Distance to the equilibrium on " + mesh_text(found.meshes.back()));
+  ASSERT_EQ(distance.values.at(0).size(), found.meshes.front().vertices);
+  EXPECT_GT(distance.values[0].maxCoeff(), 0);
+  EXPECT_LE(distance.values[0].maxCoeff(), *found.meshes.front().error_mm * 2);
+  EXPECT_NE(page.find("id=\"shape-data\""), std::string::npos);
 }
 
 // --- what follows from a table, without a solve

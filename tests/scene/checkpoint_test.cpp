@@ -1,6 +1,7 @@
 #include "scene/checkpoint.hpp"
 
 #include "core/error.hpp"
+#include "scene/detail/sealed_json.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -79,6 +80,29 @@ TEST_F(Checkpoint, RefusesOneThatIsDamagedOrCutOffAnywhere) {
   EXPECT_THROW(read_checkpoint(folder_.path() / "none", kOwn), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path(), kOwn, RunRecord()), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path() / "no" / "file", kOwn, RunRecord()), InputError);
+}
+
+TEST_F(Checkpoint, RefusesWhatNoRunLeavesThoughItsChecksumIsGood) {
+  write_checkpoint(file_, kOwn, some_record());
+  const std::string whole = read(file_);
+  const Json good = Json::from_cbor(whole.substr(whole.find('\n') + 1));
+  const auto resealed = [](const std::string& body) {
+    return "coapt checkpoint 1 " + fingerprint(body) + "\n" + body;
+  };
+  const auto refusal_with = [&](const std::string& key, const Json& value) {
+    Json json = good;
+    json["record"][key] = value;
+    const std::vector<std::uint8_t> body = Json::to_cbor(json);
+    return refusal(folder_, resealed({body.begin(), body.end()}));
+  };
+  EXPECT_EQ(refusal_with("iterations", 13), "");
+  for (const Json& value : {Json(1e300), Json(-1), Json(12.5), Json(1LL << 40), Json("12")})
+    EXPECT_NE(refusal_with("iterations", value).find("--resume"), std::string::npos) << value;
+  EXPECT_EQ(refusal_with("seconds", 0.5), "");
+  for (const Json& value : {Json(-0.5), Json(kNaN), Json(kInfinity)})
+    EXPECT_NE(refusal_with("seconds", value).find("--resume"), std::string::npos) << value;
+  const std::string nested(1'000'000, '\x81');  // each a list of one
+  EXPECT_NE(refusal(folder_, resealed(nested)).find("nested too deep"), std::string::npos);
 }
 
 TEST_F(Checkpoint, NamesAllThatDiffersFromTheRun) {

@@ -198,6 +198,21 @@ struct CubicTethers {
   }
 };
 
+struct Links {
+  Segments segments;
+  double stiffness, length;
+
+  template <typename T>
+  T operator()(const std::vector<AutoVec<T>>& x) const {
+    T energy = T(0.0);
+    for (Eigen::Index e = 0; e < segments.cols(); ++e) {
+      const T excess = T(norm(AutoVec<T>(x[segments(1, e)] - x[segments(0, e)])) - T(length));
+      energy = T(energy + times(stiffness / 2, power(excess, 2)));
+    }
+    return energy;
+  }
+};
+
 // Elastic part as the integral of the rounded force 2 e^2/s - e^3/s^2, then e.
 struct Cables {
   Segments segments;

@@ -7,23 +7,52 @@
     result = coapt.minimize(V, F, [{"type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"},
                                    {"type": "load_pressure", "value": "0.1 kPa"}], fixed="boundary")
 
+    eq = coapt.Equilibrium("scene.json", ["chords.length"])           # warm solves, exact sensitivities
+    eq.settle()
+    area, slope = eq.value_and_grad(coapt.metrics.orifice_area(eq))
+
 Lengths are mm, forces N, stresses MPa, energies mJ. Arrays of points have shape (n, 3).
 """
 from __future__ import annotations
 
 import json
+import os
+import pathlib
 from typing import Any
 
-from . import _core
+from . import _core, autograd, metrics
 from ._api import minimize, solve
 from ._core import Iterate
+from ._equilibrium import Equilibrium, LostBranch, Settling, Switch
 from ._errors import InputError
+from ._objective import LostBranchWarning, Objective, objective
 from ._result import Result, Status
 from ._terms import Term, check_term
 
 __version__ = _core.version()
-__all__ = ["InputError", "Iterate", "Result", "Status", "Term", "check_term", "components", "licence", "methods",
-           "minimize", "scene_schema", "solve"]
+__all__ = ["Equilibrium", "InputError", "Iterate", "LostBranch", "LostBranchWarning", "Objective", "Result", "Settling",
+           "Status", "Switch", "Term", "autograd", "check_term", "components", "generate_mitral", "licence", "methods",
+           "metrics", "minimize", "objective", "scene_schema", "solve"]
+
+
+def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:
+    """Writes the generated mitral valve into a folder, as `coapt generate mitral` does; returns the path of its scene.
+
+    Args:
+        folder: it is made where it does not exist; files of that name are replaced.
+        triangles: wanted number of triangles, at least 100; the mesh has within 5 % of it.
+        seed: 0 for the mean valve; any other draws its dimensions from published ranges.
+
+    Raises:
+        InputError: too few triangles, or a folder that cannot be written.
+    """
+    defects = [f"{name}: is {value!r}; expected a whole number from {least} to {2**31 - 1}"
+               for name, value, least in (("triangles", triangles, 100), ("seed", seed, 0))
+               if not isinstance(value, int) or not least <= value < 2**31]
+    if defects:
+        raise InputError(*defects)
+    _core.generate_mitral(folder=os.fsencode(folder), triangles=triangles, seed=seed)
+    return pathlib.Path(folder) / "scene.json"
 
 
 def methods() -> list[str]:

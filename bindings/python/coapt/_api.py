@@ -7,40 +7,32 @@ from typing import Any
 
 import numpy.typing as npt
 
-from . import _arguments, _core
-from ._errors import InputError
+from . import _arguments, _core, _inputs
 from ._result import Result, result_of
 
 Callback = Callable[[_core.Iterate], Any]
-Path = str | os.PathLike[str]
-
-
-def _positive(value: Any, name: str, unit: str, defects: list[str]) -> None:
-    if value is not None and not (isinstance(value, (int, float)) and value > 0):
-        defects.append(f"{name}: is {value!r}; expected a number above 0{unit}")
 
 
 def _checked_options(tol: Any, max_seconds: Any, callback: Any, defects: list[str]) -> None:
-    _positive(tol, "tol", "", defects)
-    _positive(max_seconds, "max_seconds", " [s]", defects)
+    if tol is not None:
+        _arguments.positive(tol, "tol", "", defects)
+    if max_seconds is not None:
+        _arguments.positive(max_seconds, "max_seconds", " [s]", defects)
     if callback is not None and not callable(callback):
         defects.append(f"callback: is a {type(callback).__name__}; expected a function of one argument")
 
 
-def _run(text: str | None, file: str, terms: Sequence[Any], *, start: Any, callback: Callback | None,
-         method: str | None, tol: float | None, max_seconds: float | None, modes: int | None, folder: Path | None,
-         frames: int | None, report: bool | None, vertices: Any = None, triangles: Any = None,
-         regions: tuple[list[int], list[str]] = ([], [])) -> Result:
-    return result_of(_core.run(
-        text=text, file=os.fsencode(file), vertices=vertices, triangles=triangles, regions=regions[0],
-        region_names=regions[1], start=start, terms=list(terms), callback=callback, solver=method or "", tolerance=tol,
-        max_seconds=max_seconds, modes=modes, folder=None if folder is None else os.fsencode(folder), frames=frames,
-        page=report))
+def _run(given: _inputs.Given, *, callback: Callback | None, method: str | None, tol: float | None,
+         max_seconds: float | None, modes: int | None, folder: _inputs.Path | None, frames: int | None,
+         report: bool | None) -> Result:
+    return result_of(given.solve(
+        _core.run, callback=callback, solver=method or "", tolerance=tol, max_seconds=max_seconds, modes=modes,
+        folder=None if folder is None else os.fsencode(folder), frames=frames, page=report))
 
 
-def solve(scene: Path | Mapping[str, Any], *, method: str | None = None, tol: float | None = None,
+def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None, tol: float | None = None,
           x0: npt.ArrayLike | None = None, terms: Sequence[Any] = (), callback: Callback | None = None,
-          max_seconds: float | None = None, modes: int | None = None, folder: Path | None = None,
+          max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
           frames: int | None = None, report: bool | None = None) -> Result:
     """Solves a scene, as `coapt solve` does.
 
@@ -69,26 +61,15 @@ def solve(scene: Path | Mapping[str, Any], *, method: str | None = None, tol: fl
         Exception: whatever a callback or a term of one's own raised.
     """
     defects: list[str] = []
-    table, own, _ = _arguments.split_terms(terms, defects)
-    if table:
-        defects.append("terms: holds a dict; in solve() those belong to the scene's key `terms`")
-    start = None if x0 is None else _arguments.points(x0, "x0", defects)
     _checked_options(tol, max_seconds, callback, defects)
-    is_mapping = isinstance(scene, Mapping)
-    if not is_mapping and not isinstance(scene, (str, os.PathLike)):
-        defects.append(f"scene: is a {type(scene).__name__}; expected a path or a dict")
-    if defects:
-        raise InputError(*defects)
-    text = _arguments.scene_text(scene) if isinstance(scene, Mapping) else None
-    file = "scene" if isinstance(scene, Mapping) else os.fspath(scene)
-    return _run(text, file, own, start=start, callback=callback, method=method, tol=tol, max_seconds=max_seconds,
-                modes=modes, folder=folder, frames=frames, report=report)
+    return _run(_inputs.of_scene(scene, terms, x0, defects), callback=callback, method=method, tol=tol,
+                max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report)
 
 
 def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed: Any = None,
              x0: npt.ArrayLike | None = None, method: str | None = None, tol: float | None = None,
              callback: Callback | None = None, regions: Any = None, scene: Mapping[str, Any] | None = None,
-             max_seconds: float | None = None, modes: int | None = None, folder: Path | None = None,
+             max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
              frames: int | None = None, report: bool | None = None) -> Result:
     """Finds the equilibrium of a membrane whose mesh is in memory.
 
@@ -113,28 +94,6 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         As `solve`.
     """
     defects: list[str] = []
-    table, own, places = _arguments.split_terms(terms, defects)
-    vertices = _arguments.points(V, "V", defects)
-    faces = _arguments.triangles(F, "F", len(vertices), defects) if vertices is not None else None
-    named = _arguments.regions(regions, len(faces), defects) if faces is not None else ([], [])
-    held = _arguments.supports(fixed, len(vertices), defects) if vertices is not None else []
-    start = None if x0 is None else _arguments.points(x0, "x0", defects)
     _checked_options(tol, max_seconds, callback, defects)
-    if not table and not own and not defects:
-        defects.append("terms: is empty; a membrane needs at least one term")
-    others = dict(scene or {}) if scene is None or isinstance(scene, Mapping) else {}
-    if scene is not None and not isinstance(scene, Mapping):
-        defects.append(f"scene: is a {type(scene).__name__}; expected a dict")
-    defects += [f"scene: holds {key!r}, which is an argument of its own" for key in ("mesh", "terms") if key in others]
-    boundary = others.get("boundary", [])
-    if not isinstance(boundary, (list, tuple)):
-        defects.append(f"scene: boundary: is a {type(boundary).__name__}; expected a list")
-    if defects:
-        raise InputError(*defects)
-    text = _arguments.scene_text({**others, "boundary": [*held, *boundary], "terms": table})
-    try:
-        return _run(text, "scene", own, start=start, callback=callback, method=method, tol=tol,
-                    max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report,
-                    vertices=vertices, triangles=faces, regions=named)
-    except InputError as error:
-        raise _arguments.as_written(error, places) from None
+    return _run(_inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects), callback=callback, method=method,
+                tol=tol, max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report)

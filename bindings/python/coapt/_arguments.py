@@ -28,6 +28,24 @@ def _array(value: Any, name: str, wanted: str, kinds: str, defects: Defects) -> 
     return array
 
 
+def positive(value: Any, name: str, unit: str, defects: Defects) -> None:
+    if not (isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0):
+        defects.append(f"{name}: is {value!r}; expected a number above 0{unit}")
+
+
+def numbers(value: Any, name: str, wanted: str, shape: tuple[int, ...] | None = None) -> npt.NDArray[np.float64]:
+    """Finite float64, C-contiguous, of a shape where one is given. Raises InputError."""
+    defects: Defects = []
+    array = _array(value, name, wanted, "fiu", defects)
+    if array is not None and shape is not None and array.shape != shape:
+        defects.append(f"{name}: has shape {array.shape}; expected {wanted}")
+    elif array is not None and not np.isfinite(array).all():
+        defects.append(f"{name}: holds a number that is not finite")
+    if array is None or defects:
+        raise InputError(*defects)
+    return np.array(array, dtype=np.float64, order="C", ndmin=array.ndim)
+
+
 def points(value: Any, name: str, defects: Defects) -> npt.NDArray[np.float64] | None:
     """(n, 3) float64, C-contiguous; the caller's own array where it is that already."""
     wanted = "real numbers of shape (n, 3) [mm]"
@@ -136,6 +154,15 @@ def split_terms(terms: Sequence[Any], defects: Defects) -> tuple[list[Mapping[st
             defects.append(f"terms[{k}]: is a {type(term).__name__}; expected a dict with the keys of docs/scene.md, or "
                            "an object with value(x) and gradient(x)")
     return table, own, places
+
+
+def hessians(terms: Any, defects: Defects) -> None:
+    """Own terms of an equilibrium that is followed have one."""
+    for k, term in enumerate(terms if isinstance(terms, Sequence) else []):
+        if callable(getattr(term, "value", None)) and getattr(term, "hessian", None) is None:
+            defects.append(f"terms[{k}] ({getattr(term, 'name', type(term).__name__)}): has no hessian(), which an "
+                           "equilibrium that is followed needs for its steps and its derivatives; define it "
+                           "(coapt.check_term() checks it), or solve without derivatives by minimize() with method=\"lbfgs\"")
 
 
 def as_written(error: InputError, places: Sequence[int]) -> InputError:

@@ -40,8 +40,9 @@ class VtpReader {
       builder_.warnings.push_back(defects_.file() + ": " + std::to_string(left_out_) +
                                   " points, lines or strips are no polygons and were left out");
     const pugi::xml_node field_data = data.child("FieldData");
-    MeshFile file =
-        has_regions_ ? builder_.finish(std::move(regions_), region_names(field_data)) : builder_.finish();
+    // Not within the call: a compiler may well empty regions_ into its argument first.
+    std::vector<std::string> names = has_regions_ ? region_names(field_data) : std::vector<std::string>();
+    MeshFile file = has_regions_ ? builder_.finish(std::move(regions_), std::move(names)) : builder_.finish();
     if (const auto space = texts(field_data, "SPACE");
         !space.empty() && (space[0] == "RAS" || space[0] == "LPS"))
       file.space = space[0];

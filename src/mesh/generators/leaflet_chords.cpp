@@ -68,17 +68,17 @@ struct Site {
   double leaflet = 0;  // from annulus to free edge there
 };
 
-struct Sites {
+struct LeafletSites {
   std::vector<Site> free_edge, inside;
   double length = 0;  // of the free edge
 };
 
-Sites sites_of(const Valve& valve) {
+LeafletSites sites_of(const Valve& valve) {
   const TriangleMesh& mesh = valve.leaflets;
   const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
   const Distances from_annulus = distances_from(mesh, graph, valve.annulus);
   const Distances from_edge = distances_from(mesh, graph, valve.free_edge);
-  Sites sites;
+  LeafletSites sites;
   std::vector<double> along;
   for (size_t k = 0; k < valve.free_edge.size(); ++k) {
     const int v = valve.free_edge[k], next = valve.free_edge[(k + 1) % valve.free_edge.size()];
@@ -124,9 +124,9 @@ int insertions_of_a_chord(const LeafletChordOptions& options) {
 }
 
 // Builds the network, from the tips to the leaflets.
-class Builder {
+class LeafletChordBuilder {
  public:
-  Builder(const Valve& valve, const LeafletChordOptions& options, const Plane& plane)
+  LeafletChordBuilder(const Valve& valve, const LeafletChordOptions& options, const Plane& plane)
       : X_(valve.leaflets.vertices), options_(options), plane_(plane) {
     network_.papillary = valve.chords.papillary;
     network_.papillary_closed = valve.chords.papillary_closed;
@@ -291,9 +291,9 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
   const Plane plane = annulus_plane(valve);
   check_tips(valve, plane, options.depth, defects);
 
-  Sites sites = sites_of(valve);
+  LeafletSites sites = sites_of(valve);
   const int per_chord = insertions_of_a_chord(options), wanted = options.count * per_chord;
-  Builder builder(valve, options, plane);
+  LeafletChordBuilder builder(valve, options, plane);
   for (const ChordZone& zone : options.zones) {
     std::vector<Site>& free_sites = zone.height < 1 ? sites.inside : sites.free_edge;
     if (static_cast<size_t>(wanted) > free_sites.size()) {

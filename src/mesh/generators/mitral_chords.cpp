@@ -97,12 +97,12 @@ MuscleTips by_muscle(const Points& tips) {
 }
 
 // Vertices at which primary chords (the free edge) and the others (the inside) may end.
-struct Sites {
+struct InsertionSites {
   std::vector<int> free_edge, inside;
 };
 
-Sites insertion_sites(const MitralMesh& mesh) {
-  Sites sites;
+InsertionSites insertion_sites(const MitralMesh& mesh) {
+  InsertionSites sites;
   sites.free_edge = mesh.free_edge;
   for (int v = 0; v < mesh.leaflets.vertex_count(); ++v)
     if (mesh.coordinates(1, v) > 0 && mesh.coordinates(1, v) < 1) sites.inside.push_back(v);
@@ -119,11 +119,11 @@ int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::
 }
 
 // Builds the network chord by chord.
-struct Builder {
+struct MitralChordBuilder {
   const MitralShape& shape;
   const MitralMesh& mesh;
   const int first_count;  // tips of the anterolateral muscle
-  const Sites sites = insertion_sites(mesh);
+  const InsertionSites sites = insertion_sites(mesh);
   ChordNetwork network = {};
   std::vector<Vec3> junctions = {};
 
@@ -185,7 +185,7 @@ struct Builder {
 ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches,
                            const Points& tips) {
   const MuscleTips muscles = by_muscle(tips.cols() > 0 ? tips : papillary_tips(shape.dimensions));
-  Builder builder{shape, mesh, muscles.first_count};
+  MitralChordBuilder builder{shape, mesh, muscles.first_count};
   ChordNetwork& network = builder.network;
   network.papillary = muscles.tips;
   const Vec3 target = mitral_closed_point(shape, mitral_coordinate(shape, MitralLeaflet::Anterior, 0.5), 0);

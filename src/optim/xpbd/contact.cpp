@@ -11,8 +11,8 @@ namespace {
 constexpr double kCorrection = 0.125;  // h: that sweeps may add to the predicted move
 
 // The lesser is the longest move of a step: neighbours on a flat sheet stay out of the search.
-constexpr double kLongest = 6;        // h
-constexpr double kLongestEdge = 0.2;  // mean edge lengths
+constexpr double kLongestOverThickness = 6;  // h
+constexpr double kLongestOverEdge = 0.2;     // mean edge lengths
 
 }  // namespace
 
@@ -34,7 +34,8 @@ XpbdContact::XpbdContact(const XpbdBody& body, double thickness, double alpha, d
       thickness_(thickness),
       alpha_(alpha),
       stiffness_(stiffness),
-      longest_(std::min(kLongest * thickness, kLongestEdge * mean_edge_length(body.rest, body.triangles))) {
+      longest_(std::min(kLongestOverThickness * thickness,
+                        kLongestOverEdge * mean_edge_length(body.rest, body.triangles))) {
   for (const Edge& edge : edges(surface_.triangles())) {
     neighbours_[static_cast<size_t>(edge.a)].push_back(edge.b);
     neighbours_[static_cast<size_t>(edge.b)].push_back(edge.a);

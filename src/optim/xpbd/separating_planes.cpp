@@ -8,10 +8,10 @@
 namespace coapt {
 namespace {
 
-constexpr double kLongest = 0.2;  // mean edge lengths: neighbours on a flat sheet need no planes
-constexpr double kSkin = 0.25;    // of the longest move: what nodes may go before pairs are looked for again
-constexpr double kKept = 0.25;    // share of its distance that a pair keeps
-constexpr double kLeast = 0.1;    // of the thickness: nothing comes nearer
+constexpr double kLongestPlane = 0.2;  // mean edge lengths: neighbours on a flat sheet need no planes
+constexpr double kSkin = 0.25;  // of the longest move: what nodes may go before pairs are looked for again
+constexpr double kKept = 0.25;  // share of its distance that a pair keeps
+constexpr double kLeast = 0.1;  // of the thickness: nothing comes nearer
 constexpr double kShareOfRest = 0.5;
 constexpr int kSlides = 8;  // sweeps over the planes of a node
 
@@ -31,7 +31,7 @@ double share_of_first(double first, double second, double room) {
 SeparatingPlanes::SeparatingPlanes(const XpbdBody& body, double thickness)
     : surface_(contact_surface(body)),
       thickness_(thickness),
-      longest_(kLongest * mean_edge_length(body.rest, body.triangles)) {}
+      longest_(kLongestPlane * mean_edge_length(body.rest, body.triangles)) {}
 
 void SeparatingPlanes::search(const Points& x) {
   // What is farther apart than the first of these keeps what it has to, however it moves.

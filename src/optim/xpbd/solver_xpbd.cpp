@@ -170,7 +170,10 @@ class SolverXpbd final : public Solver {
         PhaseTimer timer(monitor.phases(), "sweeps");
         system.step(forces.at(system.positions(), phase.heart), target);
       }
-      if (!system.positions().allFinite()) return Status::NonFinite;
+      if (!system.positions().allFinite()) {
+        say("broke off after ");
+        return Status::NonFinite;
+      }
       {
         PhaseTimer timer(monitor.phases(), "collisions");
         held_ = collisions.limit(system);
@@ -186,6 +189,7 @@ class SolverXpbd final : public Solver {
       const std::optional<Status> stop = monitor.accept(next, energy, g, time_ - begun);
       if (stop == Status::NonFinite) {
         objective.prescribe(system.positions_before());
+        say("broke off after ");
         return *stop;
       }
       q = next;

@@ -47,6 +47,21 @@ RunOptions run_options(const BenchCourse& course, const std::string& solver, dou
   return options;
 }
 
+// Of a solve for an equilibrium that errors are measured to.
+RunOptions truth_options(const BenchCourse& course, const std::string& solver, double tolerance) {
+  RunOptions options = run_options(course, solver, tolerance);
+  if (course.options.truth_seconds) options.max_seconds = course.options.truth_seconds;
+  return options;
+}
+
+// What keeps an equilibrium from being known, and what would help.
+Equilibrium missing_equilibrium(const Result& result, Points x = {}) {
+  const bool lacks_time = result.status == Status::TimeLimit;
+  return {.x = std::move(x),
+          .residual = result.residual,
+          .missing = result.message + (lacks_time ? "; --truth-seconds gives it more time" : "")};
+}
+
 std::string refining_solver(const BenchCourse& course, const std::string& method) {
   return course.solvers.contains(kRefiningSolver) ? kRefiningSolver : solver_of(method);
 }
@@ -56,7 +71,7 @@ std::string refining_solver(const BenchCourse& course, const std::string& method
 Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const Groundwork& ground,
                              const Points& x, const std::string& method, Benchmark& found) {
   const std::string solver = refining_solver(course, method);
-  SolveSetup setup = solve_setup(scene, course.solvers, run_options(course, solver, kEquilibrium));
+  SolveSetup setup = solve_setup(scene, course.solvers, truth_options(course, solver, kEquilibrium));
   setup.stability = {};
   if (solver == kRefiningSolver)
     setup.stop.max_iterations = std::min(setup.stop.max_iterations, kMostRefinements);
@@ -65,7 +80,8 @@ Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, cons
   found.is_cancelled = result.status == Status::Cancelled;
   const bool is_found =
       !found.is_cancelled && result.residual <= std::max(kEquilibrium, found.tolerances.back());
-  return {is_found, model.objective->positions(result.q), result.residual};
+  const Points end = model.objective->positions(result.q);
+  return is_found ? Equilibrium{true, end, result.residual} : missing_equilibrium(result, end);
 }
 
 BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tolerance) {
@@ -149,13 +165,17 @@ Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size
     const bool has_energy = found.methods[method].model != MethodModel::Constraints;
     if (has_energy && !found.is_cancelled && !shapes.empty())
       own = equilibrium_near(course, scene, ground, shapes.back(), name, found);
+    if (!has_energy) own.missing = name + " solves constraints, which have no energy of the scene";
     if (!found.is_cancelled && !shapes.empty()) measure_errors(ground, shapes, own, reference, end, found);
   } catch (const InputError& error) {
     end.failure = in_one_line(error);
   } catch (const std::exception& error) {
     end.failure = error.what();
   }
-  if (!end.failure.empty()) found.runs.resize(runs_before);
+  if (!end.failure.empty()) {
+    found.runs.resize(runs_before);
+    own.missing = end.failure;
+  }
   found.ends.push_back(std::move(end));
   return own;
 }
@@ -165,15 +185,17 @@ Equilibrium equilibrium_from_start(const BenchCourse& course, const Groundwork& 
     const std::string& method = found.methods.front().name;
     const SolveSetup setup =
         solve_setup(course.scene, course.solvers,
-                    run_options(course, refining_solver(course, method), found.tolerances.back()));
+                    truth_options(course, refining_solver(course, method), found.tolerances.back()));
     Model model = build(course.scene, ground);
     const Result result = solve_scene(course.scene, ground, model, setup).result;
     found.is_cancelled = result.status == Status::Cancelled;
-    if (result.status != Status::Converged) return {};
+    if (result.status != Status::Converged) return missing_equilibrium(result);
     return equilibrium_near(course, course.scene, ground, model.objective->positions(result.q), method,
                             found);
-  } catch (const InputError&) {
-    return {};  // a finer mesh that cannot be solved leaves the errors of the others unknown
+  } catch (const InputError& error) {  // a finer mesh that cannot be solved leaves the others less well known
+    Equilibrium none;
+    none.missing = in_one_line(error);
+    return none;
   }
 }
 

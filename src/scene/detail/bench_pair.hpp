@@ -16,9 +16,10 @@ struct BenchCourse {
 };
 
 struct Equilibrium {
-  bool is_found = false;  // to kEquilibrium, or at least to the tightest tolerance
-  Points x = {};          // 3 x node_count, relative to the model's origin [mm]
-  double residual = 0;    // relative
+  bool is_found = false;     // to kEquilibrium, or at least to the tightest tolerance
+  Points x = {};             // 3 x node_count, relative to the model's origin [mm]
+  double residual = 0;       // relative
+  std::string missing = {};  // why it is not found
 };
 
 // Adds the runs of a method over the tolerances and where it ends, the errors of the runs but for that of the

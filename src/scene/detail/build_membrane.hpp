@@ -25,7 +25,7 @@ template <typename Kernel, typename PropertiesOf, typename RestOf>
 TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const PropertiesOf& properties_of,
                            const RestOf& rest_of) {
   const TriangleMesh& mesh = context.model.mesh;
-  const std::vector<int> triangles = region_triangles(spec.parameters, mesh);
+  const std::vector<int> triangles = membrane_triangles(spec, context);
   const ElementValues values(spec, context);
   const Points& X = context.model.X;
   std::vector<int> nodes;

@@ -8,9 +8,9 @@
 namespace coapt {
 
 // Both directions together, each by itself and, where it makes sense, between vertices of the same number.
-Json distance_json(const ReferenceDistance& distance);
-Json gap_json(const MethodGap& gap);
+OrderedJson distance_json(const ReferenceDistance& distance);
+OrderedJson gap_json(const MethodGap& gap);
 
-Json comparison_as_json(const Comparison& comparison);
+OrderedJson comparison_as_json(const Comparison& comparison);
 
 }  // namespace coapt

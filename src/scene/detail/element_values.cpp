@@ -18,7 +18,7 @@ struct Column {
   std::vector<double> numbers;
 };
 
-std::vector<std::string> fields(std::string_view line) {
+std::vector<std::string> cells(std::string_view line) {
   std::vector<std::string> words;
   for (size_t from = 0;;) {
     const size_t comma = line.find(',', from);
@@ -73,7 +73,7 @@ std::vector<Column> read_columns(const std::string& path, const TermType& type, 
   for (std::string_view line; lines.next(line);) {
     line = formats::trimmed(line);
     if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string> words = fields(line);
+    const std::vector<std::string> words = cells(line);
     const std::string where = path + ": line " + std::to_string(lines.number());
     if (columns.empty()) {
       for (const std::string& word : words) columns.push_back(read_heading(word, type, where));

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/detail/read_item.hpp"
+#include "scene/interventions/intervention.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/term_types.hpp"
 
@@ -99,6 +100,23 @@ std::optional<double> read_integer(const Item& item) {
   return within_limits(value, item);
 }
 
+std::optional<std::vector<double>> read_integers(const Item& item) {
+  if (!item.json.is_array()) {
+    const auto value = read_integer(item);
+    return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
+  }
+  if (item.json.empty()) {
+    item.refuse_type("a whole number or a list of them");
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  for (size_t k = 0; k < item.json.size(); ++k)
+    if (const auto value =
+            read_integer({item.json[k], item.key, item.where + "[" + std::to_string(k) + "]", item.reading}))
+      values.push_back(*value);
+  return values.size() == item.json.size() ? std::optional(values) : std::nullopt;
+}
+
 std::optional<std::string> read_text_value(const Item& item) {
   if (item.json.is_string() && !item.json.get_ref<const std::string&>().empty())
     return item.json.get<std::string>();
@@ -146,15 +164,13 @@ std::optional<std::vector<Parameters>> read_objects(const Item& item) {
   return objects;
 }
 
-std::vector<std::string> term_names() {
+// An object whose `type` selects the table of its other keys: a term or an intervention.
+template <class Type>
+std::optional<Parameters> read_typed(const Item& item, const std::vector<Type>& types,
+                                     const std::vector<KeySpec>& common) {
   std::vector<std::string> names;
-  for (const TermType& type : term_types()) names.push_back(type.name);
-  return names;
-}
-
-// A term's `type` selects the table of its other keys.
-std::optional<Parameters> read_term(const Item& item) {
-  const std::string wanted = "expected one of " + listed(term_names());
+  for (const Type& type : types) names.push_back(type.name);
+  const std::string wanted = "expected one of " + listed(names);
   if (!item.json.is_object()) {
     item.refuse_type("an object with a `type`");
     return std::nullopt;
@@ -164,34 +180,38 @@ std::optional<Parameters> read_term(const Item& item) {
     item.reading.defects.push_back(join(item.where, "type") + ": missing; " + wanted);
     return std::nullopt;
   }
-  const std::string name = type->get<std::string>();
-  const TermType* entry = find_term_type(name);
-  if (entry == nullptr) {
+  const std::string name = type->template get<std::string>();
+  const auto entry = std::find(names.begin(), names.end(), name);
+  if (entry == names.end()) {
     item.reading.defects.push_back(join(item.where, "type") + ": read " + shown(*type) + "; " + wanted +
-                                   suggestion(name, term_names()));
+                                   suggestion(name, names));
     return std::nullopt;
   }
-  ObjectSpec spec = entry->spec;
-  const auto& common = common_term_keys();
+  const Type& found = types[static_cast<size_t>(entry - names.begin())];
+  ObjectSpec spec = found.spec;
   spec.keys.insert(spec.keys.begin(), common.begin(), common.end());
   const size_t before = item.reading.defects.size();
   Parameters values = read_object(item.json, spec, item.where, item.reading);
-  if (entry->check && item.reading.defects.size() == before)
-    for (const std::string& defect : entry->check(values)) item.refuse(defect);
+  if (found.check && item.reading.defects.size() == before)
+    for (const std::string& defect : found.check(values)) item.refuse(defect);
   return values;
 }
 
-std::optional<std::vector<Parameters>> read_terms(const Item& item) {
+template <class Type>
+std::optional<std::vector<Parameters>> read_all_typed(const Item& item, const std::vector<Type>& types,
+                                                      const std::vector<KeySpec>& common,
+                                                      const std::string& plural) {
   if (!item.json.is_array()) {
-    item.refuse_type("a list of terms");
+    item.refuse_type("a list of " + plural);
     return std::nullopt;
   }
-  std::vector<Parameters> terms;
+  std::vector<Parameters> all;
   for (size_t k = 0; k < item.json.size(); ++k) {
     const std::string where = item.where + "[" + std::to_string(k) + "]";
-    if (auto term = read_term({item.json[k], item.key, where, item.reading})) terms.push_back(*term);
+    if (auto values = read_typed({item.json[k], item.key, where, item.reading}, types, common))
+      all.push_back(*values);
   }
-  return terms;
+  return all;
 }
 
 void read_value(const Item& item, Parameters& values) {
@@ -205,6 +225,8 @@ void read_value(const Item& item, Parameters& values) {
       return keep(read_quantities(item));
     case KeyKind::Integer:
       return keep(read_integer(item));
+    case KeyKind::Integers:
+      return keep(read_integers(item));
     case KeyKind::Flag:
       if (!item.json.is_boolean()) return item.refuse_type("true or false");
       return values.set(item.key.name, item.json.get<bool>());
@@ -236,7 +258,9 @@ void read_value(const Item& item, Parameters& values) {
     case KeyKind::Objects:
       return keep(read_objects(item));
     case KeyKind::Terms:
-      return keep(read_terms(item));
+      return keep(read_all_typed(item, term_types(), common_term_keys(), "terms"));
+    case KeyKind::Interventions:
+      return keep(read_all_typed(item, intervention_types(), common_intervention_keys(), "interventions"));
   }
 }
 

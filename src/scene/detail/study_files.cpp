@@ -11,14 +11,14 @@
 namespace coapt {
 namespace {
 
-Json run_json(const SensitivityRun& run) {
-  Json json = {{"factor", run.factor},
-               {"status", std::string(status_name(run.status))},
-               {"residual", number_json(run.residual)},
-               {"iterations", run.iterations},
-               {"wall_s", number_json(run.wall_s)},
-               {"distance_to_base", distances_json(run.to_base)}};
-  json["distance_to_reference"] = run.to_reference ? distances_json(*run.to_reference) : Json(nullptr);
+OrderedJson run_json(const SensitivityRun& run) {
+  OrderedJson json = {{"factor", run.factor},
+                      {"status", std::string(status_name(run.status))},
+                      {"residual", number_json(run.residual)},
+                      {"iterations", run.iterations},
+                      {"wall_s", number_json(run.wall_s)},
+                      {"distance_to_base", distances_json(run.to_base)}};
+  json["distance_to_reference"] = run.to_reference ? distances_json(*run.to_reference) : OrderedJson(nullptr);
   return json;
 }
 
@@ -32,17 +32,17 @@ void add_row(std::ostream& out, const std::string& name, const SensitivityRun& r
 
 }  // namespace
 
-Json number_json(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+OrderedJson number_json(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
-Json distances_json(const DistanceFigures& distance) {
+OrderedJson distances_json(const DistanceFigures& distance) {
   return {{"mean_mm", number_json(distance.mean)},
           {"p95_mm", number_json(distance.p95)},
           {"max_mm", number_json(distance.max)}};
 }
 
-void write_study(const std::filesystem::path& folder, const std::string& name, const Json& json,
+void write_study(const std::filesystem::path& folder, const std::string& name, const OrderedJson& json,
                  const std::string& csv) {
   formats::write_whole(folder / (name + ".json"), json_text(json, 2) + "\n");
   formats::write_whole(folder / (name + ".csv"), csv);
@@ -56,17 +56,17 @@ std::ostringstream csv_begun(const std::string& header) {
 }
 
 void write_sensitivity(const std::filesystem::path& folder, const SensitivityStudy& study) {
-  Json json = {{"scene", study.scene_file},
-               {"solver", study.solver},
-               {"tolerance", study.tolerance},
-               {"perturbation", study.perturbation},
-               {"start", study.starts_anew ? "own" : "first solution"},
-               {"converged", study.has_converged()},
-               {"cancelled", study.is_cancelled},
-               {"left_out", study.left_out},
-               {"wall_s", number_json(study.wall_s)},
-               {"first", run_json(study.base)},
-               {"parameters", Json::array()}};
+  OrderedJson json = {{"scene", study.scene_file},
+                      {"solver", study.solver},
+                      {"tolerance", study.tolerance},
+                      {"perturbation", study.perturbation},
+                      {"start", study.starts_anew ? "own" : "first solution"},
+                      {"converged", study.has_converged()},
+                      {"cancelled", study.is_cancelled},
+                      {"left_out", study.left_out},
+                      {"wall_s", number_json(study.wall_s)},
+                      {"first", run_json(study.base)},
+                      {"parameters", OrderedJson::array()}};
   std::ostringstream csv = csv_begun(
       "parameter,factor,status,residual,iterations,wall_s,mean_to_base_mm,p95_to_base_mm,max_to_base_mm,"
       "mean_to_reference_mm");
@@ -85,24 +85,24 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
 }
 
 void write_region_tuning(const std::filesystem::path& folder, const RegionTuning& tuning) {
-  const auto state = [](const TuningState& s) -> Json {
+  const auto state = [](const TuningState& s) -> OrderedJson {
     return {{"max_chord_strain", number_json(s.max_chord_strain)},
             {"strained_chords", s.strained_chords},
             {"orifice_area_mm2", number_json(s.orifice_area_mm2)}};
   };
-  Json json = {{"scene", tuning.scene_file},
-               {"reached", tuning.is_reached},
-               {"message", tuning.message},
-               {"yield_strain", tuning.yield_strain},
-               {"orifice_limit_mm2", number_json(tuning.orifice_limit_mm2)},
-               {"before", state(tuning.before)},
-               {"after", state(tuning.after)},
-               {"rounds", tuning.rounds},
-               {"solves", tuning.solves},
-               {"failed_solves", tuning.failed_solves},
-               {"wall_s", tuning.wall_s},
-               {"regions", Json::array()},
-               {"chords", Json::array()}};
+  OrderedJson json = {{"scene", tuning.scene_file},
+                      {"reached", tuning.is_reached},
+                      {"message", tuning.message},
+                      {"yield_strain", tuning.yield_strain},
+                      {"orifice_limit_mm2", number_json(tuning.orifice_limit_mm2)},
+                      {"before", state(tuning.before)},
+                      {"after", state(tuning.after)},
+                      {"rounds", tuning.rounds},
+                      {"solves", tuning.solves},
+                      {"failed_solves", tuning.failed_solves},
+                      {"wall_s", tuning.wall_s},
+                      {"regions", OrderedJson::array()},
+                      {"chords", OrderedJson::array()}};
   std::ostringstream csv = csv_begun("name,triangles,factor"),
                      triangles = csv_begun("triangle,region,factor");
   for (const TunedFactor& region : tuning.regions) {

@@ -10,17 +10,17 @@
 
 namespace coapt {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // NAME.json and NAME.csv in the folder, each whole or not there.
-void write_study(const std::filesystem::path& folder, const std::string& name, const Json& json,
+void write_study(const std::filesystem::path& folder, const std::string& name, const OrderedJson& json,
                  const std::string& csv);
 
 // Null where there is none, or it is not finite.
-Json number_json(const std::optional<double>& value);
+OrderedJson number_json(const std::optional<double>& value);
 
 // mean_mm, p95_mm and max_mm.
-Json distances_json(const DistanceFigures& distance);
+OrderedJson distances_json(const DistanceFigures& distance);
 
 // A table with its first line, of 12 digits.
 std::ostringstream csv_begun(const std::string& header);

@@ -124,8 +124,27 @@ function boundsOf(states) {
            radius: Math.hypot(...high.map((v, k) => v - low[k])) / 2 || 1 };
 }
 
+// From where a camera that looks along -z sees all shapes: what lies in the middle of them across its sight, and the
+// distance from there. axes: x, y, z of the camera; slopes: of the edges of its picture, across and upwards.
+function fitted(states, centre, axes, slopes) {
+  const each = visit => {
+    for (const nodes of states)
+      for (let i = 0; i < nodes.length; i += 3)
+        visit(...axes.map(axis => axis.x * (nodes[i] - centre.x) + axis.y * (nodes[i + 1] - centre.y) + axis.z * (nodes[i + 2] - centre.z)));
+  };
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+  each((...place) => [0, 1].forEach(k => {
+    low[k] = Math.min(low[k], place[k]);
+    high[k] = Math.max(high[k], place[k]);
+  }));
+  const middle = [0, 1].map(k => (low[k] + high[k]) / 2);
+  let distance = 0;
+  each((x, y, z) => distance = Math.max(distance, z + Math.abs(x - middle[0]) / slopes[0], z + Math.abs(y - middle[1]) / slopes[1]));
+  return { middle, distance };
+}
+
 // Renderer, camera and controls. frame: unit vectors right and up in the view from above, and towards its viewer.
-function makeStage(canvas, frame, bounds) {
+function makeStage(canvas, frame, bounds, states) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
   renderer.setClearColor(0, 0);
@@ -146,13 +165,19 @@ function makeStage(canvas, frame, bounds) {
   canvas.addEventListener("focus", () => controls.enableZoom = true);
   canvas.addEventListener("blur", () => controls.enableZoom = false);
 
+  // The picture keeps all in view, also when its shape changes, until the user moves the camera.
+  let lookedFrom = null;
   const look = from => {
-    const distance = 0.86 * bounds.radius / Math.sin(camera.fov * Math.PI / 360) / Math.min(1, camera.aspect);
-    camera.position.copy(centre).addScaledVector(from.normalize(), distance);
-    controls.target.copy(centre);
+    lookedFrom = from;
+    const z = from.clone().normalize(), x = camera.up.clone().cross(z).normalize(), y = z.clone().cross(x);
+    const slope = 0.93 * Math.tan(camera.fov * Math.PI / 360);
+    const { middle, distance } = fitted(states, centre, [x, y, z], [slope * camera.aspect, slope]);
+    controls.target.copy(centre).addScaledVector(x, middle[0]).addScaledVector(y, middle[1]);
+    camera.position.copy(controls.target).addScaledVector(z, Math.max(distance, 1.5 * bounds.radius));
     controls.update();
     draw();
   };
+  controls.addEventListener("start", () => lookedFrom = null);
   const mixed = (r, u, t) => new THREE.Vector3().addScaledVector(right, r).addScaledVector(up, u).addScaledVector(towards, t);
   const views = {
     oblique: () => look(mixed(0.25, -0.75, 0.8)),
@@ -163,6 +188,7 @@ function makeStage(canvas, frame, bounds) {
 
   // By the keyboard: angles in radians.
   const turn = (around, over, nearer) => {
+    lookedFrom = null;
     const upright = new THREE.Quaternion().setFromUnitVectors(camera.up, new THREE.Vector3(0, 1, 0));
     const offset = camera.position.clone().sub(controls.target).applyQuaternion(upright);
     const place = new THREE.Spherical().setFromVector3(offset);
@@ -181,7 +207,8 @@ function makeStage(canvas, frame, bounds) {
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
-    draw();
+    if (lookedFrom) look(lookedFrom);
+    else draw();
   };
   new ResizeObserver(resize).observe(canvas);
   return { renderer, scene, camera, draw, resize, turn, views, vector, right, up, towards, centre };

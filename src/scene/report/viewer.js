@@ -12,7 +12,8 @@ function readData() {
 
 function makeViewer() {
   const data = readData(), canvas = byId("canvas"), last = data.states.length - 1;
-  const bounds = boundsOf(data.states.map(state => state.nodes)), stage = makeStage(canvas, data.frame, bounds);
+  const shapes = data.states.map(state => state.nodes), bounds = boundsOf(shapes);
+  const stage = makeStage(canvas, data.frame, bounds, shapes);
   const viewer = { data, canvas, last, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {},
                    shown: { state: last, field: data.fields[0], node: -1, triangle: -1 } };
 

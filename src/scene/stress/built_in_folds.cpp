@@ -99,7 +99,7 @@ BuiltRow crack_row() {
                     .gap = 0.008}));
 }
 
-constexpr double kLength = 2;  // of the sheets that are folded and twisted [mm]
+constexpr double kFoldedLength = 2;  // of the sheets that are folded and twisted [mm]
 
 // Where the end at x = 2 mm is at each of `count` stations: turned by so much about `axis` through `centre`,
 // and shifted by so much.
@@ -107,7 +107,7 @@ std::map<std::string, Points> turning_end(const TriangleMesh& sheet, int count, 
                                           const Vec3& axis, const Vec3& centre, const Vec3& shift) {
   std::vector<int> end;
   for (int v = 0; v < sheet.vertex_count(); ++v)
-    if (sheet.vertices(0, v) > kLength - 1e-9) end.push_back(v);
+    if (sheet.vertices(0, v) > kFoldedLength - 1e-9) end.push_back(v);
   std::map<std::string, Points> stations;
   for (int k = 1; k <= count; ++k) {
     const double t = static_cast<double>(k) / count;
@@ -132,9 +132,9 @@ std::string held_and_turned(const std::map<std::string, Points>& stations) {
 
 // One end goes up and over the other in a half circle and comes down on it.
 BuiltRow fold_row() {
-  const TriangleMesh sheet = rectangle(kLength, 0.5, 288);
+  const TriangleMesh sheet = rectangle(kFoldedLength, 0.5, 288);
   const auto stations =
-      turning_end(sheet, 16, -std::numbers::pi, Vec3::UnitY(), {kLength / 2, 0, 0}, {0, 0, 0.05});
+      turning_end(sheet, 16, -std::numbers::pi, Vec3::UnitY(), {kFoldedLength / 2, 0, 0}, {0, 0, 0.05});
   return contact_row("S13", "a sheet folded onto itself", false,
                      draped_scene({.name = "S13_fold",
                                    .sheet = sheet,
@@ -147,7 +147,7 @@ BuiltRow fold_row() {
 
 // One end turns one and a half times and comes nearer: the mat sags and wraps around itself.
 BuiltRow mat_row() {
-  const TriangleMesh mat = rectangle(kLength, 1, 576);
+  const TriangleMesh mat = rectangle(kFoldedLength, 1, 576);
   const auto stations = turning_end(mat, 36, 3 * std::numbers::pi, Vec3::UnitX(), {0, 0.5, 0}, {-0.5, 0, 0});
   return contact_row(
       "S26", "a mat twisted one and a half times", false,

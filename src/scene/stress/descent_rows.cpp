@@ -33,12 +33,13 @@ std::string defect_of(const Stressed& solved, const StressScene& scene, bool has
   return has_one_potential ? energy_rise(result, *solved.model.objective, solved.model.X) : "";
 }
 
-struct Tally {
+struct SmallScenes {
   int solved = 0, converged = 0, refused = 0, judged = 0, broken = 0;
   std::string first;  // what is wrong with the first that is broken
 };
 
-void solve_one(const StressBench& bench, const std::filesystem::path& folder, int number, Tally& tally) {
+void solve_one(const StressBench& bench, const std::filesystem::path& folder, int number,
+               SmallScenes& tally) {
   const SmallScene small = random_scene(number);
   std::filesystem::path place = folder / "any";
   const auto write = [&] {
@@ -69,7 +70,7 @@ void solve_one(const StressBench& bench, const std::filesystem::path& folder, in
 
 StressOutcome random_scenes(const StressBench& bench, int count) {
   const StressOptions& options = bench.options();
-  Tally tally;
+  SmallScenes tally;
   for (int k = 0; k < count && !(options.is_cancelled && options.is_cancelled()); ++k)
     solve_one(bench, options.folder / "scenes" / "S21", k, tally);
   std::filesystem::remove_all(options.folder / "scenes" / "S21" / "any");

@@ -10,7 +10,6 @@ namespace coapt {
 namespace {
 
 constexpr double kBarredSeconds = 2;  // for a run that creeps up to where it cannot go on
-constexpr double kSlack = 10;         // of the tolerance, where another objective measures the residual
 
 // The greatest way of a node that no support carries along [mm].
 double way_gone(const Stressed& solved, const Points& x, const Points& rest) {
@@ -41,7 +40,7 @@ StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const
   StressOutcome outcome =
       measured(solved, way_gone(solved, solved.x, rest) / farthest, part, "ended where the term fails");
   if (solved.result.status == Status::Converged &&
-      fresh_residual(own_scene(subject), solved.x) > kSlack * tolerance)
+      fresh_residual(own_scene(subject), solved.x) > kResidualSlack * tolerance)
     outcome = outcome_of(solved, StressVerdict::Fail, "called converged where it cannot be");
   return outcome;
 }
@@ -57,9 +56,8 @@ std::vector<StressRow> failure_rows(const SubjectPointer& subject) {
         rows.push_back(
             {"S16", subject->name,
              fault_name(fault) + (part < 1 ? ", before the solution, " : ", beyond the solution, ") + solver,
-             part < 1 ? "way gone, over that to the own solution"
-                      : "greatest distance from the own solution, over the extent",
-             "", fault == Fault::NaN || fault == Fault::Throws,
+             part < 1 ? "way gone, over that to the own solution" : kDistanceFromOwn, "",
+             fault == Fault::NaN || fault == Fault::Throws,
              [subject, fault, part, solver] { return with_fault(*subject, fault, part, solver); }});
       }
   return rows;

@@ -23,13 +23,7 @@ StressOutcome in_another_frame(StressSubject& subject, const StressFrame& frame)
 // frame: its shift is in extents of the scene.
 StressRow row(const SubjectPointer& subject, const char* id, const std::string& name,
               const StressFrame& frame, bool is_quick) {
-  return {id,
-          subject->name,
-          name,
-          "greatest distance from the own solution, over the extent",
-          "",
-          is_quick,
-          [subject, frame] {
+  return {id, subject->name, name, kDistanceFromOwn, "", is_quick, [subject, frame] {
             StressFrame absolute = frame;
             absolute.shift *= extent_of(*subject);
             return in_another_frame(*subject, absolute);

@@ -6,8 +6,6 @@
 namespace coapt {
 namespace {
 
-const char* const kDistance = "greatest distance from the own solution, over the extent";
-
 // Stopped after this part of the iterations that the scene takes, then solved on from there.
 StressOutcome cancelled_and_resumed(StressSubject& subject, double part) {
   if (auto outcome = no_yardstick(subject)) return *outcome;
@@ -49,7 +47,7 @@ StressOutcome out_of_time(StressSubject& subject, double part) {
 
 std::vector<StressRow> interrupt_rows(const SubjectPointer& subject) {
   const auto cancelled = [&](const char* name, double part, bool is_quick) -> StressRow {
-    return {"S17", subject->name, name, kDistance, "", is_quick, [subject, part] {
+    return {"S17", subject->name, name, kDistanceFromOwn, "", is_quick, [subject, part] {
               return cancelled_and_resumed(*subject, part);
             }};
   };

@@ -10,8 +10,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kSlack = 10;  // of the tolerance, where another objective measures the residual
-constexpr int kEvery = 10;     // vertices for one that is moved
+constexpr int kEvery = 10;  // vertices for one that is moved
 
 StressOutcome solved_anew(StressSubject& subject, const StressScene& changed) {
   const double tolerance = tolerance_of(own_scene(subject));
@@ -19,7 +18,7 @@ StressOutcome solved_anew(StressSubject& subject, const StressScene& changed) {
   if (auto outcome = not_converged(solved, tolerance)) return *outcome;
   double residual = fresh_residual(changed, solved.x);
   if (std::isnan(residual)) residual = solved.result.residual;  // of a barrier that was stiffened on the way
-  return measured(solved, residual, kSlack * tolerance,
+  return measured(solved, residual, kResidualSlack * tolerance,
                   "called converged, but a new objective measures another residual");
 }
 

@@ -4,8 +4,6 @@
 namespace coapt {
 namespace {
 
-const char* const kDistance = "greatest distance from the own solution, over the extent";
-
 StressOutcome same_bits(StressSubject& subject, int threads) {
   StressScene again = copy_of(own_scene(subject));
   if (threads > 0) again.scene.solver.threads = threads;
@@ -35,13 +33,13 @@ std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
                                  repeated(subject, "S19", "four threads", 4)};
   for (const std::string solver : {"newton", "lbfgs"}) {
     if (!subject->bench.has_solver(solver)) continue;
-    rows.push_back(
-        {"H3", subject->name, "by " + solver, kDistance, "", true, [subject, solver]() -> StressOutcome {
-           if (own_scene(*subject).scene.solver.type == solver)
-             return {StressVerdict::NotApplicable, {}, {}, "it is the scene's own solver"};
-           const Stressed solved = subject->bench.solve(own_scene(*subject), {.solver = solver});
-           return same_shape_as_own(*subject, solved, solved.x);
-         }});
+    rows.push_back({"H3", subject->name, "by " + solver, kDistanceFromOwn, "", true,
+                    [subject, solver]() -> StressOutcome {
+                      if (own_scene(*subject).scene.solver.type == solver)
+                        return {StressVerdict::NotApplicable, {}, {}, "it is the scene's own solver"};
+                      const Stressed solved = subject->bench.solve(own_scene(*subject), {.solver = solver});
+                      return same_shape_as_own(*subject, solved, solved.x);
+                    }});
   }
   return rows;
 }

@@ -7,10 +7,6 @@
 namespace coapt {
 namespace {
 
-constexpr double kSlack = 10;  // of the tolerance, where another objective measures the residual
-
-const char* const kDistance = "greatest distance from the own solution, over the extent";
-
 // x with up to `amount` added to each coordinate that no support prescribes.
 Points shaken(const Points& x, const FixedMask& fixed, double amount) {
   std::mt19937 random(12345);
@@ -32,7 +28,7 @@ StressRow shaken_row(const SubjectPointer& subject, double share, bool is_quick)
   return {"S9",
           subject->name,
           "started again from the solution, shaken by " + short_number(share) + " of the extent",
-          kDistance,
+          kDistanceFromOwn,
           "",
           is_quick,
           [subject, share]() -> StressOutcome {
@@ -70,7 +66,7 @@ StressOutcome without_supports(StressSubject& subject) {
   if (auto wrong = untruth(solved, tolerance)) return *wrong;
   if (solved.result.status == Status::Converged) {
     const double residual = fresh_residual(loose, solved.x);
-    return measured(solved, residual > 0 ? residual : solved.result.residual, kSlack * tolerance,
+    return measured(solved, residual > 0 ? residual : solved.result.residual, kResidualSlack * tolerance,
                     "called converged, but a new objective measures another residual");
   }
   const bool is_named = solved.result.status == Status::NoEquilibrium;
@@ -120,9 +116,9 @@ std::vector<StressRow> start_rows(const SubjectPointer& subject) {
           shaken_row(subject, 1e-3, false),
           {"S10", subject->name, "all supports gone", "residual of what is called converged, measured anew",
            "", true, [subject] { return without_supports(*subject); }},
-          {"S22", subject->name, "loads 10 % up, and back", kDistance, "", true,
+          {"S22", subject->name, "loads 10 % up, and back", kDistanceFromOwn, "", true,
            [subject] { return more_load_and_back(*subject); }},
-          {"S22", subject->name, "chords 10 % longer, and back", kDistance, "", true,
+          {"S22", subject->name, "chords 10 % longer, and back", kDistanceFromOwn, "", true,
            [subject] { return longer_chords_and_back(*subject); }}};
 }
 

@@ -15,35 +15,35 @@ namespace {
 constexpr StressVerdict kVerdicts[] = {StressVerdict::Pass, StressVerdict::OtherBranch, StressVerdict::Stall,
                                        StressVerdict::NotApplicable, StressVerdict::Fail};
 
-Json row_json(const StressResult& result) {
+OrderedJson row_json(const StressResult& result) {
   const StressOutcome& outcome = result.outcome;
-  Json json = {{"id", result.row.id},
-               {"topic", std::string(stress_topic(result.row.id))},
-               {"scene", result.row.scene},
-               {"name", result.row.name},
-               {"verdict", std::string(stress_verdict_name(outcome.verdict))},
-               {"measure", result.row.measure},
-               {"figure", number_json(outcome.figure)},
-               {"limit", number_json(outcome.limit)},
-               {"unit", result.row.unit},
-               {"status", outcome.status.empty() ? Json(nullptr) : Json(outcome.status)},
-               {"residual", number_json(outcome.residual)}};
-  json["iterations"] = outcome.iterations ? Json(*outcome.iterations) : Json(nullptr);
+  OrderedJson json = {{"id", result.row.id},
+                      {"topic", std::string(stress_topic(result.row.id))},
+                      {"scene", result.row.scene},
+                      {"name", result.row.name},
+                      {"verdict", std::string(stress_verdict_name(outcome.verdict))},
+                      {"measure", result.row.measure},
+                      {"figure", number_json(outcome.figure)},
+                      {"limit", number_json(outcome.limit)},
+                      {"unit", result.row.unit},
+                      {"status", outcome.status.empty() ? OrderedJson(nullptr) : OrderedJson(outcome.status)},
+                      {"residual", number_json(outcome.residual)}};
+  json["iterations"] = outcome.iterations ? OrderedJson(*outcome.iterations) : OrderedJson(nullptr);
   json["wall_s"] = number_json(result.wall_s);
   json["cpu_s"] = number_json(result.cpu_s);
   json["message"] = outcome.message;
   return json;
 }
 
-Json matrix_json(const StressMatrix& matrix) {
-  Json json = {{"version", version()}};
-  json["scene"] = matrix.scene_file.empty() ? Json(nullptr) : Json(matrix.scene_file);
+OrderedJson matrix_json(const StressMatrix& matrix) {
+  OrderedJson json = {{"version", version()}};
+  json["scene"] = matrix.scene_file.empty() ? OrderedJson(nullptr) : OrderedJson(matrix.scene_file);
   json["time_limit_s"] = number_json(matrix.row_seconds);
   json["holds"] = !matrix.has_failed() && !matrix.is_cancelled;
   json["cancelled"] = matrix.is_cancelled;
   for (const StressVerdict verdict : kVerdicts)
     json["counts"][std::string(stress_verdict_name(verdict))] = matrix.count(verdict);
-  json["rows"] = Json::array();
+  json["rows"] = OrderedJson::array();
   for (const StressResult& result : matrix.results) json["rows"].push_back(row_json(result));
   return json;
 }
@@ -78,11 +78,15 @@ std::vector<PageCell> page_row(const StressResult& result) {
 }
 
 PageTable table_of(const std::string& caption) {
-  return {
-      caption,
-      {{"what is varied", true}, {"verdict", true}, {"figure"}, {"limit"}, {"iterations"}, {"wall time [s]"}},
-      {},
-      ""};
+  return {caption,
+          {{"what is varied", true, 25},
+           {"verdict", true, 34},
+           {"figure", false, 18},
+           {"limit", false, 7},
+           {"iterations", false, 8},
+           {"wall [s]", false, 8}},
+          {},
+          ""};
 }
 
 PageSection reading_section() {

@@ -7,7 +7,6 @@ namespace {
 
 constexpr double kFiner = 1e-3;            // of the tolerance, to tell two branches from a loose tolerance
 constexpr double kLeastTolerance = 1e-11;  // that refining asks for
-constexpr double kSlack = 10;              // of the tolerance, where another objective measures the residual
 
 // Solved on from x, in the scene as it is; x where that does not get nearer.
 Points refined(StressSubject& subject, const Points& x) {
@@ -69,7 +68,7 @@ StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, 
   std::string note = solved.result.message;
   if (!(figure <= limit)) {
     const double residual = fresh_residual(own_scene(subject), x);
-    if (residual > kSlack * tolerance)
+    if (residual > kResidualSlack * tolerance)
       return measured(solved, figure, limit,
                       "called converged, but in the scene as it is the residual of that shape is " +
                           short_number(residual));

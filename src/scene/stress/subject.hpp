@@ -17,6 +17,10 @@ struct StressSubject {
 };
 using SubjectPointer = std::shared_ptr<StressSubject>;
 
+inline constexpr const char* kDistanceFromOwn = "greatest distance from the own solution, over the extent";
+inline constexpr double kResidualSlack =
+    10;  // of the tolerance, where another objective measures the residual
+
 // The scene as it is and its solution, each made when it is first asked for. The former throws InputError.
 const StressScene& own_scene(StressSubject& subject);
 Stressed& own_solution(StressSubject& subject);

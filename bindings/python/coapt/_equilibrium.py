@@ -1,0 +1,333 @@
+"""An equilibrium that is followed while parameters change: warm solves and exact sensitivities."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arguments, _core, _inputs
+from ._errors import InputError
+from ._inputs import Path
+from ._result import Status
+from .metrics import Metric, MetricLike, as_metric
+
+Array = npt.NDArray[np.float64]
+_SHAPES = {"positions": (-1, 3), "rest": (-1, 3), "forces": (-1, 3)}
+
+
+@dataclass(frozen=True)
+class LostBranch:
+    """The shape is on another branch of equilibria than before: it did not come back when the change was undone."""
+    distance: float  #: of the shape that came back from the one before, greatest of a node [mm]
+    jump: float  #: of the new shape from the linear prediction, likewise [mm]
+    negative_before: int  #: negative eigenvalues of the symmetric part of the tangent
+    negative_after: int
+
+
+@dataclass(frozen=True)
+class Settling:
+    """How a solve for the present parameters ended."""
+    success: bool  #: whether the residual, with the exact loads, is within the tolerance
+    status: Status  #: why it ended
+    message: str  #: one sentence
+    residual: float  #: greatest out-of-balance force over the greatest load or reaction
+    iterations: int  #: Newton steps after the prediction, or those of the whole method
+    seconds: float  #: wall time, the check of the branch included [s]
+    is_quick: bool = False  #: False: the whole method was called
+    predicted: float = 0.0  #: greatest displacement of a node by the linear prediction [mm]
+    travel: float = 0.0  #: greatest displacement of a node [mm]
+    jump: float = 0.0  #: greatest distance of a node from the linear prediction [mm]
+    lost_branch: LostBranch | None = None
+
+
+class Switch(NamedTuple):
+    """An element whose law changes between two shapes, where derivatives have a kink."""
+    term: str
+    element: int  #: of the term; of a contact its first node
+    before: str  #: "slack", "rounded", "taut", "wrinkled"; "apart", "point on face", ...
+    after: str
+
+
+def _settling(found: dict[str, Any]) -> Settling:
+    status = Status[found.pop("status").upper()]
+    lost = found.pop("lost_branch", None)
+    return Settling(success=status is Status.CONVERGED, status=status,
+                    lost_branch=None if lost is None else LostBranch(**lost), **found)
+
+
+class Equilibrium:
+    """The equilibrium of a scene, or of a mesh in memory (`Equilibrium.of`), followed while named parameters change.
+
+        eq = coapt.Equilibrium("scene.json", ["chords.length", "annulus.ring"])
+        eq.settle()                                     # judged by the objective's residual
+        orifice = coapt.metrics.orifice_area(eq)
+        area, slope = eq.value_and_grad(orifice)        # exact, for every number of every parameter
+        eq["chords.length"] = 0.95
+        eq.settle()                                     # warm: a few Newton steps
+
+    Parameters (TERM and SET are names of the scene; `available` lists all):
+        TERM.lengths: rest length of each line of a cable or tether term, (k,) [mm].
+        TERM.length: one factor on all of them, (1,).
+        TERM.stiffness, TERM.thickness: factor on the moduli or the thickness, (1,).
+        TERM.pressure: pressure along the normals, (1,) [MPa].
+        TERM.load: one factor on the forces of a load_field or of a frozen load_pressure, (1,).
+        TERM.forces: these forces themselves, (k, 3) [N], on the nodes `loads[TERM]`.
+        TERM.KEY: any other number of an elastic term by its key, such as `leaflets.poisson`, (1,) (docs/sensitivities.md).
+        SET.positions: places of prescribed nodes, (n, 3) [mm].
+        SET.shift: one displacement of all of them, (3,) [mm].
+        SET.ring: factors on the two widths and the height of the ring through them, and a tilt [rad], (4,).
+        SET.rest: places of nodes in the rest shape, (n, 3) [mm].
+    All numbers of all parameters stand in one vector too, parameter after parameter, coordinates node after node.
+    Positions are in the coordinates of the input.
+
+    The interpreter lock is released while it works, and taken for metrics in Python. One object serves one thread at a
+    time (another call meanwhile is refused); several objects side by side give the same bits. Ctrl-C ends a solve at
+    its next step; `settle()` goes on from there.
+
+    Args:
+        scene: path of a scene file, or the same keys as a dict, as in `solve`.
+        parameters: their names; more may follow by `add`. No two may change the same data.
+        terms: energies of one's own beside those of the scene (see `Term`). Each needs a `hessian`: the steps and the
+            derivatives solve with the exact tangent. What they raise ends the call and is raised to the caller.
+        x0: positions to start from, (n, 3) for all nodes [mm], as in `solve`; default: the scene's own start.
+        tol: of `settle()`, on the residual; the first solve, made here, has the scene's own tolerance.
+        method: solver of the first solve; default: the scene's.
+        max_seconds: wall time after which a solve ends [s].
+
+    Raises:
+        InputError: anything is wrong with the scene, a parameter or an argument; it has all defects of one pass.
+        KeyboardInterrupt: Ctrl-C.
+        Exception: whatever a term of one's own raised.
+    """
+
+    def __init__(self, scene: Path | Mapping[str, Any], parameters: Sequence[str] = (), *, terms: Sequence[Any] = (),
+                 x0: npt.ArrayLike | None = None, tol: float = 1e-10, method: str | None = None,
+                 max_seconds: float | None = None) -> None:
+        defects, options = _options(parameters, terms, tol, method, max_seconds)
+        self._core = _inputs.of_scene(scene, terms, x0, defects).solve(_core.follow, **options)
+
+    @classmethod
+    def of(cls, V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], parameters: Sequence[str] = (), *,
+           fixed: Any = None, x0: npt.ArrayLike | None = None, regions: Any = None,
+           scene: Mapping[str, Any] | None = None, tol: float = 1e-10, method: str | None = None,
+           max_seconds: float | None = None) -> Self:
+        """The equilibrium of a membrane whose mesh is in memory.
+
+            eq = coapt.Equilibrium.of(V, F, [membrane, Foundation(), pressure], ["load_pressure.pressure"],
+                                      fixed="boundary")
+
+        Args:
+            V: vertices of the reference shape, (n, 3) [mm].
+            F: corners of each triangle, (m, 3), counted from 0.
+            terms: dicts with the keys of the scene file and energies of one's own, in any order, as in `minimize`; those
+                of one's own need a `hessian`.
+            parameters: names as in a scene; a term is called by its `name`, or else by its `type`.
+            fixed, x0, regions, scene: as in `minimize`. Sets for SET.positions and its like are named in `scene`:
+                {"sets": {"rim": [0, 1, 2]}}.
+            tol, method, max_seconds: as of the class.
+
+        Raises:
+            As the class.
+        """
+        defects, options = _options(parameters, terms, tol, method, max_seconds)
+        equilibrium = cls.__new__(cls)
+        equilibrium._core = _inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects).solve(_core.follow, **options)
+        return equilibrium
+
+    # --- parameters
+
+    @property
+    def parameters(self) -> list[str]:
+        """Names of its parameters, in the order of the vector."""
+        return [name for name, _ in self._core.parameters()]
+
+    @property
+    def available(self) -> list[str]:
+        """Every name that this scene has a parameter for."""
+        return self._core.available()
+
+    def add(self, name: str) -> None:
+        """One more parameter, behind the others. Raises InputError for a name that is not known or already there, and for
+        one that changes what another parameter changes."""
+        defects: list[str] = []
+        names = _names([name], defects)
+        if defects:
+            raise InputError(*defects)
+        self._core.add(name)
+
+    @property
+    def value(self) -> Array:
+        """All numbers, a vector; a copy. What is assigned counts from the next `settle()` on."""
+        return self._core.value()
+
+    @value.setter
+    def value(self, numbers: npt.ArrayLike) -> None:
+        self._core.set(self._vector(numbers, "value"))
+
+    def __getitem__(self, name: str) -> Array:
+        """The numbers of one parameter, in its shape; a copy."""
+        where, shape = self._place(name)
+        return self.value[where].reshape(shape)
+
+    def __setitem__(self, name: str, numbers: npt.ArrayLike) -> None:
+        """One parameter: an array of its shape, or a number for one of size 1."""
+        where, shape = self._place(name)
+        size = where.stop - where.start
+        wanted = tuple(size // 3 if length == -1 else length for length in shape)
+        array = _arguments.numbers(numbers, name, f"real numbers of shape {wanted}")
+        if array.shape != wanted and not (size == 1 and array.size == 1):
+            raise InputError(f"{name}: has shape {array.shape}; expected real numbers of shape {wanted}")
+        all_numbers = self.value
+        all_numbers[where] = array.ravel()
+        self._core.set(all_numbers)
+
+    def split(self, numbers: npt.ArrayLike) -> dict[str, Array]:
+        """A vector such as a gradient, cut into the parameters by name, each in its shape."""
+        vector = self._vector(numbers, "numbers")
+        return {name: vector[where].reshape(shape) for name, where, shape in self._places()}
+
+    # --- solving, and what is there
+
+    def settle(self) -> Settling:
+        """Solves for the present parameters, warm: linear prediction, then Newton's method; where that does not
+        converge, the whole method. A shape that did not converge is kept, and `success` is False.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C; the shape is where it got to, and settle() goes on from there.
+        """
+        return _settling(self._core.settle())
+
+    @property
+    def first(self) -> Settling:
+        """How the solve from the scene's own start ended."""
+        return _settling(self._core.first_solve())
+
+    @property
+    def x(self) -> Array:
+        """Positions of all nodes, (n, 3) [mm], vertices of the mesh first: those of the last solve, read-only and not
+        copied. The array keeps them when others follow."""
+        return self._core.x
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices of the mesh, which are the first nodes."""
+        return self._core.vertex_count
+
+    @property
+    def faces(self) -> npt.NDArray[np.int32]:
+        """Corners of each triangle, (m, 3), read-only."""
+        return self._core.faces
+
+    @property
+    def lines(self) -> dict[str, npt.NDArray[np.int32]]:
+        """Ends of the chords and cables of each term, (k, 2), by its name."""
+        return self._core.lines()
+
+    @property
+    def loads(self) -> dict[str, npt.NDArray[np.int32]]:
+        """Nodes of the forces of each dead load, (k,), by the name of its term: the rows of TERM.forces."""
+        return self._core.loads()
+
+    @property
+    def sets(self) -> dict[str, npt.NDArray[np.int32]]:
+        """Node numbers of each named set."""
+        return self._core.sets()
+
+    # --- figures of merit
+
+    def evaluate(self, metric: MetricLike | Sequence[MetricLike]) -> Any:
+        """Value of a metric at the present shape, or values of several, (m,); settled or not."""
+        values = self._core.evaluate(self._metrics(metric))
+        return values if isinstance(metric, (list, tuple)) else float(values[0])
+
+    def value_and_grad(self, metric: MetricLike) -> tuple[float, Array]:
+        """Value of a metric and its exact derivative by every number (one linear system for all of them).
+
+        Raises:
+            InputError: this shape is not settled, or its tangent is singular.
+        """
+        return self._core.value_and_grad(as_metric(self._core, metric))
+
+    def jacobian(self, metrics: Sequence[MetricLike]) -> Array:
+        """Derivatives of several metrics, one row each, (m, numbers)."""
+        return self._core.jacobian(self._metrics(metrics))
+
+    def weighted_gradient(self, metrics: Sequence[MetricLike], weights: npt.ArrayLike) -> Array:
+        """jacobian(metrics).T @ weights by one linear system, (numbers,)."""
+        found = self._metrics(metrics)
+        array = _arguments.numbers(weights, "weights", f"real numbers of shape ({len(found)},)", (len(found),))
+        return self._core.weighted_gradient(found, array)
+
+    def gauss_newton_product(self, residuals: Sequence[MetricLike], change: npt.ArrayLike) -> Array:
+        """J^T J change for residuals of a least-squares problem, by two linear systems, (numbers,)."""
+        return self._core.gauss_newton_product(self._metrics(residuals), self._vector(change, "change"))
+
+    def metric_covariance(self, metrics: Sequence[MetricLike], covariance: npt.ArrayLike) -> Array:
+        """First-order covariance of metrics, (m, m), from that of the numbers, (numbers, numbers)."""
+        size = self.value.size
+        array = _arguments.numbers(covariance, "covariance", f"real numbers of shape ({size}, {size})", (size, size))
+        return self._core.metric_covariance(self._metrics(metrics), array)
+
+    def response(self, change: npt.ArrayLike) -> Array:
+        """dx/d(numbers) change: how the nodes move at first order, (n, 3) [mm]."""
+        return self._core.response(self._vector(change, "change"))
+
+    def pull_back(self, weights: npt.ArrayLike) -> Array:
+        """Transpose of `response`: derivative by the numbers of a function whose derivative by x is `weights`, (n, 3)."""
+        shape = (self._core.node_count, 3)
+        return self._core.pull_back(_arguments.numbers(weights, "weights", f"real numbers of shape {shape}", shape))
+
+    def switches(self, change: npt.ArrayLike) -> list[Switch]:
+        """What changes its law between the shapes predicted for -change and +change: derivatives have a kink there.
+        At a kink the list is not empty however small the change."""
+        return [Switch(*each) for each in self._core.switches(self._vector(change, "change"))]
+
+    # --- inside
+
+    def _places(self) -> list[tuple[str, slice, tuple[int, ...]]]:
+        places: list[tuple[str, slice, tuple[int, ...]]] = []
+        first = 0
+        for name, size in self._core.parameters():
+            places.append((name, slice(first, first + size), _SHAPES.get(name.rpartition(".")[2], (size,))))
+            first += size
+        return places
+
+    def _place(self, name: str) -> tuple[slice, tuple[int, ...]]:
+        for known, where, shape in self._places():
+            if known == name:
+                return where, shape
+        raise InputError(f"{name!r}: is no parameter of this equilibrium, which has {', '.join(self.parameters) or 'none'}"
+                         "; name it when the equilibrium is made, or add() it")
+
+    def _vector(self, numbers: npt.ArrayLike, name: str) -> Array:
+        size = self._core.value().size
+        return _arguments.numbers(numbers, name, f"real numbers of shape ({size},), one for each number of "
+                                  f"{', '.join(self.parameters) or 'no parameter'}", (size,))
+
+    def _metrics(self, metrics: MetricLike | Sequence[MetricLike]) -> list[Metric]:
+        some = metrics if isinstance(metrics, (list, tuple)) else [metrics]
+        return [as_metric(self._core, metric) for metric in some]
+
+
+def _names(parameters: Any, defects: list[str]) -> list[str]:
+    if isinstance(parameters, str) or not isinstance(parameters, Sequence):
+        defects.append(f"parameters: is a {type(parameters).__name__}; expected a list of names such as \"chords.length\"")
+        return []
+    defects += [f"parameters[{k}]: is a {type(name).__name__}; expected a name such as \"chords.length\""
+                for k, name in enumerate(parameters) if not isinstance(name, str)]
+    return [name for name in parameters if isinstance(name, str)]
+
+
+def _options(parameters: Any, terms: Any, tol: Any, method: str | None,
+             max_seconds: Any) -> tuple[list[str], dict[str, Any]]:
+    """What is wrong so far, and how the equilibrium is followed."""
+    defects: list[str] = []
+    names = _names(parameters, defects)
+    _arguments.hessians(terms, defects)
+    _arguments.positive(tol, "tol", "", defects)
+    if max_seconds is not None:
+        _arguments.positive(max_seconds, "max_seconds", " [s]", defects)
+    return defects, {"parameters": names, "solver": method or "", "tolerance": tol, "max_seconds": max_seconds}

@@ -1,0 +1,91 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "scene/intervene.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : StudyArguments {
+  std::vector<std::string> edits, files;
+  bool prints_json = false;
+};
+
+void print_state(const char* name, const std::optional<RunReport>& run) {
+  if (!run) return;
+  const Result& result = run->report.result;
+  std::printf("%-6s  %s, residual %.1e, %d iterations, %.2f s\n", name,
+              std::string(status_name(result.status)).c_str(), result.residual, result.iterations,
+              result.wall_s);
+  for (const std::string& warning : run->report.warnings) std::printf("        %s\n", warning.c_str());
+}
+
+void print_number(const std::optional<double>& value) {
+  if (value)
+    std::printf(" %12.5g", *value);
+  else
+    std::printf(" %12s", "-");
+}
+
+void print_table(const BeforeAfter& found) {
+  std::printf("  %-26s %-4s %12s %12s %12s\n", "figure", "", "before", "after", "change");
+  for (const ChangedFigure& figure : changed_figures(found)) {
+    if (!figure.before.value && !figure.after) continue;
+    std::printf("  %-26s %-4s", figure.before.name.c_str(), figure.before.unit.c_str());
+    print_number(figure.before.value);
+    print_number(figure.after);
+    print_number(figure.change);
+    std::printf("\n");
+  }
+}
+
+void run_command(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  InterveneOptions options;
+  options.files.assign(arguments.files.begin(), arguments.files.end());
+  options.edits = arguments.edits;
+  options.report = [](const RunReport&) { end_progress(); };
+  RunOptions run = arguments.options();
+  run.folder = arguments.folder;
+  const BeforeAfter found = intervene(arguments.scene, all_solvers(), options, run);
+  write_intervene(found);
+  if (arguments.prints_json) {
+    std::fputs(intervene_json(found).c_str(), stdout);
+  } else {
+    print_state("before", found.before);
+    print_state("after", found.after);
+    print_table(found);
+    if (!found.after) std::printf("cancelled before the second solve\n");
+    std::printf(
+        "written to %s (intervene.json, intervene.csv, report.html and the folders before and after)\n",
+        found.folder.string().c_str());
+  }
+  exit_code = found.has_converged() ? kConverged : kNotConverged;
+}
+
+}  // namespace
+
+void add_intervene_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "intervene", "A valve before and after its repair: both solved, with every figure of both");
+  add_study_arguments(*command, *arguments);
+  command
+      ->add_option(
+          "--edit", arguments->edits,
+          "An intervention as JSON, such as '{\"type\": \"ring\", \"size\": \"30 mm\"}', behind those of "
+          "the scene; may be given again")
+      ->allow_extra_args(false);
+  command->add_option("--edits", arguments->files, "File with an intervention or a list of them, as JSON");
+  command->add_flag("--json", arguments->prints_json, "Print intervene.json instead of the table");
+  command->callback([arguments, &exit_code] { run_command(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

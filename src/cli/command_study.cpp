@@ -1,0 +1,167 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "cli/worker_pool.hpp"
+#include "core/error.hpp"
+#include "scene/parameter_study.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+namespace coapt::cli {
+namespace {
+
+struct Arguments : StudyArguments {
+  std::vector<std::string> sweeps;
+  std::string metric = "orifice_area_mm2";
+  int processes = 0;
+  bool is_greatest_best = false, starts_over = false, prints_json = false;
+};
+
+std::string settings_text(const Arguments& arguments) {
+  char text[96];
+  std::snprintf(text, sizeof text, "tolerance %.17g, seconds %.17g, solver ", arguments.tolerance,
+                arguments.max_seconds);
+  return text + arguments.solver;
+}
+
+// In a process of its own: solves the point into its folder.
+int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
+                const std::filesystem::path& folder, const Arguments& arguments) {
+  RunOptions options = arguments.options();
+  options.folder = folder;
+  options.observer = [](const Iteration&, const Vector&) { return !is_interrupted(); };
+  try {
+    const RunReport solved = run(parse_scene(point.scene, scene), all_solvers(), options);
+    if (solved.report.result.status == Status::Cancelled) return kNotConverged;  // to be solved again
+    write_point(folder, point_result(point, solved));
+    return solved.report.result.status == Status::Converged ? kConverged : kNotConverged;
+  } catch (const InputError& error) {
+    prepare_result_folder(folder);
+    write_point(folder, refused_point(point, error.what()));
+    return kBadInput;
+  }
+}
+
+void print_point(const PointResult& result, const ParameterStudy& study, size_t finished) {
+  std::printf("  %zu of %zu  ", finished, study.point_count);
+  for (size_t k = 0; k < study.sweeps.size(); ++k)
+    std::printf("%s = %s  ", study.sweeps[k].path.c_str(), result.values[k].c_str());
+  if (const auto value = result.metric(study.metric)) std::printf("%s %.6g  ", study.metric.c_str(), *value);
+  std::printf("%s\n", result.has_converged() ? "" : (result.status + ": " + result.message).c_str());
+  std::fflush(stdout);
+}
+
+void print_ranking(const ParameterStudy& study) {
+  std::printf("rank");
+  for (const Sweep& sweep : study.sweeps) std::printf("  %16s", sweep.path.c_str());
+  std::printf("  %20s  status\n", study.metric.c_str());
+  int rank = 0;
+  for (const size_t place : ranked(study)) {
+    const PointResult& result = study.results[place];
+    std::printf("%4d", ++rank);
+    for (const std::string& value : result.values) std::printf("  %16s", value.c_str());
+    if (const auto value = result.metric(study.metric))
+      std::printf("  %20.6g", *value);
+    else
+      std::printf("  %20s", "-");
+    std::printf("  %s\n", result.status.c_str());
+  }
+}
+
+void run_study(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  const std::filesystem::path scene = arguments.scene;
+  ParameterStudy study;
+  study.scene_file = scene.filename().string();
+  study.metric = arguments.metric;
+  study.is_greatest_best = arguments.is_greatest_best;
+  for (const std::string& text : arguments.sweeps) study.sweeps.push_back(parse_sweep(text));
+  check_metric(arguments.metric);
+  const std::vector<StudyPoint> points = study_points(scene, study.sweeps, settings_text(arguments));
+  study.point_count = points.size();
+  const Scene first = parse_scene(points.front().scene, scene);
+  const std::filesystem::path folder =
+      arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
+  prepare_result_folder(folder);
+
+  std::vector<std::optional<PointResult>> results(points.size());
+  std::vector<size_t> open;
+  for (const StudyPoint& point : points) {
+    const std::filesystem::path place = point_folder(folder, point.number);
+    if (!arguments.starts_over) results[point.number] = read_point(place, point);
+    if (!results[point.number]) open.push_back(point.number);
+  }
+  if (open.size() < points.size() && !arguments.prints_json)
+    std::printf("%zu of %zu points are there already\n", points.size() - open.size(), points.size());
+
+  size_t finished = points.size() - open.size();
+  PoolCallbacks callbacks;
+  callbacks.stops = is_interrupted;
+  callbacks.work = [&](size_t job) {
+    const StudyPoint& point = points[open[job]];
+    return solve_point(point, scene, point_folder(folder, point.number), arguments);
+  };
+  callbacks.finished = [&](size_t job, int code) {
+    const StudyPoint& point = points[open[job]];
+    results[point.number] = read_point(point_folder(folder, point.number), point);
+    if (!results[point.number]) {
+      if (!is_interrupted())
+        std::fprintf(stderr, "coapt: point %zu ended without a result (exit code %d)\n", point.number, code);
+      return;
+    }
+    ++finished;
+    if (!arguments.prints_json) print_point(*results[point.number], study, finished);
+  };
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  run_jobs(open.size(), arguments.processes > 0 ? arguments.processes : cores, callbacks);
+
+  for (std::optional<PointResult>& result : results)
+    if (result) study.results.push_back(std::move(*result));
+  write_parameter_study(folder, study);
+  if (arguments.prints_json) {
+    std::fputs(parameter_study_json(study).c_str(), stdout);
+  } else {
+    print_ranking(study);
+    if (study.results.size() < study.point_count)
+      std::printf("%zu points are missing; the same command goes on with them\n",
+                  study.point_count - study.results.size());
+    std::printf("written to %s (study.json, study.csv, report.html and a folder for each point)\n",
+                folder.string().c_str());
+  }
+  exit_code = study.has_converged() ? kConverged : kNotConverged;
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "study", "A scene at every point of a grid of values, in parallel processes, and the points ranked");
+  add_study_arguments(*command, *arguments);
+  command
+      ->add_option(
+          "--sweep", arguments->sweeps,
+          "KEY=a..b[:n] or KEY=a,b,c, such as ring.size=26..34mm:5; KEY is NAME.KEY of an intervention "
+          "or a term, or a way through the file, terms[1].young. Several make a grid")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--rank-by", arguments->metric, "Metric of result.json that ranks the points")
+      ->capture_default_str();
+  command->add_flag("--greatest", arguments->is_greatest_best,
+                    "The greatest is the best, instead of the least");
+  command
+      ->add_option("-j,--processes", arguments->processes, "Processes at a time (default: one for each core)")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("--start-over", arguments->starts_over, "Solve finished points again");
+  command->add_flag("--json", arguments->prints_json, "Print study.json instead of the table");
+  command->callback([arguments, &exit_code] { run_study(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,234 @@
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/progress.hpp"
+#include "cli/solvers.hpp"
+#include "cli/study_options.hpp"
+#include "cli/tune_checkpoint.hpp"
+#include "core/error.hpp"
+#include "mesh/formats/text.hpp"
+#include "scene/chord_tuning.hpp"
+#include "scene/units.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+namespace coapt::cli {
+namespace {
+
+const std::map<std::string, ChordGrouping> kGroupings = {{"chord", ChordGrouping::Chord},
+                                                         {"tip", ChordGrouping::Tip},
+                                                         {"material", ChordGrouping::Material},
+                                                         {"term", ChordGrouping::Term},
+                                                         {"all", ChordGrouping::All}};
+
+const std::map<std::string, FitSides> kSides = {
+    {"both", FitSides::Both}, {"mesh", FitSides::Surface}, {"target", FitSides::Target}};
+
+struct Arguments : StudyArguments {
+  ChordTuningOptions tuning;
+  TuneCheckpointArguments checkpoint;
+  std::string target, grouping = "chord", sides = "both", only, bounds, noise, determined, step;
+  double distance_weight = -1, change_weight = -1, total_seconds = 0;  // below 0, or 0: not given
+  bool prints_json = false;
+};
+
+// "-20%" or "-0.2".
+std::optional<double> share_of(const std::string& text) {
+  const bool is_percent = !text.empty() && text.back() == '%';
+  double number = 0;
+  if (formats::read_number(text.substr(0, text.size() - (is_percent ? 1 : 0)), number)) return std::nullopt;
+  return is_percent ? number / 100 : number;
+}
+
+void read_bounds(const std::string& text, ChordTuningOptions& options) {
+  if (text.empty()) return;
+  const size_t dots = text.find("..");
+  const auto low = dots == std::string::npos ? std::nullopt : share_of(text.substr(0, dots));
+  const auto high = dots == std::string::npos ? std::nullopt : share_of(text.substr(dots + 2));
+  if (low && high) {
+    options.lowest = *low;
+    options.highest = *high;
+  } else {
+    options.defects.push_back("--bounds: read \"" + text + "\"; expected relative changes, as in -20%..20%");
+  }
+}
+
+void read_length(const char* name, const std::string& text, double& length,
+                 std::vector<std::string>& defects) {
+  if (text.empty()) return;
+  try {
+    length = quantity_value(text, kLength);
+  } catch (const InputError& error) {
+    defects.push_back(std::string(name) + ": " + error.what());
+  }
+}
+
+ChordTuningOptions tuning_options(const Arguments& arguments) {
+  ChordTuningOptions options = arguments.tuning;
+  options.target = arguments.target;
+  options.grouping = kGroupings.at(arguments.grouping);
+  options.sides = kSides.at(arguments.sides);
+  if (!arguments.only.empty()) options.only = comma_list(arguments.only);
+  if (!(arguments.distance_weight < 0)) options.distance_weight = arguments.distance_weight;
+  if (!(arguments.change_weight < 0)) options.change_weight = arguments.change_weight;
+  if (arguments.total_seconds > 0) options.max_seconds = arguments.total_seconds;
+  read_bounds(arguments.bounds, options);
+  read_length("--noise", arguments.noise, options.noise, options.defects);
+  read_length("--determined", arguments.determined, options.determined, options.defects);
+  read_length("--step", arguments.step, options.step, options.defects);
+  return options;
+}
+
+void print_trial(int solve, const TuningTrial& trial) {
+  end_progress();
+  std::printf("solve %3d  ", solve);
+  if (trial.is_aided && trial.status == Status::Converged)
+    std::printf("drawn to the target");
+  else if (std::isfinite(trial.cost))
+    std::printf("cost %.4e", trial.cost);
+  else
+    std::printf("rejected: %s", std::string(status_name(trial.status)).c_str());
+  if (std::isfinite(trial.misfit)) std::printf("  rms distance %.4f mm", std::sqrt(trial.misfit));
+  std::printf("  %d iterations  %.2f s%s%s\n", trial.iterations, trial.seconds, trial.is_best ? "  best" : "",
+              trial.lost_branch ? "  another branch of equilibria" : "");
+  std::fflush(stdout);
+}
+
+void print_lengths(const ChordTuning& found) {
+  std::printf("  %-26s %10s %10s %10s %10s\n", "rest length [mm]", "before", "after", "change", "deviation");
+  for (const TunedLength& length : found.lengths) {
+    std::printf("  %-26s %10.4f %10.4f %10.4f", length.name.c_str(), length.before, length.after,
+                length.after - length.before);
+    if (std::isfinite(length.deviation))
+      std::printf(" %10.3g", length.deviation);
+    else
+      std::printf(" %10s", "-");
+    std::printf("%s%s%s\n",
+                length.at_bound < 0   ? "  lower bound"
+                : length.at_bound > 0 ? "  upper bound"
+                                      : "",
+                length.is_slack                              ? "  slack"
+                : found.determinacy && length.is_hardly_taut ? "  hardly taut"
+                                                             : "",
+                found.determinacy && !length.is_determined ? "  not determined" : "");
+  }
+}
+
+void print_found(const ChordTuning& found) {
+  std::printf("%s: %s\n", std::string(tuning_status_name(found.tuning.status)).c_str(),
+              found.tuning.message.c_str());
+  print_lengths(found);
+  if (found.determinacy) {
+    long open = 0;
+    for (const TunedLength& length : found.lengths) open += length.is_determined ? 0 : 1;
+    std::printf("  %ld of %zu lengths are not determined to %g mm by a target known to %.2g mm\n", open,
+                found.lengths.size(), found.determined, found.noise);
+    if (!found.is_explained)
+      std::printf("  that does not explain what the fit leaves: it is trapped, or the model is another\n");
+  }
+  std::printf("  cost %.4e before, %.4e after", found.tuning.cost_before, found.tuning.cost_after);
+  if (std::isfinite(found.misfit_before()))
+    std::printf("; rms distance %.4f mm before, %.4f mm after", found.misfit_before(), found.misfit_after());
+  std::printf("\n  %d solves (%d rejected, %d on another branch of equilibria), %.2f s\n", found.solves,
+              found.tuning.failed, found.tuning.lost_branches, found.seconds);
+  std::printf("written to %s (tuning.json, tuning.csv, report.html%s and the folders before and after)\n",
+              found.folder.string().c_str(), found.tuned_scene.empty() ? "" : ", tuned.json");
+}
+
+void run_command(const Arguments& arguments, int& exit_code) {
+  listen_for_interrupts();
+  ChordTuningOptions options = tuning_options(arguments);
+  RunOptions run = arguments.options();
+  run.folder = arguments.folder;
+  if (arguments.total_seconds > 0) run.max_seconds = arguments.total_seconds;
+  options.is_cancelled = [] { return is_interrupted(); };
+  if (!arguments.prints_json) {
+    options.report = print_trial;
+    options.report_before = [](const RunReport& before) {
+      end_progress();
+      std::printf("solve   1  %s, residual %.1e  %d iterations  %.2f s\n",
+                  std::string(status_name(before.report.result.status)).c_str(),
+                  before.report.result.residual, before.report.result.iterations,
+                  before.report.result.wall_s);
+    };
+  }
+  TuneCheckpoint checkpoint(arguments.checkpoint, arguments.scene, options, run, arguments.prints_json);
+  const ChordTuning found = tune_chords(arguments.scene, all_solvers(), all_minimisers(), options, run);
+  end_progress();
+  write_chord_tuning(found);
+  if (arguments.prints_json)
+    std::fputs(chord_tuning_json(found).c_str(), stdout);
+  else
+    print_found(found);
+  checkpoint.finish(found, arguments.scene);
+  exit_code = found.has_converged() ? kConverged : kNotConverged;
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand(
+      "tune", "Chord lengths that fit a closed surface, or make orifice and chord force least");
+  ChordTuningOptions& tuning = arguments->tuning;
+  command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("-o,--output", arguments->folder,
+                      "Folder of the files (default: the scene's result folder)");
+  command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
+      ->check(positive_defect);
+  command->add_option("--solver", arguments->solver,
+                      "Of the first solve and the last (default: the scene's)");
+  command->add_option("--target", arguments->target,
+                      "Closed surface to fit, a mesh file (default: the scene's reference.closed_surface)");
+  command->add_option("--target-scale", tuning.target_scale, "mm per unit of that file (default: 1)");
+  command
+      ->add_option(
+          "--sides", arguments->sides,
+          "Whose vertices look for the other surface: both, mesh where the target is larger than the "
+          "valve, target where it is a part of it (default: both)")
+      ->check(CLI::IsMember({"both", "mesh", "target"}));
+  command->add_flag("--direct", tuning.is_direct,
+                    "Search from the lengths as they are, without drawing the leaflets to the target first");
+  command
+      ->add_option("--distance-weight", arguments->distance_weight,
+                   "Per mm2 of mean square distance (default: 1, or 0 without a target beside others)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--orifice-weight", tuning.orifice_weight, "Per mm2 of smooth orifice (default: 0)");
+  command->add_option("--force-weight", tuning.force_weight,
+                      "Per N of smooth greatest chord force (default: 0)");
+  command
+      ->add_option("--change-weight", arguments->change_weight,
+                   "Per mm2, of the sum over the chords of their squared change (default: 1e-6 for a fit, "
+                   "else 1e-3)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--by", arguments->grouping,
+                   "What gets one factor: chord, tip, material, term or all (default: chord)")
+      ->check(CLI::IsMember({"chord", "tip", "material", "term", "all"}));
+  command->add_option("--only", arguments->only,
+                      "Tune these alone: names of groups (tip_0, a material, a term) or chords (chords[3])");
+  command->add_option("--bounds", arguments->bounds, "Of the relative change (default: -20%..20%)");
+  command->add_option(
+      "--method", tuning.method,
+      "gauss_newton, ceres, slsqp, mma, lbfgs or cobyla (default: gauss_newton for a fit, else "
+      "slsqp)");
+  command->add_option("--step", arguments->step, "Length change below which the search ends (default: 1 um)");
+  command->add_option("--gain", tuning.gain, "Relative gain below which it ends (default: 1e-6)");
+  command->add_option("--max-solves", tuning.max_solves, "Of closures in all (default: 200)");
+  command->add_option("--max-seconds", arguments->total_seconds, "Of this session (default: no limit)")
+      ->check(positive_defect);
+  command->add_option(
+      "--noise", arguments->noise,
+      "Standard deviation of the target's distances, for what it determines (default: 0.1 mm)");
+  command->add_option("--determined", arguments->determined,
+                      "Greatest standard deviation of a length that counts as determined (default: 0.05 mm)");
+  command->add_flag("--json", arguments->prints_json, "Print tuning.json instead of the table");
+  add_tune_checkpoint_arguments(*command, arguments->checkpoint);
+  command->callback([arguments, &exit_code] { run_command(*arguments, exit_code); });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,66 @@
+#include "scene/compared_view.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+// The nodes that are drawn: obstacles, which come last, are not.
+Eigen::Index drawn_nodes(const Model& model) {
+  int last = model.mesh.vertex_count() - 1;
+  for (const Line& line : model.lines) last = std::max({last, line.a, line.b});
+  return last + 1;
+}
+
+// Puts the fields of a state, the last so far, to those of the same title; others have no values in it.
+void add_fields(const std::vector<ViewField>& fields, size_t state_count, std::vector<ViewField>& all) {
+  for (const ViewField& field : fields) {
+    auto same =
+        std::find_if(all.begin(), all.end(), [&](const ViewField& f) { return f.title == field.title; });
+    if (same == all.end()) {
+      same = all.insert(all.end(), field);
+      same->values.clear();
+    }
+    same->values.resize(state_count - 1);
+    same->values.push_back(field.values.front());
+  }
+  for (ViewField& field : all) field.values.resize(state_count);
+}
+
+bool has_same_lines(const Model& a, const Model& b) {
+  return std::equal(a.lines.begin(), a.lines.end(), b.lines.begin(), b.lines.end(),
+                    [](const Line& x, const Line& y) { return x.a == y.a && x.b == y.b; });
+}
+
+}  // namespace
+
+std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes, size_t base,
+                                       const std::string& name, const std::string& slider) {
+  if (shapes.empty()) return std::nullopt;
+  const Model& surface = *shapes.at(base).model;
+  const Eigen::Index nodes = drawn_nodes(surface);
+  const auto is_like_base = [&](const Model& model) {
+    return drawn_nodes(model) == nodes && model.mesh.triangles.cols() == surface.mesh.triangles.cols() &&
+           model.mesh.triangles == surface.mesh.triangles;
+  };
+  ShapeView view = bare_view(surface, shapes[base].report->fields);
+  view.name = name;
+  view.slider = slider;
+  view.obstacles.resize(3, 0);
+  if (!surface.lines.empty())
+    view.line_force = {.title = "Force in chords and cables", .unit = "N", .place = ViewPlace::Line};
+  for (const ComparedShape& shape : shapes)
+    if (is_like_base(*shape.model) && !has_same_lines(*shape.model, surface)) view.line_force.reset();
+  for (const ComparedShape& shape : shapes) {
+    const Model& model = *shape.model;
+    const Fields& fields = shape.report->fields;
+    if (!is_like_base(model)) continue;
+    view.states.push_back(
+        {shape.label, fields.x.leftCols(nodes).colwise() + (model.origin - surface.origin)});
+    add_fields(view_fields(model, fields), view.states.size(), view.fields);
+    if (view.line_force) view.line_force->values.push_back(fields.line_force);
+  }
+  return view;
+}
+
+}  // namespace coapt

@@ -1,0 +1,24 @@
+// Several solved states of one surface in one 3-D view. Private to this room.
+#pragma once
+
+#include "scene/solve_view.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct ComparedShape {
+  std::string label;
+  const Model* model = nullptr;
+  const Report* report = nullptr;
+};
+
+// The shapes, with the fields of each; those whose nodes or triangles are not those of shapes[base] are left
+// out, and the forces of lines where the lines differ. Nothing without shapes. name: of pictures; slider:
+// what leads from one to the next.
+std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes, size_t base,
+                                       const std::string& name, const std::string& slider);
+
+}  // namespace coapt

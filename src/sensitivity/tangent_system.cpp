@@ -1,0 +1,90 @@
+#include "sensitivity/tangent_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kLeastShift = 1e-11;  // of the mean of the diagonal: holds what has no stiffness at all
+constexpr double kMostShift = 1e-3;
+constexpr int kRefinements = 8;
+constexpr double kInner = 0.1;         // of the tolerance: GMRES measures its residual behind the factor,
+constexpr double kLeastInner = 3e-12;  // and loses more than this to round-off
+
+void shift_diagonal(SparseMatrix& h, double shift) {
+  for (int c = 0; c < h.outerSize(); ++c)
+    for (SparseMatrix::InnerIterator entry(h, c); entry; ++entry)
+      if (entry.row() == c) entry.valueRef() += shift;
+}
+
+}  // namespace
+
+bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
+  objective_ = &objective;
+  const double energy = objective.hessian(q, g, h_, Projection::None);
+  if (objective.pattern_version() != analysed_) has_factor_ = false;
+  return std::isfinite(energy) && g.allFinite() && std::isfinite(h_.sum());
+}
+
+bool TangentSystem::factorise(Objective& objective, const Vector& q) {
+  if (objective.pattern_version() != analysed_) {
+    factor_->analyse(h_);
+    analysed_ = objective.pattern_version();
+  }
+  const double mean = h_.rows() == 0 ? 1 : h_.diagonal().cwiseAbs().mean();
+  SparseMatrix shifted = h_;
+  shift_diagonal(shifted, kLeastShift * mean);
+  negative_modes_ = 0;
+  has_factor_ = factor_->factorise(shifted);
+  if (has_factor_) return true;
+
+  const std::unique_ptr<Factorisation> counter = make_();
+  counter->analyse(shifted);
+  negative_modes_ = counter->inertia(shifted).negative;
+  Vector g;
+  shifted = h_;
+  const double energy = objective.hessian(q, g, shifted, Projection::PositiveSemidefinite);
+  if (!std::isfinite(energy)) return false;
+  for (double shift = kLeastShift; shift <= kMostShift && !has_factor_; shift *= 100) {
+    shift_diagonal(shifted, shift * mean);
+    has_factor_ = factor_->factorise(shifted);
+  }
+  return has_factor_;
+}
+
+void TangentSystem::multiply(const Vector& v, double skew_sign, Vector& product) {
+  product.noalias() = h_.selfadjointView<Eigen::Lower>() * v;
+  if (!objective_->has_skew_tangent()) return;
+  skew_.setZero(v.size());
+  objective_->add_skew_product(v, skew_);
+  product += skew_sign * skew_;
+}
+
+double TangentSystem::solve(const Vector& b, Vector& x, double tolerance, double skew_sign) {
+  x = Vector::Zero(b.size());
+  applications_ = 0;
+  const double size = b.norm();
+  if (size == 0) return 0;
+  left_ = b;
+  double residual = 1;
+  for (int k = 0; k < kRefinements && residual > tolerance; ++k) {
+    factor_->solve(left_, start_);
+    applications_ += 1 + gmres_.solve(
+                             [&](const Vector& v, Vector& out) {
+                               multiply(v, skew_sign, work_);
+                               factor_->solve(work_, out);
+                               out -= v;
+                             },
+                             start_, std::max(kInner * tolerance / residual, kLeastInner), correction_);
+    x += correction_;
+    multiply(x, skew_sign, work_);
+    left_ = b - work_;
+    const double now = left_.norm() / size;
+    if (!(now < 0.5 * residual)) return std::min(now, residual);
+    residual = now;
+  }
+  return residual;
+}
+
+}  // namespace coapt

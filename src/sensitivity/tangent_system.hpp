@@ -1,0 +1,59 @@
+// Linear systems with the exact tangent of an objective and with its transpose.
+#pragma once
+
+#include "energy/objective.hpp"
+#include "optim/factorisation.hpp"
+#include "optim/gmres.hpp"
+
+namespace coapt {
+
+// K = H + W, H the exact Hessian (symmetric part), W its skew rest from loads without a potential. H is
+// factorised by Cholesky where it is positive definite, else the sum of its projected elements is, and GMRES
+// with that factor solves with K itself: also one of a state nearby will do.
+class TangentSystem {
+ public:
+  explicit TangentSystem(const FactorisationFactory& make) : make_(make), factor_(make()), gmres_(kVectors) {}
+
+  // Evaluates K at q. g: gradient there. Returns false when it is not finite. Pre: an objective with loads
+  // without a potential follows its path.
+  bool assemble(Objective& objective, const Vector& q, Vector& g);
+
+  // Makes a factor for the last K. Returns false when that fails. Evaluates projected elements where needed.
+  bool factorise(Objective& objective, const Vector& q);
+
+  // Whether there is a factor, of this K or of an earlier one on the same pattern.
+  bool has_factor() const { return has_factor_; }
+
+  // x = K^-1 b or K^-T b, to a residual of `tolerance` relative to |b|, as far as round-off lets it. Returns
+  // that residual. Pre: has_factor().
+  double solve(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, 1); }
+  double solve_transposed(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, -1); }
+
+  // Applications of the factor in the last solve: few, unless it belongs to a state far away.
+  int applications() const { return applications_; }
+
+  // Of H at the last assembly: zero where an unknown has no stiffness.
+  Vector diagonal() const { return h_.diagonal(); }
+
+  // Negative eigenvalues of H at the last factorise(): none where it was positive definite.
+  int negative_modes() const { return negative_modes_; }
+
+ private:
+  static constexpr int kVectors = 40;
+
+  double solve(const Vector& b, Vector& x, double tolerance, double skew_sign);
+  void multiply(const Vector& v, double skew_sign, Vector& product);
+
+  FactorisationFactory make_;
+  std::unique_ptr<Factorisation> factor_;
+  Gmres gmres_;
+  SparseMatrix h_;
+  Objective* objective_ = nullptr;  // of the last assembly: holds the skew part
+  long analysed_ = -1;              // version of the pattern
+  bool has_factor_ = false;
+  int negative_modes_ = 0;
+  int applications_ = 0;
+  Vector work_, skew_, left_, correction_, start_;
+};
+
+}  // namespace coapt

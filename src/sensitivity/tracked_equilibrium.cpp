@@ -1,0 +1,430 @@
+#include "sensitivity/tracked_equilibrium.hpp"
+
+#include "core/error.hpp"
+#include "optim/newton.hpp"
+#include "sensitivity/covariance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+// Residuals of linear systems: of derivatives; of a prediction, whose own error is of second order; and of a
+// Newton step, as a share of what is asked of its end and within these limits.
+constexpr double kExact = 1e-10, kPrediction = 1e-5;
+constexpr double kStepShare = 0.1, kLeastStep = 1e-9, kMostStep = 1e-2;
+constexpr double kSolved = 1e-6;  // relative residual beyond which a linear system counts as singular
+constexpr int kStaleFactor =
+    30;  // applications after which a factor from nearby is renewed: a fresh one needs half
+constexpr double kSuspicious = 1;  // jump over the predicted travel
+constexpr double kNotBack = 0.1;   // of the jump, that a shape may miss its start by when it comes back
+constexpr double kNoise = 1e-7;    // of the extent: jumps below say nothing
+constexpr double kLoose = 1e-9;    // of the mean stiffness of a node: what is below does not hold it
+constexpr int kHalvings = 6;
+
+double greatest(const Points& v) {
+  return v.cols() == 0 ? 0 : std::sqrt(v.colwise().squaredNorm().maxCoeff());
+}
+
+// Displacements of nodes from those of unknowns.
+Points nodal_motion(const Objective& objective, const Vector& direction) {
+  Points motion = Points::Zero(3, objective.node_count());
+  Eigen::Index k = 0;
+  for (Eigen::Index node = 0; node < motion.cols(); ++node) {
+    if (objective.fixed().col(node).all()) continue;
+    motion.col(node) = objective.fixed().col(node).select(0, direction.segment<3>(k).array());
+    k += 3;
+  }
+  return motion;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace
+
+TrackedEquilibrium::TrackedEquilibrium(Objective& objective, Vector q, TrackingOptions options)
+    : objective_(objective),
+      options_(std::move(options)),
+      q_(std::move(q)),
+      system_(options_.factorisation) {}
+
+size_t TrackedEquilibrium::add(std::unique_ptr<Parameter> parameter) {
+  std::vector<std::string> defects;
+  if (std::string clash = clash_within(*parameter); !clash.empty()) defects.push_back(std::move(clash));
+  for (const auto& other : parameters_) {
+    if (other->name() == parameter->name())
+      throw InputError("parameter \"" + parameter->name() + "\": there is one of that name already");
+    if (std::string clash = clash_of(*parameter, *other); !clash.empty()) defects.push_back(std::move(clash));
+  }
+  if (!defects.empty()) throw InputError(defects);
+  first_.push_back(number_count_);
+  number_count_ += static_cast<int>(parameter->value().size());
+  settled_value_.conservativeResize(number_count_);
+  settled_value_.tail(parameter->value().size()) = parameter->value();
+  parameters_.push_back(std::move(parameter));
+  return parameters_.size() - 1;
+}
+
+Vector TrackedEquilibrium::value() const {
+  Vector all(number_count_);
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Vector value = parameters_[k]->value();
+    all.segment(first_[k], value.size()) = value;
+  }
+  return all;
+}
+
+Vector TrackedEquilibrium::numbers_of(const Parameter& parameter, size_t index, const Vector& all) const {
+  return all.segment(first_[index], parameter.value().size());
+}
+
+void TrackedEquilibrium::require_sound(const Vector& value) const {
+  if (value.size() != number_count_)
+    throw InputError("parameters: " + std::to_string(value.size()) + " numbers were given; there are " +
+                     std::to_string(number_count_));
+  std::vector<std::string> defects;
+  for (size_t k = 0; k < parameters_.size(); ++k)
+    if (std::string defect = parameters_[k]->defect(numbers_of(*parameters_[k], k, value)); !defect.empty())
+      defects.push_back(std::move(defect));
+  if (!defects.empty()) throw InputError(defects);
+}
+
+void TrackedEquilibrium::set(const Vector& value) {
+  require_sound(value);
+  // While the terms are still those of the settled shape: what the prediction needs of them.
+  if (is_settled_) ready_tangent();
+  assign(value);
+}
+
+void TrackedEquilibrium::assign(const Vector& value) {
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Vector numbers = numbers_of(*parameters_[k], k, value);
+    if (numbers != parameters_[k]->value()) parameters_[k]->set(numbers);
+  }
+}
+
+Points TrackedEquilibrium::prescribed() const {
+  Points x = objective_.positions(q_);
+  for (const auto& parameter : parameters_) parameter->place(x);
+  return x;
+}
+
+double TrackedEquilibrium::residual_at(const Vector& q) {
+  if (objective_.has_circulatory_force()) objective_.follow_path(q);
+  return objective_.true_residual(q);
+}
+
+void TrackedEquilibrium::ready_tangent() {
+  if (is_tangent_ready_) return;
+  if (objective_.has_circulatory_force()) objective_.follow_path(q_);
+  if (!system_.assemble(objective_, q_, g_) || (!system_.has_factor() && !system_.factorise(objective_, q_)))
+    throw InputError("equilibrium: the tangent is singular or not finite, derivatives are not defined here");
+  is_tangent_ready_ = true;
+  is_nodal_ready_ = false;
+}
+
+void TrackedEquilibrium::require_settled() const {
+  if (!is_settled_ || settled_value_ != value())
+    throw InputError(
+        "equilibrium: derivatives are those of a settled shape; call settle() first, and see "
+        "that it converged");
+}
+
+void TrackedEquilibrium::check_solved(double residual, double tolerance) const {
+  if (!(residual <= std::max(kSolved, tolerance)))
+    throw InputError("equilibrium: the tangent is nearly singular (its linear system solves to " +
+                     number(residual) +
+                     " only), or the metric depends on nodes that nothing holds, such as junctions of slack "
+                     "chords; derivatives are not defined here");
+}
+
+// Of all numbers alike: through the terms' data and through the nodes that they move.
+Points TrackedEquilibrium::force_change(const Points& x, const Vector& change) {
+  Points g = Points::Zero(3, x.cols()), motion = g;
+  bool moves = false;
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Vector part = numbers_of(*parameters_[k], k, change);
+    if (part.isZero(0)) continue;
+    parameters_[k]->push_forward(x, part, g);
+    parameters_[k]->push_forward_motion(part, motion);
+    moves = moves || parameters_[k]->moves_nodes();
+  }
+  if (moves) {
+    if (!is_nodal_ready_) nodal_.assemble(objective_, x);
+    is_nodal_ready_ = true;
+    g += nodal_.product(motion);
+  }
+  return g;
+}
+
+// Pre: the tangent is ready at q_.
+Points TrackedEquilibrium::predict(const Vector& change, double tolerance) {
+  const Points x = positions(), none = Points::Zero(3, x.cols());
+  const Vector b = -objective_.unknowns(objective_.fixed().select(none, force_change(x, change)));
+  Vector dq;
+  check_solved(system_.solve(b, dq, tolerance), tolerance);
+  Points motion = none;
+  for (size_t k = 0; k < parameters_.size(); ++k)
+    parameters_[k]->push_forward_motion(numbers_of(*parameters_[k], k, change), motion);
+  return nodal_motion(objective_, dq) + motion;
+}
+
+// A term of the caller's may throw anywhere on the way: the numbers are then those that were asked for, and
+// nothing is settled.
+Settling TrackedEquilibrium::settle() {
+  const Vector wanted = value();
+  try {
+    return settle_at(wanted);
+  } catch (...) {
+    is_settled_ = is_tangent_ready_ = false;
+    assign(wanted);
+    throw;
+  }
+}
+
+// Pre: the numbers are `now`.
+Settling TrackedEquilibrium::settle_at(const Vector& now) {
+  const double start = wall_seconds();
+  Place from{q_, positions(), settled_value_, system_.negative_modes()};
+  Points predicted = Points::Zero(3, from.x.cols());
+  const bool is_followed = is_settled_ && is_tangent_ready_;
+  if (is_followed && now != from.value) {
+    // The prediction needs the derivatives by the numbers as they were.
+    assign(from.value);
+    try {
+      predicted = predict(now - from.value, kPrediction);
+    } catch (const InputError&) {
+      predicted = prescribed() - from.x;
+    }
+    assign(now);
+  }
+  // Prescribed nodes go all the way, whatever the prediction's rounding.
+  predicted = objective_.fixed().select(prescribed() - from.x, predicted);
+  Settling report = move_to(from, predicted);
+  if (report.status == Status::Converged && is_followed && options_.checks_branch)
+    report.lost_branch = check_branch(from, report);
+  if (report.lost_branch)
+    report.message +=
+        "; the shape has changed to another branch of equilibria: when the change was undone, it "
+        "came back " +
+        number(report.lost_branch->distance) + " away from where it was";
+  report.seconds = wall_seconds() - start;
+  return report;
+}
+
+// From a shape to that of the present values.
+Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted) {
+  Settling report;
+  is_settled_ = is_tangent_ready_ = false;
+  settled_value_ = value();
+  if (!move_quickly(predicted, report)) {
+    report.is_quick = false;
+    objective_.prescribe(from.x);
+    const Points to = objective_.fixed().select(from.x + predicted, from.x);
+    Problem problem{objective_, from.q};
+    if (to != from.x) problem.motion = {1, [&](double t) { return Points(from.x + t * (to - from.x)); }};
+    SolverOptions method;
+    method.factorisation = options_.factorisation;
+    const Result result =
+        solve(*make_newton(method), problem,
+              {options_.tolerance, options_.max_iterations, options_.max_seconds}, options_.observer);
+    q_ = result.q;
+    report.status = result.status;
+    report.iterations = result.iterations;
+    report.message = result.message;
+    report.residual = residual_at(q_);
+  }
+  const Points moved = positions() - from.x;
+  report.predicted = greatest(predicted);
+  report.travel = greatest(moved);
+  report.jump = greatest(moved - predicted);
+  is_settled_ = report.status == Status::Converged;
+  if (is_settled_) {
+    try {
+      ready_tangent();
+    } catch (const InputError& error) {
+      report.message += std::string("; ") + error.what();
+    }
+  }
+  return report;
+}
+
+// Newton's method with the exact tangent from the predicted shape. False: it did not converge; q_ is then
+// anywhere.
+bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report) {
+  const Points x = positions();
+  if (objective_.step_limit(x, predicted, 1) < 1) return false;
+  objective_.prescribe(x + predicted);
+  q_ = objective_.unknowns(x + predicted);
+  if (objective_.has_circulatory_force()) objective_.follow_path(q_);
+  if (!std::isfinite(objective_.gradient(q_, g_)) || !g_.allFinite()) return false;
+  Vector direction, next_q, next_g;
+  for (report.iterations = 0;; ++report.iterations) {
+    report.residual = objective_.relative_residual(g_);
+    if (report.residual <= options_.tolerance) {
+      report.residual = residual_at(q_);
+      report.status = report.residual <= options_.tolerance ? Status::Converged : Status::Stalled;
+      report.message = "converged at residual " + number(report.residual);
+      return report.status == Status::Converged;
+    }
+    if (report.iterations == options_.quick_steps) return false;
+    if (options_.observer &&
+        !options_.observer({.iteration = report.iterations, .residual = report.residual}, q_))
+      return false;  // the whole method asks again, and ends there
+    if (!system_.assemble(objective_, q_, g_) || !system_.factorise(objective_, q_)) return false;
+    const double asked = std::clamp(kStepShare * options_.tolerance / report.residual, kLeastStep, kMostStep);
+    if (!(system_.solve(-g_, direction, asked) < 2 * kMostStep)) return false;
+    double step = objective_.step_limit(q_, direction, 1);
+    bool is_better = false;
+    for (int halving = 0; halving < kHalvings && !is_better; ++halving, step *= 0.5) {
+      next_q = q_ + step * direction;
+      is_better = std::isfinite(objective_.gradient(next_q, next_g)) && next_g.allFinite() &&
+                  next_g.norm() < (1 - 0.1 * step) * g_.norm();
+    }
+    if (!is_better) return false;
+    q_.swap(next_q);
+    g_.swap(next_g);
+    objective_.advance(q_);
+  }
+}
+
+// A jump far beyond the prediction, or other signs of the eigenvalues, are put to the test: the change is
+// undone, and a shape that does not come back has changed branches.
+std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, const Settling& report) {
+  const double extent = objective_.extent(q_);
+  const bool has_jumped = report.jump > std::max(kSuspicious * report.predicted, kNoise * extent);
+  const int negative = system_.negative_modes();
+  if (!has_jumped && negative == from.negative) return std::nullopt;
+  const Place now{q_, positions(), value(), negative};
+  const Points home = from.x - now.x, none = Points::Zero(3, home.cols());
+  Points predicted = none;
+  try {
+    predicted = predict(from.value - now.value, kPrediction);
+  } catch (const InputError&) {
+  }  // from where it stands, then
+  assign(from.value);
+  const Settling back = move_to(now, objective_.fixed().select(home, predicted));
+  // Junctions of slack chords, which nothing holds, need not come back.
+  const Points stiffness = nodal_motion(objective_, system_.diagonal()).cwiseAbs(),
+               missed = positions() - from.x;
+  double distance = 0;
+  for (Eigen::Index node = 0; node < missed.cols(); ++node)
+    if (stiffness.col(node).maxCoeff() > kLoose * stiffness.mean())
+      distance = std::max(distance, missed.col(node).norm());
+  assign(now.value);
+  objective_.prescribe(now.x);
+  q_ = now.q;
+  is_tangent_ready_ = false;
+  is_settled_ = true;
+  settled_value_ = now.value;
+  residual_at(q_);
+  ready_tangent();
+  if (back.status != Status::Converged || distance > std::max(kNotBack * report.jump, kNoise * extent))
+    return LostBranch{distance, report.jump, from.negative, negative};
+  return std::nullopt;
+}
+
+Vector TrackedEquilibrium::pull_back(const Points& weights) {
+  require_settled();
+  ready_tangent();
+  const Points x = positions(), none = Points::Zero(3, x.cols());
+  const Vector b = objective_.unknowns(objective_.fixed().select(none, weights));
+  Vector lambda;
+  double residual = system_.solve_transposed(b, lambda, kExact);
+  if (system_.applications() > kStaleFactor) {  // the factor is that of a shape too far away
+    system_.factorise(objective_, q_);
+    residual = system_.solve_transposed(b, lambda, kExact);
+  }
+  check_solved(residual, kExact);
+  adjoint_residual_ = residual;
+  const Points nodal = nodal_motion(objective_, lambda);
+  Vector result = Vector::Zero(number_count_);
+  Points motion_weights = weights;
+  if (std::any_of(parameters_.begin(), parameters_.end(), [](const auto& p) { return p->moves_nodes(); })) {
+    if (!is_nodal_ready_) nodal_.assemble(objective_, x);
+    is_nodal_ready_ = true;
+    motion_weights -= nodal_.transposed_product(nodal);
+  }
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Parameter& parameter = *parameters_[k];
+    const Vector part = parameter.pull_back_motion(motion_weights) - parameter.pull_back(x, nodal);
+    result.segment(first_[k], part.size()) = part;
+  }
+  return result;
+}
+
+Derivatives TrackedEquilibrium::derivatives(const Metric& metric) {
+  require_settled();
+  const Points x = positions();
+  Points by_x(3, x.cols());
+  Derivatives result;
+  result.value = metric.evaluate(x, &by_x);
+  result.gradient = pull_back(by_x);
+  result.residual = adjoint_residual_;
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Vector direct = metric.partial(*parameters_[k], x);
+    result.gradient.segment(first_[k], direct.size()) += direct;
+  }
+  return result;
+}
+
+Points TrackedEquilibrium::response(const Vector& change) {
+  require_settled();
+  if (change.size() != number_count_)
+    throw InputError("response: " + std::to_string(change.size()) + " numbers were given; there are " +
+                     std::to_string(number_count_));
+  ready_tangent();
+  return predict(change, kExact);
+}
+
+Eigen::MatrixXd TrackedEquilibrium::jacobian(const std::vector<const Metric*>& metrics) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(metrics.size()), number_count_);
+  for (size_t k = 0; k < metrics.size(); ++k)
+    rows.row(static_cast<Eigen::Index>(k)) = derivatives(*metrics[k]).gradient.transpose();
+  return rows;
+}
+
+Vector TrackedEquilibrium::gauss_newton_product(const std::vector<const Metric*>& residuals,
+                                                const Vector& change) {
+  const Points motion = response(change), x = positions();
+  Points by_x(3, x.cols()), weights = Points::Zero(3, x.cols());
+  Vector direct = Vector::Zero(number_count_);
+  for (const Metric* residual : residuals) {
+    residual->evaluate(x, &by_x);
+    Vector partial(number_count_);
+    for (size_t k = 0; k < parameters_.size(); ++k) {
+      const Vector part = residual->partial(*parameters_[k], x);
+      partial.segment(first_[k], part.size()) = part;
+    }
+    const double along = by_x.cwiseProduct(motion).sum() + partial.dot(change);
+    weights += along * by_x;
+    direct += along * partial;
+  }
+  return pull_back(weights) + direct;
+}
+
+Eigen::MatrixXd TrackedEquilibrium::metric_covariance(const std::vector<const Metric*>& metrics,
+                                                      const Eigen::MatrixXd& covariance) {
+  return first_order_covariance(jacobian(metrics), covariance);
+}
+
+std::vector<Switch> TrackedEquilibrium::switches(const Vector& change) {
+  const Points motion = response(change), x = positions();
+  const Vector here = value();
+  for (const double sign : {-1.0, 1.0}) require_sound(here + sign * change);
+  const auto states_at = [&](double sign) {
+    assign(here + sign * change);
+    return element_states(objective_, x + sign * motion);
+  };
+  const ElementStates before = states_at(-1), after = states_at(1);
+  assign(here);
+  return switches_between(before, after);
+}
+
+}  // namespace coapt

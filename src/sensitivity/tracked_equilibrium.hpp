@@ -1,0 +1,165 @@
+// An equilibrium that is followed while parameters change: solved again from where it is, with exact
+// derivatives of figures of merit by the parameters.
+//
+//   TrackedEquilibrium equilibrium(objective, q);                    // q: unknowns at or near an equilibrium
+//   equilibrium.add(make_line_lengths("chords", term, groups, LengthMeasure::Length));
+//   Settling first = equilibrium.settle();                           // judged by the objective's residual
+//   equilibrium.set(equilibrium.value() + change);
+//   Settling again = equilibrium.settle();                           // warm: a few Newton steps
+//   Derivatives d = equilibrium.derivatives(metric);                 // value and dJ/d(every number)
+//
+// All numbers of all parameters stand in one vector, parameter after parameter in the order of add(). x is
+// 3 x node_count positions; units are those of the model (mm, N, MPa).
+//
+// Derivatives hold where the energy is twice differentiable at the equilibrium: not where a chord without
+// smoothing becomes taut, a membrane leaves a regime of its tension field, or the closest features of a
+// contact change. switches() says what is about to do so. The exact tangent is used, not symmetric under
+// pressure on free edges, contact included. Contact by a barrier keeps its stiffness and ranges.
+//
+// An object serves one thread, and has no state outside itself and its objective: several may run side by
+// side, each with an objective of its own, and give the same bits.
+#pragma once
+
+#include "optim/solver.hpp"
+#include "sensitivity/metric.hpp"
+#include "sensitivity/nodal_tangent.hpp"
+#include "sensitivity/switches.hpp"
+#include "sensitivity/tangent_system.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+struct TrackingOptions {
+  FactorisationFactory factorisation = make_eigen_factorisation;
+  double tolerance = 1e-10;   // on the relative residual
+  int quick_steps = 15;       // Newton steps from the predicted shape before the whole method is called
+  int max_iterations = 2000;  // of the whole method (newton, with all its safeguards)
+  double max_seconds = kInfinity;
+  bool checks_branch = true;
+  Observer observer = {};  // sees the shape at every step; returning false ends settle() with Cancelled
+};
+
+// That the shape is on another branch of equilibria than before the change: it did not come back when the
+// change was undone.
+struct LostBranch {
+  double distance = 0;  // of the shape that came back from the one before, greatest of a node [length]
+  double jump = 0;      // of the new shape from the linear prediction, likewise
+  int negative_before = 0, negative_after = 0;  // eigenvalues of the symmetric part of the tangent
+};
+
+struct Settling {
+  Status status = Status::Stalled;  // Converged: the objective's exact residual is below the tolerance
+  std::string message;              // one sentence
+  double residual = 0;
+  int iterations = 0;    // Newton steps after the prediction, or those of the whole method
+  bool is_quick = true;  // false: the whole method was called
+  double predicted = 0;  // greatest displacement of a node by the linear prediction [length]
+  double travel = 0;     // greatest displacement of a node [length]
+  double jump = 0;       // greatest distance of a node from the linear prediction [length]
+  std::optional<LostBranch> lost_branch;
+  double seconds = 0;  // wall time, the check of the branch included
+};
+
+struct Derivatives {
+  double value = 0;
+  Vector gradient;      // by every number
+  double residual = 0;  // of the adjoint system, relative
+};
+
+class TrackedEquilibrium {
+ public:
+  // objective: must outlive this object; prescribed coordinates where they are to be held. Where a load has
+  // no potential the objective follows its path from now on. q: see above.
+  TrackedEquilibrium(Objective& objective, Vector q, TrackingOptions options = {});
+
+  // The parameter must have been made for terms of this objective. Returns its index. One that moves
+  // prescribed nodes must have them where they are now. Throws InputError for a name that is taken, and for
+  // one that changes what another parameter changes, or the same twice (written_datum.hpp).
+  size_t add(std::unique_ptr<Parameter> parameter);
+
+  size_t parameter_count() const { return parameters_.size(); }
+  const Parameter& parameter(size_t index) const { return *parameters_[index]; }
+  int first_number(size_t index) const { return first_[index]; }  // of a parameter, in value()
+  int number_count() const { return number_count_; }
+
+  Vector value() const;
+  // Changes the terms; prescribed nodes move with the next settle(). Throws InputError for a wrong size and
+  // with the defects of all parameters; then nothing has changed.
+  void set(const Vector& value);
+
+  // Solves for the present values: linear prediction, then Newton's method with the exact tangent and steps
+  // that contact admits; where that does not converge, the whole method from the shape before. A shape that
+  // did not converge is kept, and status says so; also one at which a term threw.
+  Settling settle();
+
+  const Vector& unknowns() const { return q_; }
+  Points positions() const { return objective_.positions(q_); }
+
+  // --- derivatives at the last settled shape: Pre of all: settle() gave Converged, and no set() since. Each
+  // throws InputError where that is not so, or where the tangent is singular (no factor, or a linear system
+  // that does not solve to 1e-6). -----------------------------------------------------------------------
+  Derivatives derivatives(const Metric& metric);
+
+  // dx/d(numbers) change, 3 x node_count, and its transpose: the derivative of any function of the shape
+  // whose derivative by x is `weights`.
+  Points response(const Vector& change);
+  Vector pull_back(const Points& weights);
+
+  // One row for each metric.
+  Eigen::MatrixXd jacobian(const std::vector<const Metric*>& metrics);
+
+  // Product of sum_k grad r_k grad r_k^T with `change`, for residuals r_k of a least-squares problem: one
+  // forward and one adjoint system whatever their number.
+  Vector gauss_newton_product(const std::vector<const Metric*>& residuals, const Vector& change);
+
+  // First-order covariance of metrics from that of the numbers (covariance.hpp).
+  Eigen::MatrixXd metric_covariance(const std::vector<const Metric*>& metrics,
+                                    const Eigen::MatrixXd& covariance);
+
+  // What switches between the shapes that the linear prediction gives for value() - change and + change:
+  // derivatives along it have a kink there. A change as small as the accuracy of the numbers tells whether
+  // the present shape is at a kink. Throws InputError where set() would, for either of them.
+  std::vector<Switch> switches(const Vector& change);
+
+ private:
+  struct Place {  // where a settled shape is
+    Vector q;
+    Points x;
+    Vector value;
+    int negative = 0;
+  };
+
+  Vector numbers_of(const Parameter& parameter, size_t index, const Vector& all) const;
+  void assign(const Vector& value);
+  Points prescribed() const;  // positions with prescribed nodes where the parameters want them
+  void ready_tangent();       // assembled at q_, with a factor that will do
+  void require_sound(const Vector& value) const;
+  void require_settled() const;
+  void check_solved(double residual, double tolerance) const;
+  Points force_change(const Points& x, const Vector& change);  // -(dg), prescribed motion included
+  Points predict(const Vector& change, double tolerance);      // to this residual of the linear system
+  Settling settle_at(const Vector& now);
+  Settling move_to(const Place& from, const Points& predicted);
+  bool move_quickly(const Points& predicted, Settling& report);
+  std::optional<LostBranch> check_branch(const Place& from, const Settling& report);
+  double residual_at(const Vector& q);
+
+  Objective& objective_;
+  TrackingOptions options_;
+  std::vector<std::unique_ptr<Parameter>> parameters_;
+  std::vector<int> first_;
+  int number_count_ = 0;
+  Vector q_;
+  Vector settled_value_;  // numbers at the last settle()
+  double adjoint_residual_ = 0;
+  bool is_settled_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
+  TangentSystem system_;
+  NodalTangent nodal_;
+  Vector g_;
+};
+
+}  // namespace coapt

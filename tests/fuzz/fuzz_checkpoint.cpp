@@ -1,0 +1,65 @@
+// What a run leaves for a later one: checkpoints of solves and of tunings, points of a study. Every input is
+// read as each of them: as a whole file, and for checkpoints also as what stands behind a good checksum.
+#include "core/error.hpp"
+#include "fuzz/fuzz_target.hpp"
+#include "scene/checkpoint.hpp"
+#include "scene/chord_tuning.hpp"
+#include "scene/detail/sealed_json.hpp"
+#include "scene/parameter_study.hpp"
+
+#include <cmath>
+
+namespace coapt::fuzz {
+namespace {
+
+// Those of the seeds.
+const RunIdentity& run_identity() {
+  static const RunIdentity identity{"1", "scene", "newton", 1e-8, {}};
+  return identity;
+}
+
+void judge(const RunRecord& record) {
+  for (const MinimisationEnd& end : record.ends) require(end.x.allFinite(), "positions of a run are finite");
+  require(record.iterate.allFinite(), "the last iterate is finite");
+  require(record.iterations >= 0, "iterates are counted");
+  require(std::isfinite(record.seconds) && record.seconds >= 0, "a run took a time");
+}
+
+void judge(const ChordTuningRecord& record) {
+  const TuningRecord& tuning = record.tuning;
+  require(tuning.value.allFinite() && tuning.q.allFinite(), "values and unknowns of a tuning are finite");
+  require(record.x_before.allFinite(), "positions of a tuning are finite");
+  require(!tuning.history.empty(), "a tuning has tried something");
+  for (const TuningTrial& trial : tuning.history)
+    require(trial.value.size() == tuning.value.size() && trial.value.allFinite(),
+            "every trial has all values");
+  require(std::isfinite(tuning.seconds) && tuning.seconds >= 0, "a tuning took a time");
+}
+
+std::string sealed(const std::string& kind, std::string_view body) {
+  return kind + " 1 " + fingerprint(body) + "\n" + std::string(body);
+}
+
+}  // namespace
+
+void run_target(std::string_view bytes) {
+  static const Scratch scratch;
+  const auto run = [](const std::filesystem::path& file) { judge(read_checkpoint(file, run_identity())); };
+  const auto tuning = [](const std::filesystem::path& file) {
+    judge(read_chord_tuning_checkpoint(file, {{"version", "1"}}));
+  };
+  const std::vector<std::function<void()>> readers = {
+      [&] { run(scratch.write("checkpoint", bytes)); },
+      [&] { run(scratch.write("checkpoint", sealed("coapt checkpoint", bytes))); },
+      [&] { tuning(scratch.write("checkpoint", bytes)); },
+      [&] { tuning(scratch.write("checkpoint", sealed("coapt tuning", bytes))); },
+      [&] {
+        StudyPoint point;
+        point.key = "key";
+        const auto file = scratch.write("point.json", bytes);
+        if (!read_point(file.parent_path(), point)) throw InputError("input: no point");
+      }};
+  try_each(readers, "a checkpoint nor a point");
+}
+
+}  // namespace coapt::fuzz

@@ -1,0 +1,56 @@
+// A small generated valve whose scene gets interventions.
+#pragma once
+
+#include "core/error.hpp"
+#include "mesh/generators/mitral.hpp"
+#include "scene/build.hpp"
+#include "scene/groundwork.hpp"
+#include "scene/import.hpp"
+#include "scene/run.hpp"
+#include "scene/scene_text.hpp"
+#include "scene/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+namespace coapt {
+
+class RepairedValve : public testing::Test {
+ protected:
+  RepairedValve() {
+    write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
+    text_ = scene_text(file_);
+  }
+
+  // interventions: JSON text of one or a list.
+  Scene scene(const std::string& interventions = "[]") const {
+    return parse_scene(with_interventions(text_, {interventions}, file_.string()), file_);
+  }
+
+  static Groundwork ground(const Scene& scene) { return lay_groundwork(scene); }
+
+  static const ChordNetwork& network(const Groundwork& ground) {
+    return ground.networks.begin()->second.network;
+  }
+
+  // Why a scene is refused.
+  std::string refusal(const std::string& interventions) const {
+    try {
+      build(scene(interventions));
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  RunReport solved(const Scene& scene) const {
+    RunOptions options;
+    options.writes = false;
+    return run(scene, built_in_solvers(), options);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "scene.json";
+  std::string text_;
+};
+
+}  // namespace coapt

@@ -1,0 +1,218 @@
+// Warm solves, kinks, lost branches, threads, and what is refused.
+#include "energy/kernels/spring.hpp"
+#include "energy/load_dead.hpp"
+#include "sensitivity/covariance.hpp"
+#include "sensitivity/metrics_state.hpp"
+#include "sensitivity/refusal.hpp"
+#include "sensitivity/tracked_valve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace coapt {
+namespace {
+
+TEST(TrackedEquilibrium, SettlesInFiveStepsAfterATenthOfAMillimetreOnAChord) {
+  TrackedValve valve({.tolerance = 1e-8});
+  EnergyTerm& chords = valve.term("cable");
+  valve.equilibrium.add(make_line_lengths("lengths", chords, single_lines(chords), LengthMeasure::Length));
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  const Vector start = valve.equilibrium.value();
+  double greatest_travel = 0;
+  for (int chord = 0; chord < start.size(); chord += 5) {
+    Vector changed = start;
+    changed[chord] -= 0.1;
+    for (const Vector& value : {changed, start}) {
+      valve.equilibrium.set(value);
+      const Settling settled = valve.equilibrium.settle();
+      ASSERT_EQ(settled.status, Status::Converged) << settled.message;
+      EXPECT_TRUE(settled.is_quick) << "chord " << chord;
+      EXPECT_LE(settled.iterations, 5) << "chord " << chord;
+      EXPECT_FALSE(settled.lost_branch.has_value()) << "chord " << chord;
+      greatest_travel = std::max(greatest_travel, settled.travel);
+    }
+  }
+  EXPECT_GT(greatest_travel, 0.01);  // some of them pull
+}
+
+TEST(TrackedEquilibrium, ComesBackToTheShapeWhenAChangeIsUndone) {
+  TrackedValve valve;
+  valve.add_all();
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  const Points start = valve.equilibrium.positions();
+  const Vector value = valve.equilibrium.value();
+  Vector changed = value;
+  for (size_t p = 0; p < valve.equilibrium.parameter_count(); ++p)
+    changed += 0.01 * valve.direction(p, 5).cwiseMin(0.5 * value.cwiseAbs().cwiseMax(0.1));
+  valve.equilibrium.set(changed);
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  EXPECT_GT((valve.equilibrium.positions() - start).cwiseAbs().maxCoeff(), 1e-3);
+  valve.equilibrium.set(value);
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  std::vector<int> held = valve.scene.held_nodes(start);
+  EXPECT_LT((valve.equilibrium.positions() - start)(Eigen::all, held).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+// The same steps in several threads at once give the same bits as one after the other.
+TEST(TrackedEquilibrium, SeveralAtOnceGiveTheSameBits) {
+  closed_small_valve();
+  const auto work = [](Vector& gradient) {
+    TrackedValve valve;
+    valve.add_all();
+    valve.equilibrium.settle();
+    Vector value = valve.equilibrium.value();
+    value[0] *= 0.99;
+    valve.equilibrium.set(value);
+    valve.equilibrium.settle();
+    gradient = valve.equilibrium.derivatives(*make_strain_energy("energy", valve.objective)).gradient;
+  };
+  Vector alone;
+  work(alone);
+  std::vector<Vector> together(3);
+  {
+    std::vector<std::jthread> threads;
+    for (Vector& gradient : together) threads.emplace_back([&work, &gradient] { work(gradient); });
+  }
+  ASSERT_GT(alone.norm(), 0);
+  for (const Vector& gradient : together) EXPECT_EQ(gradient, alone);
+}
+
+// An apex between two supports, on springs that resist compression, under a dead load: von Mises' truss.
+struct Truss {
+  explicit Truss(double load)
+      : objective(positions(), fixed(), terms(load)),
+        equilibrium(objective, objective.unknowns(positions()), {.tolerance = 1e-12}) {
+    const Points supports = positions().leftCols(2);
+    equilibrium.add(make_prescribed_positions(
+        "span", objective, {0, 1},
+        [supports](const Vector& value, std::vector<Points>* slopes) {
+          const Vec3 scale(1, 0, 0);
+          Points by = scale.asDiagonal() * supports;
+          if (slopes != nullptr) *slopes = {by};
+          return Points(supports + (value[0] - 1) * by);
+        },
+        Vector::Ones(1)));
+  }
+  static FixedMask fixed() {
+    FixedMask mask = fixed_nodes(3, {0, 1});
+    mask(1, 2) = true;  // or the compressed springs would swing sideways
+    return mask;
+  }
+  static Points positions() { return (Points(3, 3) << -1, 1, 0, 0, 0, 0, 0, 0, 0.2).finished(); }
+  static Terms terms(double load) {
+    Points forces = Points::Zero(3, 3);
+    forces(2, 2) = -load;
+    BlendedLine law;
+    law.young = 1;
+    const double length = std::sqrt(1.04);
+    std::vector<Spring::Rest> springs(2, Spring::Rest{length, 1, 0, true, law});
+    return terms_of(std::make_unique<ElementTerm<Spring>>("arms", std::vector<int>{0, 2, 1, 2}, springs),
+                    std::make_unique<LoadDead>("load", "load_field", forces, positions()));
+  }
+  Objective objective;
+  TrackedEquilibrium equilibrium;
+};
+
+TEST(TrackedEquilibrium, ReportsTheBranchThatASnapLeaves) {
+  Truss truss(0.0015);
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  EXPECT_GT(truss.equilibrium.positions()(2, 2), 0.1);
+  truss.equilibrium.set(Vector::Constant(1, 1.0005));  // a little wider: still above
+  const Settling small = truss.equilibrium.settle();
+  ASSERT_EQ(small.status, Status::Converged);
+  EXPECT_FALSE(small.lost_branch.has_value()) << small.message;
+  truss.equilibrium.set(Vector::Constant(1, 1.012));  // too flat to carry the load: it hangs below
+  const Settling snap = truss.equilibrium.settle();
+  ASSERT_EQ(snap.status, Status::Converged) << snap.message;
+  EXPECT_LT(truss.equilibrium.positions()(2, 2), 0);
+  ASSERT_TRUE(snap.lost_branch.has_value());
+  EXPECT_GT(snap.lost_branch->distance, 0.1);
+  EXPECT_NE(snap.message.find("another branch"), std::string::npos);
+  EXPECT_LT(truss.equilibrium.positions()(2, 2), 0) << "the check leaves the shape where it was";
+}
+
+// A weight on two cables: the slack one becomes taut when it is shortened to the distance of its ends.
+TEST(TrackedEquilibrium, ReportsAKink) {
+  const Points x = (Points(3, 3) << 0, 0.5, 0, 0, 0, 0, 1, 1, 0).finished();
+  Points forces = Points::Zero(3, 3);
+  forces(2, 2) = -0.01;
+  const Segments ends = (Segments(2, 2) << 0, 1, 2, 2).finished();
+  Objective objective(x, fixed_nodes(3, {0, 1}),
+                      terms_of(cable_term(ends, 1, Eigen::Vector2d(1, 1.3)),
+                               std::make_unique<LoadDead>("load", "load_field", forces, x)));
+  TrackedEquilibrium equilibrium(objective, objective.unknowns(x), {.tolerance = 1e-12});
+  EnergyTerm* cables = nullptr;
+  for (const auto& term : objective.terms())
+    if (term->type() == "cable") cables = term.get();
+  equilibrium.add(make_line_lengths("lengths", *cables, single_lines(*cables), LengthMeasure::Length));
+  ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+  EXPECT_TRUE(equilibrium.switches(Eigen::Vector2d(0.01, 0)).empty());
+  const double apart = (equilibrium.positions().col(2) - equilibrium.positions().col(1)).norm();
+  const std::vector<Switch> found = equilibrium.switches(Eigen::Vector2d(1.4 * (1.3 - apart), 0));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].term, cables->name());
+  EXPECT_EQ(found[0].element, 1);
+  EXPECT_EQ(found[0].before, "slack");
+  EXPECT_EQ(found[0].after, "taut");
+}
+
+TEST(TrackedEquilibrium, SaysWhichContactsAndMembranesSwitch) {
+  TrackedValve valve;
+  EnergyTerm& chords = valve.term("cable");
+  valve.equilibrium.add(make_line_lengths("lengths", chords, single_lines(chords), LengthMeasure::Length));
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  const Vector change = Vector::Constant(valve.equilibrium.number_count(), 0.02);
+  std::map<std::string, int> count;
+  for (const Switch& each : valve.equilibrium.switches(change)) {
+    EXPECT_NE(each.before, each.after);
+    ++count[each.term];
+  }
+  EXPECT_GT(count[valve.term("contact_barrier").name()], 0);
+  EXPECT_GT(count[valve.term("cst_tension_field").name()], 0);
+  EXPECT_TRUE(valve.equilibrium.switches(1e-12 * change).empty());
+}
+
+TEST(TrackedEquilibrium, RefusesWhatMeansNothing) {
+  TrackedValve valve;
+  TrackedEquilibrium& equilibrium = valve.equilibrium;
+  EnergyTerm& chords = valve.term("cable");
+  EnergyTerm& membrane = valve.term("cst_tension_field");
+  const auto contains = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  contains(refusal([&] { equilibrium.derivatives(*make_strain_energy("energy", valve.objective)); }),
+           "settle()");
+  contains(refusal([&] { make_line_lengths("a", membrane, {{0}}, LengthMeasure::Length); }), "no lines");
+  contains(refusal([&] {
+             make_line_lengths("a", chords, {{0, 0}, {}, {99999}}, LengthMeasure::Change);
+           }),
+           "in a group already");
+  contains(refusal([&] { make_pressure_value("p", chords); }), "no pressure");
+  contains(refusal([&] { make_stiffness_factor("e", {{.term = &valve.term("contact_barrier")}}, 1); }),
+           "no stiffness");
+  int free_node = 0;
+  while (valve.scene.fixed.col(free_node).all()) ++free_node;
+  contains(refusal([&] {
+             make_prescribed_positions("n", valve.objective, {free_node}, free_positions(), Vec3::Zero());
+           }),
+           "not prescribed");
+  contains(refusal([&] { make_reference_positions("x", valve.objective, 1.1 * valve.scene.X, {free_node}); }),
+           "is not that of term");
+  equilibrium.add(make_line_lengths("lengths", chords, {{0}}, LengthMeasure::Length));
+  contains(
+      refusal([&] { equilibrium.add(make_line_lengths("lengths", chords, {{1}}, LengthMeasure::Length)); }),
+      "of that name");
+  contains(refusal([&] { equilibrium.set(Vector::Constant(1, -1)); }), "must stay positive");
+  contains(refusal([&] { equilibrium.set(Vector::Constant(2, 1)); }), "2 numbers were given");
+  EXPECT_GT(equilibrium.value()[0], 0);  // nothing has changed
+  contains(
+      refusal([] { first_order_covariance(Eigen::MatrixXd::Ones(1, 2), -Eigen::MatrixXd::Identity(2, 2)); }),
+      "negative eigenvalue");
+  contains(
+      refusal([] { first_order_covariance(Eigen::MatrixXd::Ones(1, 2), Eigen::MatrixXd::Identity(3, 3)); }),
+      "3 x 3");
+}
+
+}  // namespace
+}  // namespace coapt
