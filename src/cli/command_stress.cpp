@@ -99,7 +99,10 @@ void stress(const Arguments& arguments, int& exit_code) {
   }
   prepare_result_folder(options.folder);
   StressMatrix matrix = run_stress(rows, options);
-  if (scene) matrix.scene_file = scene->file.filename().string();
+  if (scene) {
+    matrix.scene_file = scene->file.filename().string();
+    matrix.scene_title = scene_title(*scene);
+  }
   write_stress(options.folder, matrix);
   if (arguments.prints_json)
     std::fputs(stress_json(matrix).c_str(), stdout);

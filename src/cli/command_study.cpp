@@ -87,6 +87,7 @@ void run_study(const Arguments& arguments, int& exit_code) {
   const std::vector<StudyPoint> points = study_points(scene, study.sweeps, settings_text(arguments));
   study.point_count = points.size();
   const Scene first = parse_scene(points.front().scene, scene);
+  study.scene_title = scene_title(first);
   const std::filesystem::path folder =
       arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
   prepare_result_folder(folder);

@@ -133,6 +133,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
 
   Benchmark found;
   found.scene_file = scene.file.filename().string();
+  found.scene_title = scene_title(scene);
   if (scene.closed_surface) found.closed_surface = scene.closed_surface->filename().string();
   const Model& first = grounds.front().model;
   found.extent_mm = bounding_box_diagonal(first.mesh.triangle_count() > 0 ? first.mesh.vertices : first.X);

@@ -90,7 +90,7 @@ struct BenchMethod {
 };
 
 struct Benchmark {
-  std::string scene_file;
+  std::string scene_file, scene_title;
   std::string closed_surface;        // file name of the given closed surface; empty: none
   double extent_mm = 0;              // diagonal of the box around the shape at rest
   std::vector<double> tolerances;    // falling

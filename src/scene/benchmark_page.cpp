@@ -262,7 +262,7 @@ PageTable phases_table(const Benchmark& bench) {
 }  // namespace
 
 std::string benchmark_page(const Benchmark& bench) {
-  Page page{.title = "Benchmark of " + bench.scene_file};
+  Page page{.title = "Benchmark of " + bench.scene_title};
   page.lead = recommendation(bench, kTotalAccuracies[1]);
   if (bench.is_cancelled) page.lead += " (cancelled before the end)";
   page.tone = bench.is_cancelled ? Tone::Caution : Tone::Plain;

@@ -175,6 +175,7 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
   found.scene_file = scene.filename().string();
   Model& model = found.before.model;
   const PreparedTuning ready = prepare_tuning(text, scene, solvers, minimisers, options, run_options, model);
+  found.scene_title = scene_title(ready.scene);
   const std::unique_ptr<BoundedMinimiser> method = minimisers.at(chord_tuning_method(options))();
   found.method = method->name();
   found.distance_weight = distance_weight_of(options);

@@ -78,7 +78,7 @@ struct TunedLength {
 };
 
 struct ChordTuning {
-  std::string scene_file, method, target;  // the last: as it was named; empty without one
+  std::string scene_file, scene_title, method, target;  // the last: as it was named; empty without one
   double distance_weight = 0, orifice_weight = 0, force_weight = 0, change_weight = 0;
   double noise = 0, determined = 0;
   Tuning tuning;

@@ -279,7 +279,7 @@ std::string chord_tuning_json(const ChordTuning& found) {
 }
 
 std::string chord_tuning_page(const ChordTuning& found) {
-  Page page{.title = "Chord lengths of " + found.scene_file};
+  Page page{.title = "Chord lengths of " + found.scene_title};
   page.lead = std::string(tuning_status_name(found.tuning.status)) + ": cost " +
               page_number(found.tuning.cost_before) + " before, " + page_number(found.tuning.cost_after) +
               " after";

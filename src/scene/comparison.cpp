@@ -97,6 +97,7 @@ Comparison compare_methods(const Scene& given, const SolverTable& solvers, const
 
   Comparison found;
   found.scene_file = scene.file.filename().string();
+  found.scene_title = scene_title(scene);
   found.tolerance = run.tolerance.value_or(scene.solver.tolerance);
   if (scene.closed_surface) found.closed_surface = scene.closed_surface->filename().string();
   found.extent_mm = extent_of(build(scene));  // what no method could be asked for is said before the first

@@ -68,7 +68,7 @@ struct ComparedMethod {
 };
 
 struct Comparison {
-  std::string scene_file;
+  std::string scene_file, scene_title;
   double tolerance = 0;                 // on the residual
   std::string closed_surface;           // file name of the given closed surface; empty: none
   double extent_mm = 0;                 // diagonal of the box around the shape at rest

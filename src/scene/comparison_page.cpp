@@ -132,7 +132,7 @@ std::optional<ShapeView> shapes(const Comparison& comparison) {
 }  // namespace
 
 std::string comparison_page(const Comparison& comparison) {
-  Page page{.title = "Comparison of methods on " + comparison.scene_file};
+  Page page{.title = "Comparison of methods on " + comparison.scene_title};
   page.lead = comparison.has_converged() ? "every method converged" : "not every method converged";
   page.tone = comparison.has_converged() ? Tone::Good : Tone::Bad;
   page.sections.push_back({"Distances", {distance_table(comparison), messages(comparison)}});

@@ -28,6 +28,7 @@ BeforeAfter intervene(const std::filesystem::path& scene, const SolverTable& sol
   const auto kept = static_cast<std::ptrdiff_t>(intervention_texts(unchanged, file).size());
   found.interventions.erase(found.interventions.begin(), found.interventions.begin() + kept);
   const Scene before = parse_scene(unchanged, scene), after = parse_scene(edited, scene);
+  found.scene_title = scene_title(before);
   if (found.interventions.empty())
     throw InputError(file + ": interventions: none; add some to the scene, or give one by --edit");
   build(before);

@@ -17,7 +17,7 @@ struct InterveneOptions {
 };
 
 struct BeforeAfter {
-  std::string scene_file;
+  std::string scene_file, scene_title;
   std::vector<std::string> interventions;  // JSON text of each between the two states
   std::optional<RunReport> before, after;  // the latter empty where the first solve was cancelled
   std::filesystem::path folder;

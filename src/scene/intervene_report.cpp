@@ -107,7 +107,7 @@ std::string intervene_json(const BeforeAfter& found) {
 }
 
 std::string intervene_page(const BeforeAfter& found) {
-  Page page{.title = "Before and after: " + found.scene_file};
+  Page page{.title = "Before and after: " + found.scene_title};
   page.lead = found.has_converged() ? "both states converged" : "not both states converged";
   page.tone = found.has_converged() ? Tone::Good : Tone::Bad;
   page.sections.push_back({"Interventions", {what_was_done(found), messages(found)}});

@@ -327,4 +327,9 @@ Scene parse_scene_around_mesh(const std::string& text, const std::filesystem::pa
 
 Scene load_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }
 
+std::string scene_title(const Scene& scene) {
+  const std::string file = scene.file.filename().string();
+  return scene.name == scene.file.stem().string() ? file : scene.name + " (" + file + ")";
+}
+
 }  // namespace coapt

@@ -65,7 +65,7 @@ void write_point(const std::filesystem::path& folder, const PointResult& result)
 std::optional<PointResult> read_point(const std::filesystem::path& folder, const StudyPoint& point);
 
 struct ParameterStudy {
-  std::string scene_file = {};
+  std::string scene_file = {}, scene_title = {};
   std::vector<Sweep> sweeps = {};
   std::string metric = {};  // that ranks
   bool is_greatest_best = false;

@@ -125,7 +125,7 @@ PagePlot metric_plot(const ParameterStudy& study, const std::string& metric) {
 std::string parameter_study_json(const ParameterStudy& study) { return json_text(as_json(study), 2) + "\n"; }
 
 std::string parameter_study_page(const ParameterStudy& study) {
-  Page page{.title = "Study of " + study.scene_file};
+  Page page{.title = "Study of " + study.scene_title};
   page.lead = std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
               (study.has_converged() ? ", all converged" : "; not every point converged");
   page.tone = study.has_converged() ? Tone::Good : Tone::Bad;

@@ -16,9 +16,10 @@ namespace coapt {
 
 // Everything about one solved scene.
 struct Report {
-  std::string scene_file;  // file name without folder; may be empty
-  std::string solver;      // name
-  double tolerance = 0;    // on the residual
+  std::string scene_file;   // file name without folder; may be empty
+  std::string scene_title;  // of pages; may be empty
+  std::string solver;       // name
+  double tolerance = 0;     // on the residual
   std::string pressure_route;
   Result result;
   std::vector<CascadeLevel> levels;  // empty: no cascade

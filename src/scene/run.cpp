@@ -20,6 +20,7 @@ std::filesystem::path result_folder(const Scene& scene) {
 void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
                   Report& report) {
   report.scene_file = scene.file.filename().string();
+  report.scene_title = scene_title(scene);
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
   report.warnings = model.warnings;

@@ -116,4 +116,7 @@ Scene load_scene(const std::filesystem::path& path);
 // The same from text; `path` gives the name for messages and the folder that relative paths start from.
 Scene parse_scene(const std::string& text, const std::filesystem::path& path);
 
+// For people: `Mitral valve (scene.json)`; the file's name alone where the scene has no name of its own.
+std::string scene_title(const Scene& scene);
+
 }  // namespace coapt

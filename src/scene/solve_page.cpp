@@ -222,7 +222,7 @@ size_t page_shapes(const Model& model) {
 std::string solve_page(const Model& model, const Report& report) {
   const Result& result = report.result;
   Page page;
-  page.title = "Result of " + (report.scene_file.empty() ? "a scene" : report.scene_file);
+  page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
   page.lead = result.message;
   page.tone = result.status == Status::Converged ? Tone::Good : Tone::Bad;
   PageSection shape{"Shape", {tiles(report)}};

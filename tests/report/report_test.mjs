@@ -261,10 +261,10 @@ await run("pages of compare, bench and stress work as that of solve does, and fi
   solved("disc", ["disc", "--triangles", "100"]);
   const scene = join(scratch, "disc", "scene.json"), few = ["--methods", "newton,lbfgs"];
   for (const [title, place] of [
-         ["Comparison of methods on scene.json", written("report.html", scene, "compare", ...few)],
-         ["Benchmark of scene.json",
+         ["Comparison of methods on disc (scene.json)", written("report.html", scene, "compare", ...few)],
+         ["Benchmark of disc (scene.json)",
           written("bench.html", scene, "bench", ...few, "--tolerances", "1e-2,1e-6", "--repeats", "1")],
-         ["Stability matrix of scene.json", written("stress.html", scene, "stress", "--rows", "S1,S4,S8", "--quick")]]) {
+         ["Stability matrix of disc (scene.json)", written("stress.html", scene, "stress", "--rows", "S1,S4,S8", "--quick")]]) {
     const { page, closed } = await opened(place);
     assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
     assert.ok(await page.getByRole("table").count() > 0);

@@ -51,8 +51,8 @@ struct StressResult {
 };
 
 struct StressMatrix {
-  std::string scene_file;  // empty: the built-in scenes
-  double row_seconds = 0;  // time limit of each solve
+  std::string scene_file, scene_title;  // empty: the built-in scenes
+  double row_seconds = 0;               // time limit of each solve
   std::vector<StressResult> results;
   bool is_cancelled = false;
 

@@ -145,7 +145,7 @@ std::string stress_summary(const StressMatrix& matrix) {
 
 std::string stress_page(const StressMatrix& matrix) {
   Page page{.title = "Stability matrix of " +
-                     (matrix.scene_file.empty() ? std::string("the built-in scenes") : matrix.scene_file),
+                     (matrix.scene_file.empty() ? std::string("the built-in scenes") : matrix.scene_title),
             .lead = stress_summary(matrix)};
   const bool is_whole = !matrix.is_cancelled && matrix.count(StressVerdict::Stall) == 0;
   page.tone = matrix.has_failed() ? Tone::Bad : (is_whole ? Tone::Good : Tone::Caution);
