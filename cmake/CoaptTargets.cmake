@@ -62,7 +62,7 @@ function(coapt_link_adapters target)
 endfunction()
 
 # coapt_precompile(<target> <headers>): where the build asks for it. Never for includes to rely on; the
-# release preset builds without.
+# preset `separate` builds without.
 function(coapt_precompile target)
   if(COAPT_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} PRIVATE ${ARGN})

@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "mesh/formats/text.hpp"
 #include "scene/benchmark_report.hpp"
@@ -16,7 +17,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct BenchArguments : StudyArguments {
   std::string methods = "newton,lbfgs,dynamic", tolerances = "1e-2,1e-4,1e-6,1e-8", reference, closed;
   int levels = 1, repeats = 3;
   double truth_seconds = 0;  // 0: not given
@@ -36,13 +37,6 @@ std::vector<double> tolerance_list(const std::string& text) {
   return tolerances;
 }
 
-void print_number(const std::optional<double>& value) {
-  if (value)
-    std::printf(" %10.2e", *value);
-  else
-    std::printf(" %10s", "-");
-}
-
 void print_progress(const Benchmark& bench, const BenchRun& run) {
   std::printf("  %-12s %-18s %8.0e  %-16s %10.4f s %6d iterations\n", bench.methods[run.method].name.c_str(),
               mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance,
@@ -57,11 +51,11 @@ void print_runs(const Benchmark& bench) {
     const RunErrors& errors = run.errors;
     std::printf("  %-12s %-18s %8.0e", bench.methods[run.method].name.c_str(),
                 mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance);
-    print_number(error_of(run, ErrorKind::Algebraic));
-    print_number(errors.discretisation);
-    print_number(errors.method);
-    print_number(errors.model ? std::optional(errors.model->mean) : std::nullopt);
-    print_number(errors.total);
+    print_cell(error_of(run, ErrorKind::Algebraic), " %10.2e");
+    print_cell(errors.discretisation, " %10.2e");
+    print_cell(errors.method, " %10.2e");
+    print_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt, " %10.2e");
+    print_cell(errors.total, " %10.2e");
     std::printf(" %10.4f", run.cpu.median);
     if (run.peak_memory_mb) std::printf(" %8.1f", *run.peak_memory_mb);
     std::printf("%s\n", run.status == Status::Converged ? "" : "  stopped early");
@@ -78,7 +72,7 @@ void print_times(const Benchmark& bench) {
       std::printf("  %-12s %-18s", bench.methods[method].name.c_str(), what.c_str());
       for (const double mm : accuracies) {
         const BenchRun* run = fastest_run(bench, kind, mm, filter);
-        print_number(run != nullptr ? std::optional(run->wall.median) : std::nullopt);
+        print_cell(run != nullptr ? std::optional(run->wall.median) : std::nullopt, " %10.2e");
       }
       std::printf("\n");
     };
@@ -107,7 +101,7 @@ void print_summary(const Benchmark& bench) {
   for (const double mm : kTotalAccuracies) std::printf("%s\n", recommendation(bench, mm).c_str());
 }
 
-void bench_scene(const Arguments& arguments, int& exit_code) {
+void bench_scene(const BenchArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   RunOptions run = arguments.options();
@@ -139,7 +133,7 @@ void bench_scene(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand(
       "bench",
       "Error against run time: methods, tolerances and meshes on one scene, and what to take for it");

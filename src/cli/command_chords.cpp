@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ChordsArguments {
   std::string input, output;
   std::vector<std::array<double, 3>> tips, closed_tips;
   std::vector<std::string> zones = {"free_edge"};
@@ -38,7 +38,7 @@ Points points_of(const std::vector<std::array<double, 3>>& list) {
 }
 
 // The valve without its chords: from a valve JSON, or a mesh alone. mm.
-Valve read_input(const Arguments& arguments) {
+Valve read_input(const ChordsArguments& arguments) {
   Valve valve;
   std::vector<std::string> warnings;
   if (formats::lower_extension(arguments.input) == ".json") {
@@ -75,7 +75,7 @@ Valve read_input(const Arguments& arguments) {
 }
 
 // The meshes are written beside the JSON: neither may take the place of the other or of what was read.
-void check_output(const Arguments& arguments) {
+void check_output(const ChordsArguments& arguments) {
   if (formats::lower_extension(arguments.output) != ".json")
     throw InputError(arguments.output +
                      ": is to be a valve JSON, beside which the mesh is written as "
@@ -87,7 +87,7 @@ void check_output(const Arguments& arguments) {
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }
 
-void make_chords(Arguments& arguments) {
+void make_chords(ChordsArguments& arguments) {
   check_output(arguments);
   arguments.options.zones.clear();
   for (const std::string& zone : arguments.zones) arguments.options.zones.push_back(chord_zone(zone));
@@ -114,7 +114,7 @@ void make_chords(Arguments& arguments) {
 }  // namespace
 
 void add_chords_command(CLI::App& app, int& /*exit_code*/) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ChordsArguments>();
   LeafletChordOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
       "chords", "Make chords where an image shows none: a valve JSON with leaflets, rims, tips and chords");

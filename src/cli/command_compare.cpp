@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "cli/table_cell.hpp"
 #include "scene/comparison_report.hpp"
 
 #include <CLI/CLI.hpp>
@@ -14,7 +15,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct CompareArguments : StudyArguments {
   std::string methods, reference, closed;
   bool prints_json = false;
 };
@@ -25,13 +26,6 @@ std::vector<std::string> usual_methods(const std::vector<std::string>& known) {
   for (const char* name : {"newton", "lbfgs", "dynamic", "mass-spring", "xpbd"})
     if (std::find(known.begin(), known.end(), name) != known.end()) methods.emplace_back(name);
   return methods;
-}
-
-void print_cell(const std::optional<double>& value, const char* format, int width) {
-  if (value)
-    std::printf(format, *value);
-  else
-    std::printf("%*s", width, "-");
 }
 
 void print_header(bool has_closed) {
@@ -47,11 +41,11 @@ void print_distances(const ComparedMethod& method, bool has_closed) {
   if (method.gap && method.gap->surfaces) to_reference = both_directions(*method.gap->surfaces);
   if (method.run->report.reference) to_closed = both_directions(*method.run->report.reference);
   const auto print = [](const Figures& figures, double DistanceFigures::*figure) {
-    print_cell(figures ? std::optional((*figures).*figure) : std::nullopt, " %9.3g", 10);
+    print_cell(figures ? std::optional((*figures).*figure) : std::nullopt, " %9.3g");
   };
   for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95, &DistanceFigures::max})
     print(to_reference, figure);
-  print_cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt, " %9.3g", 10);
+  print_cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt, " %9.3g");
   if (!has_closed) return;
   for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95}) print(to_closed, figure);
 }
@@ -62,11 +56,11 @@ void print_row(const ComparedMethod& method, bool has_closed) {
     const Metrics& metrics = method.run->report.metrics;
     std::printf("  %-12s %-16s", method.name.c_str(), std::string(status_name(result.status)).c_str());
     print_distances(method, has_closed);
-    print_cell(metrics.orifice_area_mm2, " %9.2f", 10);
+    print_cell(metrics.orifice_area_mm2, " %9.2f");
     print_cell(
         metrics.leaflet_area_open_mm2 > 0 ? std::optional(metrics.leaflet_area_change_mm2) : std::nullopt,
-        " %9.2f", 10);
-    print_cell(metrics.coaptation_area_mm2, " %9.2f", 10);
+        " %9.2f");
+    print_cell(metrics.coaptation_area_mm2, " %9.2f");
     std::printf(" %6ld %9.1e %14.8g %7d %8.2f %8.2f\n", metrics.intersections, result.residual, result.energy,
                 result.iterations, result.cpu_s, result.wall_s);
   } else {
@@ -76,7 +70,7 @@ void print_row(const ComparedMethod& method, bool has_closed) {
   std::fflush(stdout);
 }
 
-void compare(const Arguments& arguments, int& exit_code) {
+void compare(const CompareArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   const SolverTable solvers = all_solvers();
@@ -111,7 +105,7 @@ void compare(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand(
       "compare", "One scene by several methods: distances between the results, figures, run times");
   add_run_arguments(*command, *arguments);

@@ -19,7 +19,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : SceneArguments {
+struct GenerateArguments : SceneArguments {
   std::string what;
   int triangles = 2500;
   unsigned seed = 0;
@@ -33,7 +33,7 @@ std::optional<Vec3> position_of(const std::vector<double>& numbers) {
   return Vec3(numbers.data());
 }
 
-Valve generated_mitral(const Arguments& arguments) {
+Valve generated_mitral(const GenerateArguments& arguments) {
   const MitralOptions options{.triangles = arguments.triangles, .seed = arguments.seed};
   if (arguments.annulus.empty()) return mitral_valve(options);
   MeasuredMitral measured;
@@ -45,7 +45,7 @@ Valve generated_mitral(const Arguments& arguments) {
 }
 
 // Options that say more of a measured annulus than there is.
-void check_measured(const Arguments& arguments) {
+void check_measured(const GenerateArguments& arguments) {
   const bool has_sides =
       !arguments.anterior.empty() || !arguments.ventricle.empty() || !arguments.papillary.empty();
   if (arguments.what != "mitral" && (has_sides || !arguments.annulus.empty()))
@@ -54,11 +54,11 @@ void check_measured(const Arguments& arguments) {
     throw InputError("--papillary, --anterior and --ventricle need --annulus FILE");
 }
 
-bool is_given(const Arguments& arguments, const char* option) {
+bool is_given(const GenerateArguments& arguments, const char* option) {
   return std::find(arguments.given.begin(), arguments.given.end(), option) != arguments.given.end();
 }
 
-void write_shape(const Arguments& arguments) {
+void write_shape(const GenerateArguments& arguments) {
   std::vector<std::string> defects;
   const std::vector<std::string> shapes = shape_names();
   const bool is_known = std::find(shapes.begin(), shapes.end(), arguments.what) != shapes.end();
@@ -72,7 +72,7 @@ void write_shape(const Arguments& arguments) {
   write_shape_scene(arguments.what, options, arguments.folder);
 }
 
-void write_mitral(const Arguments& arguments) {
+void write_mitral(const GenerateArguments& arguments) {
   if (!arguments.model.empty() && is_given(arguments, "--membrane"))
     throw InputError(
         "generate mitral: --membrane has no meaning beside --model, which says what the leaflets are; leave "
@@ -83,7 +83,7 @@ void write_mitral(const Arguments& arguments) {
   write_valve_scene(valve, arguments.folder, options);
 }
 
-void generate(const Arguments& arguments) {
+void generate(const GenerateArguments& arguments) {
   check_measured(arguments);
   if (arguments.what == "mitral") {
     write_mitral(arguments);
@@ -96,7 +96,7 @@ void generate(const Arguments& arguments) {
 }  // namespace
 
 void add_generate_command(CLI::App& app, int& /*exit_code*/) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<GenerateArguments>();
   CLI::App* command =
       app.add_subcommand("generate", "Write a valve or a simple shape with a scene that is ready to solve");
   std::string shapes = "mitral";

@@ -12,12 +12,12 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : SceneArguments {
+struct ImportArguments : SceneArguments {
   std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
   bool incompressible = false;
 };
 
-void import_file(const Arguments& arguments) {
+void import_file(const ImportArguments& arguments) {
   refuse_folder_of(arguments.file, arguments.folder);
   ImportOptions options = import_options(arguments);
   options.incompressible = arguments.incompressible;
@@ -34,7 +34,7 @@ void import_file(const Arguments& arguments) {
 }  // namespace
 
 void add_import_command(CLI::App& app, int& /*exit_code*/) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand(
       "import",
       "Write a scene from a valve JSON, an Abaqus or FEBio model, or a mesh with curves of 3D Slicer");

@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "cli/table_cell.hpp"
 #include "scene/intervene.hpp"
 
 #include <CLI/CLI.hpp>
@@ -13,7 +14,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct InterveneArguments : StudyArguments {
   std::vector<std::string> edits, files;
   bool prints_json = false;
 };
@@ -27,26 +28,19 @@ void print_state(const char* name, const std::optional<RunReport>& run) {
   for (const std::string& warning : run->report.warnings) std::printf("        %s\n", warning.c_str());
 }
 
-void print_number(const std::optional<double>& value) {
-  if (value)
-    std::printf(" %12.5g", *value);
-  else
-    std::printf(" %12s", "-");
-}
-
 void print_table(const BeforeAfter& found) {
   std::printf("  %-26s %-4s %12s %12s %12s\n", "figure", "", "before", "after", "change");
   for (const ChangedFigure& figure : changed_figures(found)) {
     if (!figure.before.value && !figure.after) continue;
     std::printf("  %-26s %-4s", figure.before.name.c_str(), figure.before.unit.c_str());
-    print_number(figure.before.value);
-    print_number(figure.after);
-    print_number(figure.change);
+    print_cell(figure.before.value, " %12.5g");
+    print_cell(figure.after, " %12.5g");
+    print_cell(figure.change, " %12.5g");
     std::printf("\n");
   }
 }
 
-void run_command(const Arguments& arguments, int& exit_code) {
+void run_command(const InterveneArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   InterveneOptions options;
   options.files.assign(arguments.files.begin(), arguments.files.end());
@@ -73,7 +67,7 @@ void run_command(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_intervene_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InterveneArguments>();
   CLI::App* command = app.add_subcommand(
       "intervene", "A valve before and after its repair: both solved, with every figure of both");
   add_study_arguments(*command, *arguments);

@@ -13,11 +13,11 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct MeshStudyArguments : StudyArguments {
   int levels = 2;
 };
 
-void print_header() {
+void print_level_header() {
   std::printf("  %9s %10s %10s %10s  %26s %6s %10s\n", "triangles", "iterations", "s", "CPU s",
               "to the level before (95 %)", "order", "orifice");
 }
@@ -37,7 +37,7 @@ void print_row(const MeshLevel& level) {
   std::fflush(stdout);
 }
 
-void study(const Arguments& arguments, int& exit_code) {
+void study(const MeshStudyArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   const std::filesystem::path folder = arguments.prepared_folder(scene);
@@ -45,7 +45,7 @@ void study(const Arguments& arguments, int& exit_code) {
   const MeshStudy found =
       study_mesh(scene, all_solvers(), arguments.levels, arguments.options(), [&](const MeshLevel& level) {
         end_progress();
-        if (!has_header) print_header();
+        if (!has_header) print_level_header();
         has_header = true;
         print_row(level);
       });
@@ -57,7 +57,7 @@ void study(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_mesh_study_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MeshStudyArguments>();
   CLI::App* command = app.add_subcommand(
       "mesh-study", "How far the solution moves when every triangle is cut into four, again and again");
   add_study_arguments(*command, *arguments);

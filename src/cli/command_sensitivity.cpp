@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "scene/sensitivity.hpp"
 #include "scene/units.hpp"
@@ -15,7 +16,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct SensitivityArguments : StudyArguments {
   std::vector<std::string> parameters;
   std::string perturbation = "5%";
   bool starts_anew = false;
@@ -32,14 +33,7 @@ double share(const std::string& text) {
   }
 }
 
-void print_cell(const std::optional<double>& value) {
-  if (value)
-    std::printf(" %10.3f", *value);
-  else
-    std::printf(" %10s", "-");
-}
-
-void print_header(bool starts_anew) {
+void print_parameter_header(bool starts_anew) {
   std::printf("mean distances in mm, per 100 %% of each parameter; solves start from %s\n",
               starts_anew ? "the scene's own shape" : "the first solution");
   std::printf("  %-32s %12s %-7s %10s %10s %11s %8s\n", "parameter", "value", "", "movement", "error",
@@ -48,8 +42,8 @@ void print_header(bool starts_anew) {
 
 void print_row(const ParameterSensitivity& p) {
   std::printf("  %-32s %12.6g %-7s", p.name.c_str(), p.value, p.unit.c_str());
-  print_cell(p.movement);
-  print_cell(p.error_change);
+  print_cell(p.movement, " %10.3f");
+  print_cell(p.error_change, " %10.3f");
   std::printf("   %4d %4d %8.2f", p.smaller.iterations, p.larger.iterations,
               p.smaller.wall_s + p.larger.wall_s);
   for (const SensitivityRun* run : {&p.smaller, &p.larger})
@@ -60,7 +54,7 @@ void print_row(const ParameterSensitivity& p) {
   std::fflush(stdout);
 }
 
-void study(const Arguments& arguments, int& exit_code) {
+void study(const SensitivityArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   SensitivityOptions options;
@@ -70,7 +64,7 @@ void study(const Arguments& arguments, int& exit_code) {
   bool has_header = false;
   options.report = [&](const ParameterSensitivity& found) {
     end_progress();
-    if (!has_header) print_header(arguments.starts_anew);
+    if (!has_header) print_parameter_header(arguments.starts_anew);
     has_header = true;
     print_row(found);
   };
@@ -94,7 +88,7 @@ void study(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_sensitivity_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SensitivityArguments>();
   CLI::App* command = app.add_subcommand(
       "sensitivity", "How far the solution moves with each parameter: every one made smaller and larger");
   add_study_arguments(*command, *arguments);

@@ -20,7 +20,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments {
+struct SolveArguments {
   std::string scene, folder, solver, accuracy;
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
@@ -104,7 +104,7 @@ RunIdentity identity(const Scene& scene, const RunOptions& options,
 }  // namespace
 
 void add_solve_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SolveArguments>();
   CLI::App* command = app.add_subcommand("solve", "Solve a scene and write its result folder");
   command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
   command->add_option("-o,--output", arguments->folder,

@@ -3,6 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "mesh/formats/text.hpp"
 #include "scene/stress/stress_report.hpp"
@@ -15,7 +16,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments {
+struct StressArguments {
   std::string scene, folder, rows;
   double row_seconds = 20;
   bool is_quick = false, lists = false, prints_json = false;
@@ -39,13 +40,6 @@ void print_list(const std::vector<StressRow>& rows) {
                 row.scene.c_str(), row.name.c_str(), row.is_quick ? "yes" : "");
 }
 
-void print_number(const std::optional<double>& value) {
-  if (value)
-    std::printf(" %9.2g", *value);
-  else
-    std::printf(" %9s", "-");
-}
-
 void print_header() {
   std::printf("  %-4s %-24s %-58s %-7s %9s %9s %6s %8s\n", "row", "scene", "what is varied", "verdict",
               "figure", "limit", "iter.", "wall s");
@@ -55,8 +49,8 @@ void print_row(const StressResult& result) {
   const StressOutcome& outcome = result.outcome;
   std::printf("  %-4s %-24s %-58s %-7s", result.row.id.c_str(), result.row.scene.c_str(),
               result.row.name.c_str(), std::string(stress_verdict_name(outcome.verdict)).c_str());
-  print_number(outcome.figure);
-  print_number(outcome.limit);
+  print_cell(outcome.figure, " %9.2g");
+  print_cell(outcome.limit, " %9.2g");
   if (outcome.iterations)
     std::printf(" %6d", *outcome.iterations);
   else
@@ -67,12 +61,12 @@ void print_row(const StressResult& result) {
 }
 
 // Where the files go: `-o`, else the scene's result folder, else a folder here.
-std::filesystem::path folder_of(const Arguments& arguments, const std::optional<Scene>& scene) {
+std::filesystem::path folder_of(const StressArguments& arguments, const std::optional<Scene>& scene) {
   if (!arguments.folder.empty()) return arguments.folder;
   return scene ? result_folder(*scene) : std::filesystem::path("stress");
 }
 
-void stress(const Arguments& arguments, int& exit_code) {
+void stress(const StressArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   std::optional<Scene> scene;
   if (!arguments.scene.empty()) scene = load_scene(arguments.scene);
@@ -116,7 +110,7 @@ void stress(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_stress_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<StressArguments>();
   CLI::App* command = app.add_subcommand(
       "stress",
       "Stability matrix: scenes at the end of what they can be asked for, and whether the answer holds");

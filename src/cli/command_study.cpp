@@ -17,14 +17,14 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct ParameterStudyArguments : StudyArguments {
   std::vector<std::string> sweeps;
   std::string metric = "orifice_area_mm2";
   int processes = 0;
   bool is_greatest_best = false, starts_over = false, prints_json = false;
 };
 
-std::string settings_text(const Arguments& arguments) {
+std::string settings_text(const ParameterStudyArguments& arguments) {
   char text[96];
   std::snprintf(text, sizeof text, "tolerance %.17g, seconds %.17g, solver ", arguments.tolerance,
                 arguments.max_seconds);
@@ -33,7 +33,7 @@ std::string settings_text(const Arguments& arguments) {
 
 // In a process of its own: solves the point into its folder.
 int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
-                const std::filesystem::path& folder, const Arguments& arguments) {
+                const std::filesystem::path& folder, const ParameterStudyArguments& arguments) {
   RunOptions options = arguments.options();
   options.folder = folder;
   options.observer = [](const Iteration&, const Vector&) { return !is_interrupted(); };
@@ -75,7 +75,7 @@ void print_ranking(const ParameterStudy& study) {
   }
 }
 
-void run_study(const Arguments& arguments, int& exit_code) {
+void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const std::filesystem::path scene = arguments.scene;
   ParameterStudy study;
@@ -142,7 +142,7 @@ void run_study(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_study_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ParameterStudyArguments>();
   CLI::App* command = app.add_subcommand(
       "study", "A scene at every point of a grid of values, in parallel processes, and the points ranked");
   add_study_arguments(*command, *arguments);

@@ -28,7 +28,7 @@ const std::map<std::string, ChordGrouping> kGroupings = {{"chord", ChordGrouping
 const std::map<std::string, FitSides> kSides = {
     {"both", FitSides::Both}, {"mesh", FitSides::Surface}, {"target", FitSides::Target}};
 
-struct Arguments : StudyArguments {
+struct TuneArguments : StudyArguments {
   ChordTuningOptions tuning;
   TuneCheckpointArguments checkpoint;
   std::string target, grouping = "chord", sides = "both", only, bounds, noise, determined, step;
@@ -67,7 +67,7 @@ void read_length(const char* name, const std::string& text, double& length,
   }
 }
 
-ChordTuningOptions tuning_options(const Arguments& arguments) {
+ChordTuningOptions tuning_options(const TuneArguments& arguments) {
   ChordTuningOptions options = arguments.tuning;
   options.target = arguments.target;
   options.grouping = kGroupings.at(arguments.grouping);
@@ -139,7 +139,7 @@ void print_found(const ChordTuning& found) {
               found.folder.string().c_str(), found.tuned_scene.empty() ? "" : ", tuned.json");
 }
 
-void run_command(const Arguments& arguments, int& exit_code) {
+void run_command(const TuneArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   ChordTuningOptions options = tuning_options(arguments);
   RunOptions run = arguments.options();
@@ -171,7 +171,7 @@ void run_command(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_tune_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TuneArguments>();
   CLI::App* command = app.add_subcommand(
       "tune", "Chord lengths that fit a closed surface, or make orifice and chord force least");
   ChordTuningOptions& tuning = arguments->tuning;

@@ -14,7 +14,7 @@
 namespace coapt::cli {
 namespace {
 
-struct Arguments : StudyArguments {
+struct TuneRegionsArguments : StudyArguments {
   std::string regions = "14";
   RegionTuningOptions tuning;
   double orifice = 0;
@@ -28,7 +28,7 @@ void print_state(const char* label, const TuningState& state) {
   std::fflush(stdout);
 }
 
-void tune(const Arguments& arguments, int& exit_code) {
+void tune(const TuneRegionsArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   RegionTuningOptions options = arguments.tuning;
@@ -72,7 +72,7 @@ std::string regions_defect(const std::string& text) {
 }  // namespace
 
 void add_tune_regions_command(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TuneRegionsArguments>();
   CLI::App* command = app.add_subcommand(
       "tune-regions", "Stiffness of each leaflet region with which no chord exceeds its yield strain");
   add_study_arguments(*command, *arguments);
