@@ -30,17 +30,17 @@ function(coapt_room target)
   target_sources(${target} PRIVATE ${ARG_SOURCES}
                            PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
   if(COAPT_UNITY_BUILD)
-    coapt_unite(${target} ${ARG_SOURCES})
+    coapt_unite(${target} 8 ${ARG_SOURCES})
   endif()
 endfunction()
 
-# coapt_unite(<target> <sources>): groups of eight, named after the folder and the first source.
-function(coapt_unite target)
+# coapt_unite(<target> <size> <sources>): groups of so many, named after the folder and the first source.
+function(coapt_unite target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME room)
   set(count 0)
   foreach(source IN LISTS ARGN)
-    math(EXPR place "${count} % 8")
+    math(EXPR place "${count} % ${size}")
     if(place EQUAL 0)
       cmake_path(GET source STEM first)
       set(group ${room}_${first})

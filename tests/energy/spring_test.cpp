@@ -17,18 +17,18 @@ namespace {
 
 static_assert(ProjectsItself<Spring> && HasKink<Spring>);
 
-constexpr double kThickness = 0.4;
+constexpr double kSpringThickness = 0.4;
 
 // A law, in units of `stress`.
-struct Law {
+struct SpringCurve {
   const char* name;
   SpringSheet (*sheet)(double stress);
 };
 
-SpringSheet linear(double stress) { return linear_springs(2 * stress, kThickness); }
+SpringSheet linear(double stress) { return linear_springs(2 * stress, kSpringThickness); }
 
 SpringSheet bilinear(double stress) {
-  SpringSheet sheet = linear_springs(stress, kThickness);
+  SpringSheet sheet = linear_springs(stress, kSpringThickness);
   sheet.fibre.knee = sheet.cross.knee = {9 * stress, 0.2, 0.05};
   return sheet;
 }
@@ -48,7 +48,7 @@ struct Mode {
   bool resists;
 };
 
-class SpringLaw : public testing::TestWithParam<std::tuple<Law, Mode>> {
+class SpringLaw : public testing::TestWithParam<std::tuple<SpringCurve, Mode>> {
  protected:
   TermCase test_case() const {
     const auto& [law, mode] = GetParam();
@@ -148,7 +148,7 @@ TEST_P(SpringLaw, ProjectsLikeAnEigenvalueDecomposition) {
   EXPECT_EQ(has_negative, std::get<1>(GetParam()).resists && std::get<1>(GetParam()).f22 < 1);
 }
 
-constexpr Law kLaws[] = {{"linear", linear}, {"bilinear", bilinear}, {"orthotropic", orthotropic}};
+constexpr SpringCurve kLaws[] = {{"linear", linear}, {"bilinear", bilinear}, {"orthotropic", orthotropic}};
 constexpr Mode kModes[] = {{"stretched, resisting", 1.12, 0, 1.08, 0.002, true},
                            {"sheared beyond the knees, resisting", 1.6, 0.3, 1.5, 0.002, true},
                            {"compressed, resisting", 0.85, 0.1, 0.9, 0.002, true},

@@ -13,13 +13,14 @@
 namespace coapt {
 namespace {
 
-constexpr double kYoung = 2.0, kPoisson = 0.35, kThickness = 0.4;
+constexpr double kSheetYoung = 2.0, kSheetPoisson = 0.35, kSheetThickness = 0.4;
 
-struct Law {
+struct TensionLaw {
   double prestress = 0, residual = 0;
 };
 
-TermCase patch_case(const std::string& label, const Eigen::Matrix3d& f, const Law& law, double shake = 0.02) {
+TermCase patch_case(const std::string& label, const Eigen::Matrix3d& f, const TensionLaw& law,
+                    double shake = 0.02) {
   const TriangleMesh mesh = patch();
   TermCase c;
   c.label = label;
@@ -33,17 +34,18 @@ TermCase patch_case(const std::string& label, const Eigen::Matrix3d& f, const La
     std::vector<CstTensionField::Rest> rest;
     for (int k = 0; k < t.cols(); ++k)
       rest.push_back(CstTensionField::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)),
-                                           kYoung * frame.force / (frame.length * frame.length), kPoisson,
-                                           kThickness * frame.length,
+                                           kSheetYoung * frame.force / (frame.length * frame.length),
+                                           kSheetPoisson, kSheetThickness * frame.length,
                                            law.prestress * frame.force / frame.length, law.residual));
     return std::make_unique<ElementTerm<CstTensionField>>("membrane", triangle_nodes(t), rest);
   };
   return c;
 }
 
-oracle::TensionField patch_oracle(const Law& law) {
+oracle::TensionField patch_oracle(const TensionLaw& law) {
   const TriangleMesh mesh = patch();
-  return {{mesh.triangles, mesh.vertices, kYoung, kPoisson, kThickness, law.prestress}, law.residual};
+  return {{mesh.triangles, mesh.vertices, kSheetYoung, kSheetPoisson, kSheetThickness, law.prestress},
+          law.residual};
 }
 
 std::set<MembraneRegime> regimes(const TermCase& c) {
@@ -62,7 +64,7 @@ using Regimes = std::set<MembraneRegime>;
 const Regimes kTaut{MembraneRegime::Taut}, kWrinkled{MembraneRegime::Wrinkled};
 
 TEST(CstTensionField, PassesTheSuiteTaut) {
-  for (const Law law : {Law{}, Law{0.6, 0}, Law{0.3, 0.1}}) {
+  for (const TensionLaw law : {TensionLaw{}, TensionLaw{0.6, 0}, TensionLaw{0.3, 0.1}}) {
     const TermCase c = patch_case("taut", deformation(1.3, 0, 1.2), law);
     EXPECT_EQ(regimes(c), kTaut);
     EXPECT_EQ(examine_term(c), "");
@@ -71,7 +73,8 @@ TEST(CstTensionField, PassesTheSuiteTaut) {
 }
 
 TEST(CstTensionField, PassesTheSuiteWrinkled) {
-  for (const Law law : {Law{}, Law{0.1, 0}, Law{0, 0.05}, Law{0.1, 0.05}}) {
+  for (const TensionLaw law :
+       {TensionLaw{}, TensionLaw{0.1, 0}, TensionLaw{0, 0.05}, TensionLaw{0.1, 0.05}}) {
     const TermCase c = patch_case("wrinkled", deformation(1.4, 0.1, 0.6), law);
     EXPECT_EQ(regimes(c), kWrinkled);
     EXPECT_EQ(examine_term(c), "");
@@ -81,7 +84,7 @@ TEST(CstTensionField, PassesTheSuiteWrinkled) {
 
 // With the residual stiffness even slack triangles have derivatives to test.
 TEST(CstTensionField, PassesTheSuiteSlackWithResidualStiffness) {
-  for (const Law law : {Law{0, 0.05}, Law{0.05, 0.05}}) {
+  for (const TensionLaw law : {TensionLaw{0, 0.05}, TensionLaw{0.05, 0.05}}) {
     const TermCase c = patch_case("slack", deformation(0.6, 0.05, 0.7), law);
     EXPECT_EQ(regimes(c), Regimes{MembraneRegime::Slack});
     EXPECT_EQ(examine_term(c), "");
@@ -113,12 +116,12 @@ struct Single {
   double energy = 0;
 };
 
-Single single(double e1, double e2, double turn = 0, const Law& law = {}) {
+Single single(double e1, double e2, double turn = 0, const TensionLaw& law = {}) {
   Points X(3, 3);
   X << 0, 1.1, 0.3, 0, 0.1, 0.9, 0, 0, 0;
   Single s;
-  s.rest = CstTensionField::rest(X.col(0), X.col(1), X.col(2), kYoung, kPoisson, kThickness, law.prestress,
-                                 law.residual);
+  s.rest = CstTensionField::rest(X.col(0), X.col(1), X.col(2), kSheetYoung, kSheetPoisson, kSheetThickness,
+                                 law.prestress, law.residual);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
   const Vec3 stretch(std::sqrt(1 + 2 * e1), std::sqrt(1 + 2 * e2), 1);
@@ -130,10 +133,10 @@ Single single(double e1, double e2, double turn = 0, const Law& law = {}) {
 
 // Energy and force cross each border without a jump: they differ by no more than the strain between them.
 TEST(CstTensionField, IsContinuouslyDifferentiableAtBothBorders) {
-  const double nu = kPoisson;
+  const double nu = kSheetPoisson;
   for (const double prestress : {0.0, 0.2})
     for (const double turn : {0.0, 0.4, 1.3, std::numbers::pi / 2}) {
-      const Law law{prestress, 0};
+      const TensionLaw law{prestress, 0};
       const double shift = single(0, 0, 0, law).rest.shift;
       for (const double d : {1e-4, 1e-7, 1e-10}) {
         const double e1 = 0.2 - shift, border = -nu * 0.2 - shift;  // taut | wrinkled
@@ -192,9 +195,9 @@ TEST(CstTensionField, PullsAlongTheMajorDirectionAlone) {
   const Single s = single(0.2, -0.4, 0.5);
   const Eigen::Vector2d stress = CstTensionField::state(s.rest, s.x).stress;
   const double area = 0.5 * (1.1 * 0.9 - 0.1 * 0.3);
-  EXPECT_NEAR(stress[0], kYoung * 0.2, 1e-14);
+  EXPECT_NEAR(stress[0], kSheetYoung * 0.2, 1e-14);
   EXPECT_EQ(stress[1], 0);
-  EXPECT_NEAR(s.energy, area * kThickness * kYoung * 0.5 * 0.2 * 0.2, 1e-14);
+  EXPECT_NEAR(s.energy, area * kSheetThickness * kSheetYoung * 0.5 * 0.2 * 0.2, 1e-14);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kThickness = 0.4;
+constexpr double kTissueThickness = 0.4;
 const Vec3 kFibre = Vec3(std::cos(0.4), std::sin(0.4), 0);
 
 template <typename Entry>
@@ -36,7 +36,7 @@ TermCase patch_case(const std::string& label, Law (*law_of)(double), const Eigen
     std::vector<typename K::Type::Rest> rest;
     for (int k = 0; k < t.cols(); ++k)
       rest.push_back(K::rest(X.col(t(0, k)), X.col(t(1, k)), X.col(t(2, k)), frame.rotation * kFibre,
-                             law_of(stress), kThickness * frame.length, relaxes));
+                             law_of(stress), kTissueThickness * frame.length, relaxes));
     return std::make_unique<ElementTerm<typename K::Type>>("membrane", triangle_nodes(t), rest);
   };
   return c;
@@ -84,7 +84,8 @@ TYPED_TEST(TissueLaw, PassesTheSuiteInEveryRegime) {
 TYPED_TEST(TissueLaw, AgreesWithAutomaticDifferentiationOfItsFormula) {
   const TriangleMesh mesh = patch();
   const auto density = Answer<TypeParam>::density();
-  const oracle::Tissue<decltype(density)> energy{mesh.triangles, mesh.vertices, kFibre, kThickness, density};
+  const oracle::Tissue<decltype(density)> energy{mesh.triangles, mesh.vertices, kFibre, kTissueThickness,
+                                                 density};
   for (const auto& f : {deformation(1.3, 0.05, 1.2), deformation(1.22, 0.05, 1.15),
                         deformation(1.1, 0.3, 1.05), deformation(0.9, 0.1, 0.95)})
     EXPECT_EQ(compare_with_autodiff(patch_case(TypeParam::kName, TypeParam::law, f, false), energy, 1e-8),

@@ -10,7 +10,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kTight = 1e-12;
+constexpr double kRecordTolerance = 1e-12;
 
 // A square held at its rim, which is pulled up while a load presses on it, in four steps.
 struct Square {
@@ -43,7 +43,7 @@ Result solved(const std::string& solver, RunRecorder& recorder, int most = 1 << 
   Problem problem{*square.objective, square.objective->unknowns(square.mesh.vertices), motion, {4, 1, 1}};
   const SolverTable table = recorder.recorded(built_in_solvers());
   int seen = 0;
-  return solve(*table.at(solver)({}), problem, {.tolerance = kTight},
+  return solve(*table.at(solver)({}), problem, {.tolerance = kRecordTolerance},
                recorder.recorded([&](const Iteration&, const Vector&) { return ++seen < most; }));
 }
 

@@ -17,7 +17,7 @@
 namespace coapt {
 namespace {
 
-SolverTable all_solvers() {
+SolverTable valve_solvers() {
   SolverTable table = built_in_solvers();
 #ifdef COAPT_HAS_CERES
   add_ceres_solver(table);
@@ -41,7 +41,7 @@ Equilibrium closed(const ValveScene& scene, const std::string& solver, bool is_c
   stop.tolerance = kTolerance;
   stop.max_seconds = 60;
   Equilibrium found;
-  found.result = solve(*all_solvers().at(solver)(options), problem, stop);
+  found.result = solve(*valve_solvers().at(solver)(options), problem, stop);
   found.x = objective.positions(found.result.q);
   return found;
 }
@@ -52,7 +52,7 @@ class GradientOnly : public testing::TestWithParam<std::pair<std::string, bool>>
 TEST_P(GradientOnly, ReachesNewtonsValveToAMillionthOfAMillimetre) {
   if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
   const auto& [solver, takes_rounds] = GetParam();
-  if (!all_solvers().contains(solver)) GTEST_SKIP() << "skipped: this build has no " << solver;
+  if (!valve_solvers().contains(solver)) GTEST_SKIP() << "skipped: this build has no " << solver;
   const ValveScene scene({});
   const Equilibrium newton = closed(scene, "newton"), found = closed(scene, solver);
   ASSERT_EQ(newton.result.status, Status::Converged) << newton.result.message;

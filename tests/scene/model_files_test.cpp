@@ -21,7 +21,7 @@ namespace {
 const std::filesystem::path kTricuspid =
     std::filesystem::path(COAPT_SHARED_DIR) / "data" / "trivalve11-healthy";
 
-std::string text_of(const std::filesystem::path& path) {
+std::string file_text(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
@@ -140,7 +140,7 @@ TEST_F(TricuspidModel, BringsItsMaterialsIntoAScene) {
   EXPECT_EQ(model.applied_pressure, 0.00306);
 
   import_valve(file_, folder.path(), {.incompressible = true});
-  EXPECT_EQ(text_of(folder.path() / "scene.json").find("bulk"), std::string::npos);
+  EXPECT_EQ(file_text(folder.path() / "scene.json").find("bulk"), std::string::npos);
 }
 
 // A scene, its FEBio model, and the scene of that.
@@ -301,7 +301,7 @@ TEST(FebioModel, SpringsHaveTheForcesOfTheChords) {
   Valve valve = mitral_valve({.triangles = 300});
   write_valve_scene(valve, folder.path(), {});
   export_file(folder.path() / "scene.json", folder.path() / "model.feb");
-  const std::string text = text_of(folder.path() / "model.feb");
+  const std::string text = file_text(folder.path() / "model.feb");
   // The first spring at a strain of its distance: scale times the line through its last two points.
   const Chord& chord = valve.chords.chords[0];
   const auto number_after = [&](const std::string& mark, size_t from) {

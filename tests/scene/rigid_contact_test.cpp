@@ -26,7 +26,7 @@ Vec3 contact_force(const JudgedScene& judged, const std::string& set) {
 
 // --- A ball pressed into a film --------------------------------------------------------------------------
 
-constexpr double kRim = 10, kBall = 4, kTension = 0.1;
+constexpr double kRimRadius = 10, kBall = 4, kTension = 0.1;
 
 // A film of constant tension in a circular frame at z = 0, its middle carried by a sphere of radius a around
 // (0, 0, -below) that it leaves tangentially. Outside it is the catenoid r = c cosh((z - z0) / c); the
@@ -36,7 +36,7 @@ struct BallInFilm {
 
   double rim_above_centre(double angle) const {
     const double c = a * std::pow(std::sin(angle), 2);
-    return c * (std::acosh(kRim / c) - std::acosh(1 / std::sin(angle))) - a * std::cos(angle);
+    return c * (std::acosh(kRimRadius / c) - std::acosh(1 / std::sin(angle))) - a * std::cos(angle);
   }
   // Angle between the axis and the circle of contact; the film touches the lower side.
   double angle() const {
@@ -53,7 +53,7 @@ struct BallInFilm {
 class BallInFilmTest : public ContactSceneTest {
  protected:
   BallInFilmTest() {
-    write("film.obj", disc(kRim, 1500));
+    write("film.obj", disc(kRimRadius, 1500));
     TriangleMesh ball = sphere(kBall, 1280);
     ball.vertices.row(2).array() += kBall + 0.5;
     write("ball.obj", ball);

@@ -99,7 +99,11 @@ struct Truss {
     mask(1, 2) = true;  // or the compressed springs would swing sideways
     return mask;
   }
-  static Points positions() { return (Points(3, 3) << -1, 1, 0, 0, 0, 0, 0, 0, 0.2).finished(); }
+  static Points positions() {
+    Points x(3, 3);
+    x << -1, 1, 0, 0, 0, 0, 0, 0, 0.2;
+    return x;
+  }
   static Terms terms(double load) {
     Points forces = Points::Zero(3, 3);
     forces(2, 2) = -load;

@@ -21,9 +21,9 @@ struct Bubble {
 };
 
 // The law of row B2 that is linear in the stretches (Biot): a bilinear one that never gets to its knee.
-enum class Law { StVK, Biot };
+enum class ColumnLaw { StVK, Biot };
 
-Bubble inflated_disc(Law law, int n, double q) {
+Bubble inflated_disc(ColumnLaw law, int n, double q) {
   const TriangleMesh mesh = smooth_disc_mesh(n);
   FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
   Points start = mesh.vertices;
@@ -35,7 +35,7 @@ Bubble inflated_disc(Law law, int n, double q) {
       start(2, v) = 0.5 * std::cbrt(q) * (1 - r2);
   }
   std::unique_ptr<EnergyTerm> sheet =
-      law == Law::StVK
+      law == ColumnLaw::StVK
           ? tension_field_term(mesh.vertices, mesh.triangles, {1, 0.3, 0})
           : tissue_term(mesh, BilinearLaw{1, 0.3, {0, 10, 0}}, 1, Points::Zero(3, mesh.triangle_count()));
   const Equilibrium found = find_equilibrium(
@@ -78,13 +78,13 @@ class InflatedDisc : public testing::TestWithParam<BubbleCase> {};
 
 TEST_P(InflatedDisc, B2HasTheVolumeAndTheStretchOfTheExactSolution) {
   const auto& [q, exact, biot_height] = GetParam();
-  const Bubble coarse = inflated_disc(Law::StVK, 8, q), middle = inflated_disc(Law::StVK, 16, q);
+  const Bubble coarse = inflated_disc(ColumnLaw::StVK, 8, q), middle = inflated_disc(ColumnLaw::StVK, 16, q);
   EXPECT_GT(observed_order(coarse.volume - exact.volume, middle.volume - exact.volume), 1.9);
   EXPECT_GT(observed_order(coarse.centre_stretch - exact.centre_stretch,
                            middle.centre_stretch - exact.centre_stretch),
             1.9);
   if (is_sanitized()) return;
-  const Bubble usual = inflated_disc(Law::StVK, 22, q), fine = inflated_disc(Law::StVK, 32, q),
+  const Bubble usual = inflated_disc(ColumnLaw::StVK, 22, q), fine = inflated_disc(ColumnLaw::StVK, 32, q),
                answer = extrapolated(coarse, middle, fine);
   std::printf("B2 q=%.0e: errors of volume %.2e, of stretch %.2e; extrapolated %.2e, %.2e\n", q,
               usual.volume / exact.volume - 1, usual.centre_stretch / exact.centre_stretch - 1,
@@ -98,11 +98,12 @@ TEST_P(InflatedDisc, B2HasTheVolumeAndTheStretchOfTheExactSolution) {
 
 TEST_P(InflatedDisc, B2OfALawLinearInTheStretchesMatchesTheTableToo) {
   const auto& [q, exact, biot_height] = GetParam();
-  const Bubble coarse = inflated_disc(Law::Biot, 8, q), middle = inflated_disc(Law::Biot, 16, q);
+  const Bubble coarse = inflated_disc(ColumnLaw::Biot, 8, q), middle = inflated_disc(ColumnLaw::Biot, 16, q);
   EXPECT_GT(observed_order(coarse.height - biot_height, middle.height - biot_height), 1.9);
   if (is_sanitized()) return;
-  const double usual = inflated_disc(Law::Biot, 22, q).height,
-               answer = extrapolated(coarse.height, middle.height, inflated_disc(Law::Biot, 32, q).height);
+  const double usual = inflated_disc(ColumnLaw::Biot, 22, q).height,
+               answer =
+                   extrapolated(coarse.height, middle.height, inflated_disc(ColumnLaw::Biot, 32, q).height);
   std::printf("B2 q=%.0e, linear in the stretches: error of height %.2e, extrapolated %.2e\n", q,
               usual / biot_height - 1, answer / biot_height - 1);
   EXPECT_NEAR(usual / biot_height, 1, 2e-3);
@@ -124,8 +125,9 @@ TEST(FichtersDisc, B2fIsFichtersToWithinTheErrorOfHisTheory) {
   };
   for (const Fichter& row :
        {Fichter{1e-3, 0.0653083475, 0.00433748345}, Fichter{1e-2, 0.140421553, 0.0205806046}}) {
-    const Bubble found = extrapolated(inflated_disc(Law::StVK, 4, row.q), inflated_disc(Law::StVK, 8, row.q),
-                                      inflated_disc(Law::StVK, 16, row.q));
+    const Bubble found =
+        extrapolated(inflated_disc(ColumnLaw::StVK, 4, row.q), inflated_disc(ColumnLaw::StVK, 8, row.q),
+                     inflated_disc(ColumnLaw::StVK, 16, row.q));
     const double l = found.centre_stretch, stress = l * (l * l - 1) / (2 * 0.7);
     std::printf("B2f q=%.0e: height %.2e, stress %.2e from Fichter's\n", row.q, found.height / row.height - 1,
                 stress / row.stress - 1);

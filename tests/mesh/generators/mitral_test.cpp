@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/generators/mitral_mesh.hpp"
+#include "mesh/generators/smallest_angle.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -22,18 +23,6 @@ Vec3 position(const Valve& valve, const ChordEnd& end) {
   if (end.kind == ChordEnd::Kind::Papillary) return valve.chords.papillary.col(end.index);
   if (end.kind == ChordEnd::Kind::Junction) return valve.chords.junctions.col(end.index);
   return valve.leaflets.vertices.col(end.index);
-}
-
-double smallest_angle(const TriangleMesh& mesh) {  // [degrees]
-  double least = 180;
-  for (int t = 0; t < mesh.triangle_count(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 at = mesh.vertices.col(mesh.triangles(k, t));
-      const Vec3 u = mesh.vertices.col(mesh.triangles((k + 1) % 3, t)) - at;
-      const Vec3 v = mesh.vertices.col(mesh.triangles((k + 2) % 3, t)) - at;
-      least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / std::numbers::pi);
-    }
-  return least;
 }
 
 double loop_area(const Points& loop) {  // of the polygon, seen along its own normal

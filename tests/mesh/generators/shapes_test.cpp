@@ -1,6 +1,7 @@
 #include "mesh/generators/shapes.hpp"
 
 #include "core/error.hpp"
+#include "mesh/generators/smallest_angle.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -20,18 +21,6 @@ bool is_oriented_manifold(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) directed.emplace_back(mesh.triangles(k, t), mesh.triangles((k + 1) % 3, t));
   std::sort(directed.begin(), directed.end());
   return std::adjacent_find(directed.begin(), directed.end()) == directed.end();
-}
-
-double smallest_angle(const TriangleMesh& mesh) {  // [degrees]
-  double least = 180;
-  for (int t = 0; t < mesh.triangle_count(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 at = mesh.vertices.col(mesh.triangles(k, t));
-      const Vec3 u = mesh.vertices.col(mesh.triangles((k + 1) % 3, t)) - at;
-      const Vec3 v = mesh.vertices.col(mesh.triangles((k + 2) % 3, t)) - at;
-      least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / kPi);
-    }
-  return least;
 }
 
 double least_normal_z(const TriangleMesh& mesh) {
