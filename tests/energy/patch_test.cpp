@@ -2,6 +2,7 @@
 #include "energy/load_dead.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
+#include "support/tissue_laws.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -26,11 +27,23 @@ TriangleMesh irregular_square() {
   return mesh;
 }
 
+std::unique_ptr<EnergyTerm> stvk_sheet(const TriangleMesh& mesh) {
+  return membrane_term(mesh.vertices, mesh.triangles, {kEh, kNu, 0});
+}
+
+// The law that is linear in the stretches (Biot): a bilinear one that never gets to its knee.
+std::unique_ptr<EnergyTerm> biot_sheet(const TriangleMesh& mesh) {
+  return tissue_term(mesh, BilinearLaw{kEh, kNu, {0, 10, 0}}, 1, Points::Zero(3, mesh.triangle_count()),
+                     false);
+}
+
+using Sheet = std::unique_ptr<EnergyTerm> (*)(const TriangleMesh&);
+
 // Solves with the mask given, from a shaken state, in the plane z = 0.
-Equilibrium stretch(const TriangleMesh& mesh, const FixedMask& fixed, const Points& prescribed) {
+Equilibrium stretch(const TriangleMesh& mesh, const FixedMask& fixed, const Points& prescribed,
+                    Sheet sheet = stvk_sheet) {
   const Points start = fixed.select(prescribed, shaken(prescribed, 0.02, 32).array()).matrix();
-  return find_equilibrium(start, fixed, terms_of(membrane_term(mesh.vertices, mesh.triangles, {kEh, kNu, 0})),
-                          1e-13, "bfgs");
+  return find_equilibrium(start, fixed, terms_of(sheet(mesh)), 1e-13, "bfgs");
 }
 
 FixedMask in_plane_mask(const TriangleMesh& mesh, bool all_edges) {
@@ -47,10 +60,11 @@ FixedMask in_plane_mask(const TriangleMesh& mesh, bool all_edges) {
 }
 
 // Sum of the reactions in direction `component` on the edge x = 1 or y = 1.
-double edge_force(const TriangleMesh& mesh, const Points& x, int edge, int component) {
+double edge_force(const TriangleMesh& mesh, const Points& x, int edge, int component,
+                  Sheet sheet = stvk_sheet) {
   Points g = Points::Zero(3, x.cols());
   Sink sink(g.data());
-  membrane_term(mesh.vertices, mesh.triangles, {kEh, kNu, 0})->evaluate(x, sink);
+  sheet(mesh)->evaluate(x, sink);
   double sum = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (mesh.vertices(edge, v) > 1 - 1e-9) sum += g(component, v);
@@ -73,6 +87,19 @@ TEST(PatchTest, A1aUniaxialStretchWithFreeSides) {
     EXPECT_LT((found.x.col(v) - expected).norm(), 1e-10);
   }
   EXPECT_NEAR(edge_force(mesh, found.x, 0, 0) / 115.5, 1, 1e-10);
+}
+
+TEST(PatchTest, A1bUniaxialStretchOfALawLinearInTheStretches) {
+  const TriangleMesh mesh = irregular_square();
+  Points prescribed = mesh.vertices;
+  prescribed.row(0) *= 1.1;
+  const Equilibrium found = stretch(mesh, in_plane_mask(mesh, false), prescribed, biot_sheet);
+  EXPECT_NEAR(found.result.energy / 5, 1, 1e-10);  // Eh 0.1^2 / 2
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vec3 expected(1.1 * mesh.vertices(0, v), 0.97 * mesh.vertices(1, v), 0);
+    EXPECT_LT((found.x.col(v) - expected).norm(), 1e-10);
+  }
+  EXPECT_NEAR(edge_force(mesh, found.x, 0, 0, biot_sheet) / 100, 1, 1e-10);
 }
 
 TEST(PatchTest, A1cBiaxialStretch) {

@@ -41,15 +41,15 @@ struct KernelOf<Law> {
   }
 };
 
-// The relaxed membrane of a law on all triangles. fibres: a direction for each.
+// The membrane of a law on all triangles, relaxed or resisting compression. fibres: a direction for each.
 template <typename Law>
 std::unique_ptr<EnergyTerm> tissue_term(const TriangleMesh& mesh, const Law& law, double thickness,
-                                        const Points& fibres) {
+                                        const Points& fibres, bool relaxes = true) {
   std::vector<typename KernelOf<Law>::Type::Rest> rest;
   for (int t = 0; t < mesh.triangle_count(); ++t)
     rest.push_back(
         KernelOf<Law>::rest(mesh.vertices.col(mesh.triangles(0, t)), mesh.vertices.col(mesh.triangles(1, t)),
-                            mesh.vertices.col(mesh.triangles(2, t)), fibres.col(t), law, thickness, true));
+                            mesh.vertices.col(mesh.triangles(2, t)), fibres.col(t), law, thickness, relaxes));
   return std::make_unique<ElementTerm<typename KernelOf<Law>::Type>>("tissue", triangle_nodes(mesh.triangles),
                                                                      std::move(rest));
 }

@@ -1,6 +1,6 @@
-// Rows B1 to B4 of the verification table: membranes under load against closed forms and an independent
-// solution of the axisymmetric equations. Each is solved twice: cst_stvk by lbfgs, and cst_tension_field by
-// newton, which must give the same answers, as all these membranes are taut.
+// Rows B1 to B4 and B8 of the verification table: membranes under load against closed forms and an
+// independent solution of the axisymmetric equations. Each is solved twice: cst_stvk by lbfgs, and
+// cst_tension_field by newton, which must give the same answers, as all these membranes are taut.
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
 #include "support/equilibrium.hpp"
@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -272,6 +273,54 @@ TEST(Strip, B4BulgesIntoTheClosedFormCylinder) {
   for (const Means& means : kMeans) {
     SCOPED_TRACE(means.name);
     expect_closed_form_bulge(means);
+  }
+}
+
+// --- B8: a force at the centre of a disc -----------------------------------------------------------------
+
+// Deflections over that of the closed form at the centre (Schwerin 1929). Both laws by newton.
+struct PointLoad {
+  double centre = 0;
+  double greatest_error = 0;  // of the shape 1 - r^(2/3), r from 0.1 to 1
+};
+
+PointLoad point_load(SheetLaw material, int n) {
+  constexpr double force = 1e-6;  // over E h times the radius
+  TriangleMesh mesh = smooth_disc_mesh(n);
+  // Finer where the slope has no bound.
+  for (int v = 0; v < mesh.vertex_count(); ++v) mesh.vertices.col(v) *= mesh.vertices.col(v).squaredNorm();
+  const double deflection = std::cbrt(3 / std::numbers::pi * force);
+  const auto shape = [](double r) { return 1 - std::cbrt(r * r); };
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  Points start = mesh.vertices, load = Points::Zero(3, mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double r = mesh.vertices.col(v).norm();
+    if (r > 1 - 1e-9) fixed.col(v).setConstant(true);
+    start(2, v) = 0.8 * deflection * (1 - r);
+  }
+  const int centre = grid_node(n, n / 2, n / 2);
+  load(2, centre) = force;
+  const Equilibrium found =
+      find_equilibrium(start, fixed,
+                       terms_of(sheet_term(material, mesh.vertices, mesh.triangles, {1, 1.0 / 3, 0}),
+                                std::make_unique<LoadDead>("load", "load_field", load, mesh.vertices)),
+                       1e-9, "newton");
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  PointLoad answer{found.x(2, centre) / deflection, 0};
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double r = mesh.vertices.col(v).norm(), error = found.x(2, v) / deflection - shape(r);
+    if (r > 0.1) answer.greatest_error = std::max(answer.greatest_error, std::abs(error));
+  }
+  return answer;
+}
+
+TEST(PointLoadOnADisc, B8DeflectsAsSchwerinsClosedForm) {
+  for (const SheetLaw material : {SheetLaw::StVK, SheetLaw::TensionField}) {
+    const PointLoad coarse = point_load(material, 16), fine = point_load(material, 32);
+    EXPECT_NEAR(fine.centre, 1, 0.01);
+    EXPECT_LT(std::abs(fine.centre - 1), 0.5 * std::abs(coarse.centre - 1));
+    EXPECT_LT(fine.greatest_error, 2e-3);
+    EXPECT_LT(fine.greatest_error, 0.5 * coarse.greatest_error);
   }
 }
 
