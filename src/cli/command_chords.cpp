@@ -92,8 +92,12 @@ void make_chords(ChordsArguments& arguments) {
   arguments.options.zones.clear();
   for (const std::string& zone : arguments.zones) arguments.options.zones.push_back(chord_zone(zone));
   Valve valve = read_input(arguments);
-  find_rims(valve);
-  valve.chords = leaflet_chords(valve, arguments.options);
+  try {
+    find_rims(valve);
+    valve.chords = leaflet_chords(valve, arguments.options);
+  } catch (const InputError& error) {
+    throw error.within(arguments.input);
+  }
   write_valve(arguments.output, valve);
   const auto& chords = valve.chords.chords;
   const auto taut = std::count_if(chords.begin(), chords.end(), [&](const Chord& chord) {

@@ -19,6 +19,13 @@ class InputError : public std::runtime_error {
 
   const std::vector<std::string>& defects() const { return defects_; }
 
+  // The same defects, each after "`where`: ", for what was found without knowing the file it came from.
+  InputError within(const std::string& where) const {
+    std::vector<std::string> placed;
+    for (const std::string& defect : defects_) placed.push_back(where + ": " + defect);
+    return InputError(std::move(placed));
+  }
+
  private:
   static std::string join(const std::vector<std::string>& defects) {
     std::string text;

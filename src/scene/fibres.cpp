@@ -97,8 +97,7 @@ FibreField field_of_scene(const SceneFibres& fibres, const Groundwork& ground) {
   try {
     return fibre_field(model.mesh, guides, {fibres.joins_regions});
   } catch (const InputError& error) {
-    for (const std::string& defect : error.defects()) defects.push_back(fibres.where + ": " + defect);
-    throw InputError(defects);
+    throw error.within(fibres.where);
   }
 }
 

@@ -99,8 +99,13 @@ ChordNetwork generated_chords(const Scene& scene, const Valve& sets_file, Assemb
       chords.tips.cols() > 0 ? chords.tips_closed : sets_file.chords.papillary_closed;
   if (valve.chords.papillary.cols() == 0)
     throw InputError(chords.where + ".tips: missing, and the file of `mesh.sets` names no papillary points");
-  find_rims(valve);
-  ChordNetwork network = leaflet_chords(valve, chords.options);
+  ChordNetwork network;
+  try {
+    find_rims(valve);
+    network = leaflet_chords(valve, chords.options);
+  } catch (const InputError& error) {
+    throw error.within(scene.file.string());
+  }
   if (network.papillary_closed.cols() > 0)
     assembly.points.insert_or_assign("papillary_closed", network.papillary_closed);
   return network;

@@ -306,7 +306,7 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
     if (output.has("folder"))
       scene.output_folder = (path.parent_path() / output.text("folder")).lexically_normal();
     if (output.has("frames")) scene.frame_interval = output.integer("frames");
-    scene.writes_page = output.flag("report");
+    scene.writes_page = output.has("report") && output.flag("report");
   }
   check_generated(scene, file, reading);
   if (!has_mesh_in_memory) check_substance(scene, json, file, reading);

@@ -273,7 +273,7 @@ TEST_F(MitralFibresTest, NamesDefectsOfGeneratedChords) {
   wrong(R"("chords": {"tips": [{"at": [0, 0, -25]}, {"at": [9, 0, -25], "closed_at": [9, 0, -24]}]}, )",
         "for all tips or for none");
   wrong(R"("chords": {"tips": [{"at": [0, 0, 40]}, {"at": [0, 0, -40]}]}, )", "chords: tip ");
-  wrong(R"("chords": {"count": 5000}, )", "free vertices");
+  wrong(R"("chords": {"count": 5000}, )", "scene.json: chords: zone of the primary chords: 5000 insertions");
 }
 
 // Leaflets that nobody here made: a human tricuspid valve, and a bioprosthesis of three separate leaflets

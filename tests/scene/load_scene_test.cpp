@@ -3,8 +3,11 @@
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 namespace coapt {
 namespace {
@@ -155,6 +158,54 @@ TEST(SceneFile, ReportsAllDefectsInOnePass) {
     "terms": [{"type": "cst_stvk", "young": "1 kg", "thickness": -1, "poisson": 2},
               {"type": "load_pressure"}]})");
   EXPECT_EQ(defects.size(), 7u) << InputError(defects).what();
+}
+
+// Everything that stands in a document: itself, its members, their members.
+void collect_places(const nlohmann::json& value, const nlohmann::json::json_pointer& place,
+                    std::vector<nlohmann::json::json_pointer>& places) {
+  places.push_back(place);
+  if (value.is_object())
+    for (const auto& [key, member] : value.items()) collect_places(member, place / key, places);
+  if (value.is_array())
+    for (size_t k = 0; k < value.size(); ++k) collect_places(value[k], place / k, places);
+}
+
+TEST(SceneFile, RefusesAValueOfAnyOtherKindAtEveryPlaceAsADefectOfTheFile) {
+  const std::filesystem::path seeds = std::filesystem::path(COAPT_SOURCE_DIR) / "tests/fuzz/corpus/scene";
+  const nlohmann::json others[] = {nullptr,
+                                   true,
+                                   0.5,
+                                   -3,
+                                   "another kind",
+                                   nlohmann::json::array(),
+                                   nlohmann::json::object(),
+                                   nlohmann::json::array({nlohmann::json::object()})};
+  const TemporaryFolder folder;  // holds the files that the scenes name: a missing one would be a defect already
+  folder.write("mesh.obj", kMesh);
+  folder.write("floor.obj", kMesh);
+  folder.write("valve.json", "{}");
+  int accepted = 0, refused = 0;
+  for (const auto& seed : std::filesystem::directory_iterator(seeds)) {
+    std::ifstream in(seed.path());
+    const nlohmann::json scene = nlohmann::json::parse(in, nullptr, true, true);
+    std::vector<nlohmann::json::json_pointer> places;
+    collect_places(scene, nlohmann::json::json_pointer(), places);
+    for (const auto& place : places)
+      for (const nlohmann::json& other : others) {
+        nlohmann::json damaged = scene;
+        damaged[place] = other;
+        try {
+          parse_scene(damaged.dump(), folder.path() / "scene.json");
+          ++accepted;
+        } catch (const InputError&) {
+          ++refused;
+        } catch (const std::exception& error) {
+          ADD_FAILURE() << seed.path().filename() << ": " << place << " = " << other << ": " << error.what();
+        }
+      }
+  }
+  EXPECT_GT(accepted, 100);
+  EXPECT_GT(refused, 500);
 }
 
 TEST(SceneFile, NamesLineAndColumnOfASyntaxError) {

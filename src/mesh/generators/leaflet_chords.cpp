@@ -223,7 +223,7 @@ std::vector<std::string> option_defects(const LeafletChordOptions& o) {
   if (o.zones.empty()) defects.push_back("chords: zones: name at least one");
   for (const ChordZone& zone : o.zones)
     if (!(zone.height > 0 && zone.height <= 1) || !(zone.area > 0))
-      defects.push_back("chords: zone \"" + zone.material + "\": height must be in (0, 1] and area above 0");
+      defects.push_back("chords: zone of the " + zone.material + " chords: height must be in (0, 1] and area above 0");
   if (!o.level_areas.empty() && static_cast<int>(o.level_areas.size()) != o.levels)
     defects.push_back("chords: level_areas: holds " + std::to_string(o.level_areas.size()) + " areas for " +
                       std::to_string(o.levels) + " levels");
@@ -297,7 +297,7 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
   for (const ChordZone& zone : options.zones) {
     std::vector<Site>& free_sites = zone.height < 1 ? sites.inside : sites.free_edge;
     if (static_cast<size_t>(wanted) > free_sites.size()) {
-      defects.push_back("chords: zone \"" + zone.material + "\": " + std::to_string(wanted) +
+      defects.push_back("chords: zone of the " + zone.material + " chords: " + std::to_string(wanted) +
                         " insertions, but only " + std::to_string(free_sites.size()) +
                         " free vertices; take fewer chords, branches or levels, or a finer mesh");
       continue;
