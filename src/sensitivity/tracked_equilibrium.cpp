@@ -366,11 +366,8 @@ Derivatives TrackedEquilibrium::derivatives(const Metric& metric) {
   Derivatives result;
   result.value = metric.evaluate(x, &by_x);
   result.gradient = pull_back(by_x);
+  result.gradient += partial(metric, x);
   result.residual = adjoint_residual_;
-  for (size_t k = 0; k < parameters_.size(); ++k) {
-    const Vector direct = metric.partial(*parameters_[k], x);
-    result.gradient.segment(first_[k], direct.size()) += direct;
-  }
   return result;
 }
 
@@ -383,10 +380,46 @@ Points TrackedEquilibrium::response(const Vector& change) {
   return predict(change, kExact);
 }
 
+void TrackedEquilibrium::require_wanted() const {
+  if (options_.observer && !options_.observer({}, q_))
+    throw InputError("equilibrium: the observer ended the work on derivatives");
+}
+
+// At fixed positions, by all numbers.
+Vector TrackedEquilibrium::partial(const Metric& metric, const Points& x) const {
+  Vector direct(number_count_);
+  for (size_t k = 0; k < parameters_.size(); ++k) {
+    const Vector part = metric.partial(*parameters_[k], x);
+    direct.segment(first_[k], part.size()) = part;
+  }
+  return direct;
+}
+
+// As few linear systems as will do: one for each metric, or for each number.
 Eigen::MatrixXd TrackedEquilibrium::jacobian(const std::vector<const Metric*>& metrics) {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(metrics.size()), number_count_);
-  for (size_t k = 0; k < metrics.size(); ++k)
-    rows.row(static_cast<Eigen::Index>(k)) = derivatives(*metrics[k]).gradient.transpose();
+  const auto count = static_cast<Eigen::Index>(metrics.size());
+  Eigen::MatrixXd rows(count, number_count_);
+  if (count <= number_count_) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      require_wanted();
+      rows.row(k) = derivatives(*metrics[static_cast<size_t>(k)]).gradient.transpose();
+    }
+    return rows;
+  }
+  std::vector<Points> motions;
+  for (int number = 0; number < number_count_; ++number) {
+    require_wanted();
+    motions.push_back(response(Vector::Unit(number_count_, number)));
+  }
+  const Points x = positions();
+  Points by_x(3, x.cols());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Metric& metric = *metrics[static_cast<size_t>(k)];
+    metric.evaluate(x, &by_x);
+    rows.row(k) = partial(metric, x).transpose();
+    for (int number = 0; number < number_count_; ++number)
+      rows(k, number) += by_x.cwiseProduct(motions[static_cast<size_t>(number)]).sum();
+  }
   return rows;
 }
 
@@ -397,14 +430,10 @@ Vector TrackedEquilibrium::gauss_newton_product(const std::vector<const Metric*>
   Vector direct = Vector::Zero(number_count_);
   for (const Metric* residual : residuals) {
     residual->evaluate(x, &by_x);
-    Vector partial(number_count_);
-    for (size_t k = 0; k < parameters_.size(); ++k) {
-      const Vector part = residual->partial(*parameters_[k], x);
-      partial.segment(first_[k], part.size()) = part;
-    }
-    const double along = by_x.cwiseProduct(motion).sum() + partial.dot(change);
+    const Vector own = partial(*residual, x);
+    const double along = by_x.cwiseProduct(motion).sum() + own.dot(change);
     weights += along * by_x;
-    direct += along * partial;
+    direct += along * own;
   }
   return pull_back(weights) + direct;
 }

@@ -40,7 +40,8 @@ struct TrackingOptions {
   int max_iterations = 2000;  // of the whole method (newton, with all its safeguards)
   double max_seconds = kInfinity;
   bool checks_branch = true;
-  Observer observer = {};  // sees the shape at every step; returning false ends settle() with Cancelled
+  Observer observer = {};  // sees the shape at every step; returning false ends settle() with Cancelled, and
+                           // jacobian() with an InputError
 };
 
 // That the shape is on another branch of equilibria than before the change: it did not come back when the
@@ -109,7 +110,8 @@ class TrackedEquilibrium {
   Points response(const Vector& change);
   Vector pull_back(const Points& weights);
 
-  // One row for each metric.
+  // One row for each metric, by as many linear systems as there are metrics or numbers, whichever are fewer.
+  // Asks the observer before each, and throws InputError where it says no.
   Eigen::MatrixXd jacobian(const std::vector<const Metric*>& metrics);
 
   // Product of sum_k grad r_k grad r_k^T with `change`, for residuals r_k of a least-squares problem: one
@@ -139,7 +141,9 @@ class TrackedEquilibrium {
   void ready_tangent();       // assembled at q_, with a factor that will do
   void require_sound(const Vector& value) const;
   void require_settled() const;
+  void require_wanted() const;
   void check_solved(double residual, double tolerance) const;
+  Vector partial(const Metric& metric, const Points& x) const;
   Points force_change(const Points& x, const Vector& change);  // -(dg), prescribed motion included
   Points predict(const Vector& change, double tolerance);      // to this residual of the linear system
   Settling settle_at(const Vector& now);
