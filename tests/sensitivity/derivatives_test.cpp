@@ -1,4 +1,5 @@
 // Exact derivatives against differences of solved shapes, for every pair of parameter and metric.
+#include "core/error.hpp"
 #include "sensitivity/metrics_contact.hpp"
 #include "sensitivity/metrics_orifice.hpp"
 #include "sensitivity/metrics_state.hpp"
@@ -35,7 +36,7 @@ TriangleMesh plane_target() {
 Metrics all_metrics(const TrackedValve& valve, const TriangleMesh& target) {
   const ValveScene& scene = valve.scene;
   const Points x = valve.equilibrium.positions();
-  EnergyTerm& chords = valve.term("cable");
+  EnergyTerm& chords = valve.term("chords");
   std::vector<int> all_chords;
   int tautest = 0;
   double most = 0;
@@ -105,9 +106,7 @@ double step_without_kinks(TrackedEquilibrium& equilibrium, const Vector& directi
   return step;
 }
 
-TEST(Derivatives, AgreeWithDifferencesOfSolvedShapesForEveryPair) {
-  TrackedValve valve;
-  valve.add_all();
+void expect_differences_for_every_pair(TrackedValve& valve) {
   ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   const Vector start = valve.equilibrium.value();
@@ -132,6 +131,18 @@ TEST(Derivatives, AgreeWithDifferencesOfSolvedShapesForEveryPair) {
   }
 }
 
+TEST(Derivatives, AgreeWithDifferencesOfSolvedShapesForEveryPair) {
+  TrackedValve valve;
+  valve.add_common();
+  expect_differences_for_every_pair(valve);
+}
+
+TEST(Derivatives, AgreeWithDifferencesOnTissueForEveryPairWithOtherParameters) {
+  TrackedValve valve(tissue_valve_terms(), closed_by(tissue_valve_terms()));
+  valve.add_others();
+  expect_differences_for_every_pair(valve);
+}
+
 TEST(Derivatives, OfMetricsByPositionsAgreeWithDifferences) {
   TrackedValve valve;
   const Metrics metrics = all_metrics(valve, wavy_target(valve));
@@ -152,7 +163,7 @@ TEST(Derivatives, OfMetricsByPositionsAgreeWithDifferences) {
 
 TEST(Derivatives, ForwardAndAdjointSystemsAgree) {
   TrackedValve valve;
-  valve.add_all();
+  valve.add_common();
   ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
   Points weights = Points::Zero(3, valve.objective.node_count());
   weights.leftCols(valve.scene.triangles.maxCoeff() + 1).setRandom();
@@ -165,9 +176,48 @@ TEST(Derivatives, ForwardAndAdjointSystemsAgree) {
   }
 }
 
+// More metrics than numbers are differentiated by forward systems, fewer by adjoint ones.
+TEST(Derivatives, OfManyMetricsAreThoseOfEach) {
+  TrackedValve valve(tissue_valve_terms(), closed_by(tissue_valve_terms()));
+  valve.add_others();
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  Metrics metrics = all_metrics(valve, plane_target());
+  ASSERT_LT(metrics.size(), static_cast<size_t>(valve.equilibrium.number_count()));
+  const size_t count = metrics.size();
+  for (auto& residual :
+       make_distance_residuals("residual", valve.scene.triangles, valve.scene.X, wavy_target(valve), 0.01))
+    metrics.push_back(std::move(residual));
+  ASSERT_GT(metrics.size(), static_cast<size_t>(valve.equilibrium.number_count()));
+  std::vector<const Metric*> all;
+  for (const auto& metric : metrics) all.push_back(metric.get());
+  const Eigen::MatrixXd forward = valve.equilibrium.jacobian(all),
+                        adjoint = valve.equilibrium.jacobian({all.begin(), all.begin() + count});
+  const auto rows = static_cast<Eigen::Index>(count);
+  for (Eigen::Index k = 0; k < rows; ++k)
+    EXPECT_LT((forward.row(k) - adjoint.row(k)).norm(), 1e-9 * adjoint.row(k).norm()) << metrics[k]->name();
+  EXPECT_GT(forward.bottomRows(forward.rows() - rows).norm(), 0.01);
+}
+
+TEST(Derivatives, OfAJacobianEndWhereTheObserverSaysNo) {
+  int asked = 0;
+  bool goes_on = true;
+  TrackedValve valve({.tolerance = kTrackingTolerance,
+                      .observer = [&](const Iteration&, const Vector&) { return goes_on || ++asked < 3; }});
+  valve.add_common();
+  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  const Metrics metrics = all_metrics(valve, plane_target());
+  std::vector<const Metric*> all;
+  for (const auto& metric : metrics) all.push_back(metric.get());
+  goes_on = false;
+  EXPECT_THROW(valve.equilibrium.jacobian(all), InputError);
+  EXPECT_EQ(asked, 3);
+  goes_on = true;
+  EXPECT_EQ(valve.equilibrium.jacobian(all).rows(), static_cast<Eigen::Index>(all.size()));
+}
+
 TEST(Derivatives, GaussNewtonProductIsThatOfTheJacobian) {
   TrackedValve valve;
-  valve.add_all();
+  valve.add_common();
   ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   std::vector<const Metric*> some;
@@ -181,7 +231,7 @@ TEST(Derivatives, GaussNewtonProductIsThatOfTheJacobian) {
 
 TEST(Derivatives, CovarianceIsThatOfTheDerivatives) {
   TrackedValve valve;
-  valve.add_all();
+  valve.add_common();
   ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   const int n = valve.equilibrium.number_count();

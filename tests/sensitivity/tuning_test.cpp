@@ -19,7 +19,7 @@ namespace {
 // Chords in three groups by their number, of which the third is two parts of a joint parameter.
 class Groups {
  public:
-  explicit Groups(TrackedValve& valve) : chords_(valve.term("cable")), lines_(line_access(chords_)) {
+  explicit Groups(TrackedValve& valve) : chords_(valve.term("chords")), lines_(line_access(chords_)) {
     first_.resize(chords_.stencils().count());
     for (int e = 0; e < first_.size(); ++e) first_[e] = lines_->rest_length(e);
   }
@@ -120,7 +120,7 @@ class Probe final : public BoundedMinimiser {
 TEST_F(TuningTest, GradientOfTheCostAgreesWithDifferences) {
   const TriangleMesh target = closed(Eigen::Vector3d(0.97, 1.02, 0.99));
   const auto residuals = make_surface_residuals(valve_.scene.triangles, closed_small_valve(), target);
-  EnergyTerm& chords = valve_.term("cable");
+  EnergyTerm& chords = valve_.term("chords");
   std::vector<int> all(static_cast<size_t>(chords.stencils().count()));
   for (size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
   const auto force = make_line_force_norm("force", chords, all, 8);
