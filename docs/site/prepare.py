@@ -5,7 +5,7 @@
 Headers: the comment in front of a declaration and the one behind it, on its line, are its documentation; the
 comment at the head of a file is that of the file; one that a blank line follows belongs to nothing. Markdown:
 headings get anchors of the form page-heading, so that links as GitHub understands them lead there; links to
-files that are no page of the site become their paths.
+files that are no page of the site become their paths, pictures are found by their names.
 """
 import pathlib
 import re
@@ -105,6 +105,8 @@ def page_text(path: pathlib.Path, text: str) -> str:
 
     def rewritten(match: re.Match) -> str:
         label, target = match[1], match[2]
+        if match.start() > 0 and match.string[match.start() - 1] == "!":  # Doxygen looks for pictures by name
+            return f"[{label}]({pathlib.Path(target).name})"
         if re.match(r"\w+:", target):
             return match[0]
         name, _, slug = target.partition("#")

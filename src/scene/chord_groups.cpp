@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSame = 1e-9;
+constexpr const char *kNoTip = "no tip", *kNoMaterial = "no material";
 
 // The papillary tip of each chord: breadth first from the tips, so that the nearest counts.
 std::vector<int> tips_of(const ChordNetwork& network) {
@@ -56,9 +57,9 @@ std::vector<std::string> names_of(const TunableChord& chord, const Model& model,
       return {(has_networks ? chord.network + ": " : std::string()) + "chords[" +
               std::to_string(chord.number) + "]"};
     case ChordGrouping::Tip:
-      return {chord.tip < 0 ? "no tip" : "tip_" + std::to_string(chord.tip)};
+      return {chord.tip < 0 ? kNoTip : "tip_" + std::to_string(chord.tip)};
     case ChordGrouping::Material:
-      return {or_none(chord.material, "no material")};
+      return {or_none(chord.material, kNoMaterial)};
     case ChordGrouping::Term: {
       std::vector<std::string> terms;
       for (const size_t line : chord.lines)
@@ -173,7 +174,15 @@ std::vector<ChordGroup> chord_groups(const std::vector<TunableChord>& chords, co
   return groups;
 }
 
-std::unique_ptr<Parameter> make_group_factors(const std::vector<TunableChord>& chords,
+NamedChords named_chords(const Scene& scene, const Groundwork& ground, const Model& model) {
+  NamedChords named{tunable_chords(scene, ground, model), {}};
+  for (const ChordGrouping grouping : {ChordGrouping::Tip, ChordGrouping::Material})
+    for (ChordGroup& group : chord_groups(named.chords, model, grouping, {}))
+      if (group.name != kNoTip && group.name != kNoMaterial) named.groups.push_back(std::move(group));
+  return named;
+}
+
+std::unique_ptr<Parameter> make_group_factors(std::string name, const std::vector<TunableChord>& chords,
                                               const std::vector<ChordGroup>& groups, const Model& model) {
   std::vector<JointPart> parts;
   for (const auto& term : model.objective->terms()) {
@@ -193,7 +202,7 @@ std::unique_ptr<Parameter> make_group_factors(const std::vector<TunableChord>& c
         make_line_lengths(term->name() + ".factors", *term, std::move(elements), LengthMeasure::Factor);
     parts.push_back(std::move(part));
   }
-  return make_joint_parameter("chord lengths", static_cast<int>(groups.size()), std::move(parts));
+  return make_joint_parameter(std::move(name), static_cast<int>(groups.size()), std::move(parts));
 }
 
 std::string tuned_scene_text(const std::string& text, const fs::path& scene, const fs::path& folder,

@@ -34,8 +34,15 @@ struct ChordGroup {
 std::vector<ChordGroup> chord_groups(const std::vector<TunableChord>& chords, const Model& model,
                                      ChordGrouping grouping, const std::vector<std::string>& only);
 
+// Chords with the groups that they form by papillary tip and by material, those with a name alone.
+struct NamedChords {
+  std::vector<TunableChord> chords;
+  std::vector<ChordGroup> groups;
+};
+NamedChords named_chords(const Scene& scene, const Groundwork& ground, const Model& model);
+
 // One number for each group: the factor on its rest lengths, first 1. Pre: lines as `chords` found them.
-std::unique_ptr<Parameter> make_group_factors(const std::vector<TunableChord>& chords,
+std::unique_ptr<Parameter> make_group_factors(std::string name, const std::vector<TunableChord>& chords,
                                               const std::vector<ChordGroup>& groups, const Model& model);
 
 // The scene's text with an intervention for each chord whose factor is not 1, behind its own, and with paths

@@ -100,7 +100,7 @@ EquilibriumMaker equilibrium_maker(const PreparedTuning& ready, Model& model, bo
   return [&ready, &model, all, tracking](const Vector& q) {
     for (const Lengths& lengths : all) line_access(*lengths.term)->set_rest_lengths(lengths.first);
     auto equilibrium = std::make_unique<TrackedEquilibrium>(*model.objective, q, tracking);
-    equilibrium->add(make_group_factors(ready.chords, ready.groups, model));
+    equilibrium->add(make_group_factors("chord lengths", ready.chords, ready.groups, model));
     return equilibrium;
   };
 }

@@ -1,6 +1,7 @@
 #include "scene/tracked_scene.hpp"
 
 #include "core/error.hpp"
+#include "scene/chord_groups.hpp"
 #include "scene/detail/given_parts.hpp"
 #include "scene/detail/scene_numbers.hpp"
 #include "scene/suggestion.hpp"
@@ -177,10 +178,11 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
                      ": a term that is given has no Hessian, which an equilibrium that is followed needs");
   SolveSetup setup = given_setup(scene, given, solvers, options);
   Groundwork ground = given_ground(scene, given);
-  TrackedScene tracked{build(scene, ground, given.terms), {}, nullptr, nullptr};
+  TrackedScene tracked{build(scene, ground, given.terms), {}, nullptr, nullptr, nullptr};
   if (given.observer) setup.observer = given.observer(tracked.model);
   tracked.first = given.start ? solve_again(relative_start(*given.start, tracked.model), tracked.model, setup)
                               : solve_scene(scene, ground, tracked.model, setup).result;
+  tracked.chords = std::make_shared<NamedChords>(named_chords(scene, ground, tracked.model));
   tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(ground));
   tracking.factorisation = setup.stability.factorisation;
   tracked.equilibrium =
@@ -197,6 +199,8 @@ std::vector<std::string> parameter_names(const TrackedScene& tracked) {
     for (const std::string& key : tracked.numbers->keys_of(*term, objective))
       if (!contains(own, key)) names.push_back(term->name() + "." + key);
   }
+  for (const ChordGroup& group : tracked.chords->groups)
+    if (!contains(names, group.name + ".length")) names.push_back(group.name + ".length");
   for (const auto& [set, nodes] : tracked.model.sets)
     for (const std::string& what : names_of(objective, nodes)) names.push_back(set + "." + what);
   return names;
@@ -215,6 +219,9 @@ std::unique_ptr<Parameter> make_named_parameter(const std::string& name, const S
     return of_term(name, what, scene, tracked.model, *term);
   if (term != nullptr && contains(tracked.numbers->keys_of(*term, *tracked.model.objective), what))
     return tracked.numbers->make(name, *tracked.model.objective);
+  for (const ChordGroup& group : tracked.chords->groups)
+    if (what == "length" && group.name == object)
+      return make_group_factors(name, tracked.chords->chords, {group}, tracked.model);
   return of_set(name, what, tracked, tracked.model.sets.at(object));
 }
 

@@ -11,12 +11,14 @@
 namespace coapt {
 
 class SceneNumbers;
+struct NamedChords;
 
 struct TrackedScene {
   Model model;
   Result first;  // of the solve from the scene's own start
   std::unique_ptr<TrackedEquilibrium> equilibrium;
-  std::shared_ptr<SceneNumbers> numbers;  // of the scene's terms, while they change
+  std::shared_ptr<SceneNumbers> numbers;      // of the scene's terms, while they change
+  std::shared_ptr<const NamedChords> chords;  // as they were first
 };
 
 // Solves the scene as run() does and takes its equilibrium up; nothing is written. Where the first solve did
@@ -33,6 +35,8 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
 // The parameter of this name, for TrackedEquilibrium::add():
 //   TERM.lengths     rest length of each line of a cable or tether term, by itself [mm]
 //   TERM.length      one factor on all of them, first 1
+//   GROUP.length     one factor on the rest lengths of the chords of one material or of one papillary tip,
+//                    tip_0, tip_1 ...; first 1
 //   TERM.stiffness   factor on all moduli of a membrane or cable term, first 1; of a membrane also in bending
 //                    terms that take their stiffness from it
 //   TERM.thickness   factor on the thickness of a membrane, first 1; in such bending terms its third power

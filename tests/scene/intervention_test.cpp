@@ -203,6 +203,26 @@ TEST_F(RepairedValve, ARingOfACurveHoldsTheAnnulusOnIt) {
     EXPECT_NEAR(x.z(), 1, 1e-9);
     EXPECT_NEAR(std::hypot(x.x(), x.y()), 14, 0.02);  // chords of 4 degrees lie 0.009 mm within
   }
+  const auto held = [&](const std::string& keys) {
+    const Model ringed = build(scene(R"({"type": "ring", "curve": "circle.csv")" + keys + "}"));
+    return Points(ringed.motion.positions(1)(Eigen::all, ringed.sets.at("annulus")).colwise() +
+                  ringed.origin);
+  };
+  for (const auto& x : held(R"(, "size": "26 mm")").colwise()) {
+    EXPECT_NEAR(x.z(), 1, 1e-9);
+    EXPECT_NEAR(x.head<2>().norm(), 13, 0.02) << "the circle, scaled";
+  }
+  // A flexible ring gives the annulus its length, and the annulus keeps its shape.
+  const Points own = build(scene()).motion.positions(1)(Eigen::all, model.sets.at("annulus"));
+  const Points flexible = held(R"(, "stiffness": "flexible")");
+  const auto side = [](const Points& x, int k) { return (x.col((k + 1) % x.cols()) - x.col(k)).norm(); };
+  double length = 0;
+  for (int k = 0; k < flexible.cols(); ++k) {
+    length += side(flexible, k);
+    EXPECT_NEAR(side(flexible, k) / side(own, k), side(flexible, 0) / side(own, 0), 1e-9);
+  }
+  EXPECT_NEAR(length, 90 * 28 * std::sin(std::numbers::pi / 90), 1e-6);
+
   const std::string said = refusal(R"({"type": "ring", "curve": "far.csv"})");
   EXPECT_NE(said.find("interventions[0].curve"), std::string::npos) << said;
   EXPECT_NE(said.find("in the frame of the mesh"), std::string::npos) << said;
@@ -213,7 +233,7 @@ TEST_F(RepairedValve, RefusesWhatCannotBeMadeAndSaysWhatToDo) {
     const char *edit, *first, *second;
   } kCases[] = {
       {R"({"type": "rng", "size": 30})", "interventions[0].type", "did you mean \"ring\""},
-      {R"({"type": "ring"})", "interventions[0]", "needs one of size, curve"},
+      {R"({"type": "ring"})", "interventions[0]", "needs at least one of size, curve"},
       {R"({"type": "ring", "size": "30 kg"})", "interventions[0].size", "length"},
       {R"({"type": "ring", "size": "3 mm"})", "interventions[0].size", "take a size between"},
       {R"({"type": "chord_length", "factor": 0.9})", "interventions[0]", "at least one of chords"},

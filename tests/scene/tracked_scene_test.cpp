@@ -133,6 +133,36 @@ TEST_F(TrackedSceneTest, AnyNumberOfAnElasticTermIsAParameter) {
         << name;
 }
 
+// One factor for the chords of a papillary tip, or of a material: the sum over them by themselves.
+TEST_F(TrackedSceneTest, ChordsOfATipAreAGroup) {
+  const Scene given =
+      load_scene(std::filesystem::path(COAPT_SOURCE_DIR) / "examples/01_mitral_valve/scene.json");
+  const auto derivatives = [&](const std::vector<std::string>& names, Vector& value) {
+    TrackedScene tracked = track(given, built_in_solvers(), {}, {.tolerance = 1e-9});
+    for (const std::string& name : names)
+      tracked.equilibrium->add(make_named_parameter(name, given, tracked));
+    EXPECT_EQ(tracked.equilibrium->settle().status, Status::Converged);
+    value = tracked.equilibrium->value();
+    Points weights = Points::Zero(3, tracked.model.X.cols());
+    weights.leftCols(tracked.model.mesh.vertex_count()).setOnes();
+    return tracked.equilibrium->pull_back(weights);
+  };
+  Vector lengths, factors, one;
+  const Vector single = derivatives({"chords.lengths"}, lengths),
+               tips = derivatives({"tip_0.length", "tip_1.length"}, factors),
+               primary = derivatives({"primary.length"}, one);
+  EXPECT_EQ(factors, Vector::Ones(2));
+  EXPECT_NEAR(tips.sum(), single.dot(lengths), 1e-6 * tips.cwiseAbs().sum()) << "all chords hang on two tips";
+  EXPECT_GT(tips.cwiseAbs().minCoeff(), 1);
+  EXPECT_GT(std::abs(primary[0]), 1);
+  EXPECT_LT(std::abs(primary[0]), single.cwiseProduct(lengths).lpNorm<1>());
+  TrackedScene tracked = track(given, built_in_solvers(), {});
+  tracked.equilibrium->add(make_named_parameter("tip_0.length", given, tracked));
+  const std::string said =
+      refusal([&] { tracked.equilibrium->add(make_named_parameter("chords.lengths", given, tracked)); });
+  EXPECT_NE(said.find("tip_0.length"), std::string::npos) << said;
+}
+
 // Every step solves with the exact tangent.
 TEST_F(TrackedSceneTest, GivenTermsNeedAHessian) {
   const std::string said = refusal([&] { track(scene(), {.has_hessians = false}, built_in_solvers(), {}); });

@@ -71,6 +71,7 @@ class Equilibrium:
     Parameters (TERM and SET are names of the scene; `available` lists all):
         TERM.lengths: rest length of each line of a cable or tether term, (k,) [mm].
         TERM.length: one factor on all of them, (1,).
+        GROUP.length: one factor on the chords of one material or of one papillary tip (tip_0, tip_1 ...), (1,).
         TERM.stiffness, TERM.thickness: factor on the moduli or the thickness, (1,).
         TERM.pressure: pressure along the normals, (1,) [MPa].
         TERM.load: one factor on the forces of a load_field or of a frozen load_pressure, (1,).

@@ -27,6 +27,8 @@ struct ClosedAnnulus {
   Vec3 centre;           // half-way between the ends of the commissural axis
   Eigen::Matrix3d axes;  // columns
   double width = 0;      // along the commissural axis [mm]
+
+  Points scaled(double factor) const { return (factor * (x.colwise() - centre)).colwise() + centre; }
 };
 
 Points last_stations(const std::vector<int>& nodes, const SupportEdit& edit) {
@@ -35,6 +37,11 @@ Points last_stations(const std::vector<int>& nodes, const SupportEdit& edit) {
     if (const auto path = edit.prescribed.paths.find(nodes[k]); path != edit.prescribed.paths.end())
       if (!path->second.empty()) x.col(static_cast<Eigen::Index>(k)) = path->second.back();
   return x;
+}
+
+double extent(const Points& x, const Vec3& along) {
+  const Vector place = x.transpose() * along;
+  return place.maxCoeff() - place.minCoeff();
 }
 
 // The direction in the plane along which the points are widest.
@@ -46,9 +53,8 @@ Vec3 widest(const Points& x, const Vec3& normal) {
   for (int k = 0; k < kDirections; ++k) {
     const double angle = std::numbers::pi * k / kDirections;
     const Vec3 along = std::cos(angle) * u + std::sin(angle) * v;
-    const Vector place = x.transpose() * along;
-    if (const double extent = place.maxCoeff() - place.minCoeff(); extent > width) {
-      width = extent;
+    if (const double here = extent(x, along); here > width) {
+      width = here;
       best = along;
     }
   }
@@ -94,7 +100,18 @@ Points ring_curve(const Parameters& p, const ClosedAnnulus& annulus) {
   return (annulus.axes * curve).colwise() + annulus.centre;
 }
 
-// The curve of the scene, about the origin of the model.
+// Scaled about its mean to a width, which is measured as that of an annulus.
+Points scaled_to(double width, const Points& curve, const Parameters& p) {
+  try {
+    const double own = extent(curve, widest(curve, best_fit_plane(curve).normal));
+    const Vec3 centre = curve.rowwise().mean();
+    return (width / own * (curve.colwise() - centre)).colwise() + centre;
+  } catch (const InputError& error) {
+    throw InputError(p.where("curve") + ": " + error.what());
+  }
+}
+
+// The curve of the scene, about the origin of the model, of the size where one is given.
 Points given_curve(const Parameters& p, const ClosedAnnulus& annulus, const Vec3& origin) {
   Points curve = read_closed_curve(p.text("curve"));
   if (curve.cols() < 3 || !curve.allFinite())
@@ -104,7 +121,7 @@ Points given_curve(const Parameters& p, const ClosedAnnulus& annulus, const Vec3
   if (away > annulus.width)
     throw InputError(p.where("curve") + ": lies " + mm(away) + " away from the annulus, which is " +
                      mm(annulus.width) + " wide; is it in mm and in the frame of the mesh?");
-  return curve;
+  return p.has("size") ? scaled_to(p.number("size"), curve, p) : curve;
 }
 
 double length_around(const Points& x) {
@@ -118,22 +135,22 @@ void refuse_unfit(const Parameters& p, const ClosedAnnulus& annulus, const Point
   constexpr double kLeast = 0.5, kMost = 1.5;  // of the annulus's length
   const double own = length_around(annulus.x), held = length_around(to), part = held / own;
   if (part >= kLeast && part <= kMost) return;
-  const bool has_curve = p.has("curve");
-  const double now = has_curve ? held : p.number("size");
-  throw InputError(p.where(has_curve ? "curve" : "size") + ": would make the annulus " + mm(held) +
+  const bool has_size = p.has("size");
+  const double now = has_size ? p.number("size") : held;
+  throw InputError(p.where(has_size ? "size" : "curve") + ": would make the annulus " + mm(held) +
                    " around, which is " + mm(own) + " without a ring; take " +
-                   (has_curve ? "a curve with a length" : "a size") + " between " + mm(now * kLeast / part) +
+                   (has_size ? "a size" : "a curve with a length") + " between " + mm(now * kLeast / part) +
                    " and " + mm(now * kMost / part));
 }
 
-// Where each node of the annulus is held.
+// Where each node of the annulus is held: on a rigid ring, or in its own shape with the length of a flexible
+// one.
 Points places(const Parameters& p, const ClosedAnnulus& annulus, const Vec3& origin) {
-  const bool is_flexible = p.text("stiffness") == "flexible";
-  if (p.has("curve")) return matched_by_length(annulus.x, given_curve(p, annulus, origin));
-  if (is_flexible)
-    return (p.number("size") / annulus.width * (annulus.x.colwise() - annulus.centre)).colwise() +
-           annulus.centre;
-  return matched_by_length(annulus.x, ring_curve(p, annulus));
+  const bool is_flexible = p.text("stiffness") == "flexible", has_curve = p.has("curve");
+  if (is_flexible && !has_curve) return annulus.scaled(p.number("size") / annulus.width);
+  const Points curve = has_curve ? given_curve(p, annulus, origin) : ring_curve(p, annulus);
+  if (is_flexible) return annulus.scaled(length_around(curve) / length_around(annulus.x));
+  return matched_by_length(annulus.x, curve);
 }
 
 void hold_in_ring(const InterventionSpec& spec, SupportEdit& edit) {
@@ -151,13 +168,8 @@ void hold_in_ring(const InterventionSpec& spec, SupportEdit& edit) {
 
 std::vector<std::string> keys_of_another_ring(const Parameters& p) {
   std::vector<std::string> defects;
-  const bool is_flexible = p.text("stiffness") == "flexible";
-  if (is_flexible && p.has("curve"))
-    defects.emplace_back(
-        "curve: is the shape of a rigid ring; a flexible one takes that of the annulus, give it "
-        "a `size`");
-  if ((is_flexible || p.has("curve")) && p.number("height") != 0)
-    defects.emplace_back("height: is that of a rigid ring with a `size`; leave it out");
+  if ((p.text("stiffness") == "flexible" || p.has("curve")) && p.number("height") != 0)
+    defects.emplace_back("height: is that of a rigid ring without a `curve`; leave it out");
   return defects;
 }
 
@@ -168,33 +180,34 @@ InterventionType ring_intervention() {
       .name = "ring",
       .summary = "An annuloplasty ring holds the annulus in the closed valve; the open start stays.",
       .spec =
-          {.keys = {{.name = "size",
-                     .dimension = kLength,
-                     .min = 0,
-                     .excludes_min = true,
-                     .doc = "Width of the annulus in the ring, along its longest diameter."},
-                    {.name = "curve",
-                     .kind = KeyKind::File,
-                     .doc =
-                         "A closed curve, as CSV or .mrk.json in mm and in the frame of the mesh, in place "
-                         "of a size."},
-                    {.name = "stiffness",
-                     .kind = KeyKind::Choice,
-                     .fallback = "\"rigid\"",
-                     .choices = {"rigid", "flexible"},
-                     .doc = "rigid: the annulus takes the shape of the ring; flexible: it keeps its own, and "
-                            "takes the size alone."},
-                    {.name = "ratio",
-                     .fallback = "0.75",
-                     .min = 0.2,
-                     .max = 1,
-                     .doc = "Of a rigid ring: anteroposterior diameter over size; 3:4 in Carpentier's ring."},
-                    {.name = "height",
-                     .dimension = kLength,
-                     .fallback = "0",
-                     .min = 0,
-                     .doc = "Of a rigid ring: height of its saddle."}},
-           .groups = {{{"size", "curve"}, true}}},
+          {.keys =
+               {{.name = "size",
+                 .dimension = kLength,
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Width of the annulus in the ring, along its longest diameter; a curve is scaled "
+                        "to it."},
+                {.name = "curve",
+                 .kind = KeyKind::File,
+                 .doc = "The ring as a closed curve, as CSV or .mrk.json in mm and in the frame of the mesh; "
+                        "without one it is an ellipse of the size."},
+                {.name = "stiffness",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"rigid\"",
+                 .choices = {"rigid", "flexible"},
+                 .doc = "rigid: the annulus takes the shape of the ring; flexible: it keeps its own, and "
+                        "takes the size, or the length of the curve, alone."},
+                {.name = "ratio",
+                 .fallback = "0.75",
+                 .min = 0.2,
+                 .max = 1,
+                 .doc = "Of a rigid ring: anteroposterior diameter over size; 3:4 in Carpentier's ring."},
+                {.name = "height",
+                 .dimension = kLength,
+                 .fallback = "0",
+                 .min = 0,
+                 .doc = "Of a rigid ring: height of its saddle."}},
+           .groups = {{{"size", "curve"}, false}}},
       .check = keys_of_another_ring,
       .hold = hold_in_ring};
 }
