@@ -104,7 +104,7 @@ void stress(const StressArguments& arguments, int& exit_code) {
     std::printf("%s\nwritten to %s (stress.json, stress.csv, stress.html%s)\n",
                 stress_summary(matrix).c_str(), options.folder.string().c_str(),
                 scene ? "" : ", and the scenes");
-  exit_code = matrix.has_failed() || matrix.is_cancelled ? kNotConverged : kConverged;
+  exit_code = matrix.holds() ? kConverged : kNotConverged;
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ struct DerivativeReport {
   double gradient_norm = 0;  // 2-norm [force]; 0: the term is not active here and nothing was tested
   double gradient_slope = kInfinity;
   double hessian_slope = kInfinity;
-  double gradient_error = 0;  // central difference of E against g.d, relative, at the best step
-  double hessian_error = 0;   // central difference of g against H d, relative, at the best step
+  double gradient_error = 0;  // central differences of E against g.d, relative, at the best step
+  double hessian_error = 0;   // central differences of g against H d, relative, at the best step
 
   bool is_active() const { return gradient_norm > 0; }
   // The bounds hold where the energy is smooth; at a kink (a chord at its length) a slope may fall.

@@ -69,22 +69,36 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   return Status::Stalled;
 }
 
+// Whether a solver can begin there: a law that stiffens exponentially overflows where a sliver is stretched.
+bool is_finite(Objective& objective, const Vector& q) {
+  Vector g;
+  return std::isfinite(objective.gradient(q, g)) && g.allFinite();
+}
+
+struct Move {
+  double reached = 0;          // of the prescribed motion
+  bool is_overloaded = false;  // the energy, not a collision, was in the way of the rest
+};
+
 // Moves the prescribed nodes from where they are at `from` towards `to`, the free ones carried along, as far
-// as no collision is in the way; returns how far that is.
-double move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
+// as no collision is in the way and the energy stays finite.
+Move move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
   const Points start = objective.positions(q);
+  bool is_overloaded = false;
   for (double t = to; t > from; t = from + 0.5 * (t - from)) {
     const Points x = motion.positions(t);
     const Vector carried = carried_along(objective, q, x);
     objective.prescribe(x);
-    if (objective.step_limit(start, objective.positions(carried) - start, 1) == 1) {
+    const bool is_free = objective.step_limit(start, objective.positions(carried) - start, 1) == 1;
+    if (is_free && is_finite(objective, carried)) {
       q = carried;
-      return t;
+      return {t, is_overloaded};
     }
+    is_overloaded = is_free;
     objective.prescribe(start);
     if (t - from < kLeastMotion) break;
   }
-  return from;
+  return {from, is_overloaded};
 }
 
 // Loads and stiffnesses at t of the path.
@@ -140,7 +154,7 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   BranchWatch branches(path_means(solver, problem, stop, monitor, result.rounds));
   Outcome outcome;
   double moved = 0;  // of the prescribed motion
-  bool is_blocked = false;
+  bool is_blocked = false, is_overloaded = false;
   bool has_arrived = true;
   int step = 1;
   for (; step <= steps; ++step) {
@@ -148,10 +162,11 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
     has_arrived = !has_motion;
     do {
       if (!has_arrived) {
-        const double reached = move_prescribed(problem.motion, moved, t, objective, result.q);
-        has_arrived = reached == t;
-        is_blocked = !has_arrived && reached - moved < kLeastMotion;
-        moved = reached;
+        const Move move = move_prescribed(problem.motion, moved, t, objective, result.q);
+        has_arrived = move.reached == t;
+        is_blocked = !has_arrived && move.reached - moved < kLeastMotion;
+        is_overloaded = move.is_overloaded;
+        moved = move.reached;
         if (is_blocked) break;
       }
       set_scales(continuation, t, objective);
@@ -174,9 +189,12 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   objective.scale(1, 1);
   outcome.is_on_the_way = step < steps || is_blocked || !has_arrived;
   if (is_blocked) {
-    outcome.status = Status::Stalled;
+    const bool is_lost = is_overloaded && !is_finite(objective, result.q);
+    outcome.status = is_lost ? Status::NonFinite : Status::Stalled;
     outcome.note =
-        "the prescribed motion presses facets against each other, at " + number(100 * moved) + " % of it";
+        (is_overloaded ? "the prescribed motion stretches an element until its energy is not finite, at "
+                       : "the prescribed motion presses facets against each other, at ") +
+        number(100 * moved) + " % of it";
   } else if (!has_arrived)
     outcome.note = "after " + number(100 * moved) + " % of the prescribed motion";
   else if (outcome.is_on_the_way)

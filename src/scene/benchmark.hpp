@@ -2,14 +2,11 @@
 // its own.
 //
 //   algebraic       what the tolerance leaves: to the equilibrium on the same mesh, to which newton goes on
-//   to a
-//                   residual of kEquilibrium from where the method ended
+//                   from where the method ended; see equilibrium_residual()
 //   discretisation  what the mesh leaves: from the distances between equilibria on meshes of 1, 4, 16, ...
-//   times
-//                   the triangles, one more than is benchmarked
+//                   times the triangles, one more than is benchmarked
 //   method          between the equilibria of the method and of the reference method on the same mesh; the
-//   gap
-//                   between two models where the method solves another one
+//                   gap between two models where the method solves another one
 //   model           to a given closed surface
 //
 // Every run is a solve of its own, as `coapt solve` does it: see docs/decisions/007-error-against-time.md.
@@ -24,8 +21,11 @@
 
 namespace coapt {
 
-// The residual of what counts as an equilibrium.
+// The residual that is asked for where errors are measured to an equilibrium.
 inline constexpr double kEquilibrium = 1e-12;
+
+// Of the tightest tolerance: what is no nearer than this is no truth for the runs to that tolerance.
+inline constexpr double kEquilibriumShare = 1e-2;
 
 struct Spread {
   double median = 0, best = 0;  // of all repeats [s]
@@ -39,7 +39,9 @@ struct NodeError {
 struct RunErrors {
   std::optional<NodeError> algebraic;    // none for xpbd, whose constraints have no energy of the scene
   std::optional<double> discretisation;  // an estimate for 95 % of the surface [mm]
-  std::optional<double> method;          // 95 % of the surface; none for the reference method [mm]
+  // 95 % of the surface; none for the reference method. Of the run's own shape, and so with its algebraic
+  // error, where the equilibrium of the method is not known [mm].
+  std::optional<double> method;
   std::optional<DistanceFigures> model;  // both directions
   std::optional<double> total;           // greatest algebraic, discretisation and method together [mm]
 };
@@ -66,6 +68,7 @@ struct BenchEnd {
   size_t method = 0, mesh = 0;
   std::string failure = {};             // empty unless it could not be run at all
   std::optional<double> residual = {};  // of its equilibrium, by newton; none: it was not found
+  std::string missing = {};             // why it was not found; empty where it was, or was not looked for
   std::optional<MethodGap> gap = {};    // to the reference method's equilibrium, of its own equilibrium or,
                                         // where there is none, of its last shape
   Verdict verdict = Verdict::Failed;
@@ -107,6 +110,9 @@ struct Benchmark {
 
   // Every run, and every solve for an equilibrium that errors are measured to; no method failed.
   bool has_converged() const;
+
+  // The greatest residual of what counts as an equilibrium. Pre: there are tolerances.
+  double equilibrium_residual() const;
 };
 
 struct BenchOptions {

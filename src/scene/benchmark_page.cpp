@@ -4,6 +4,7 @@
 #include "scene/report_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace coapt {
@@ -19,6 +20,41 @@ std::string words(std::string_view name) {
   return text;
 }
 
+// How high a run is drawn, and what that height is where it is not the error. Without a height: at the upper
+// edge.
+struct Height {
+  std::optional<double> mm;
+  std::string remark = {};
+};
+
+// A run that stopped early is drawn also where its error is not known, or it would look as if it had never
+// been made: by as much of the error as can be measured. Empty: it is not drawn.
+std::optional<Height> height_of(const Benchmark& bench, const BenchRun& run, ErrorKind kind) {
+  if (const auto error = error_of(run, kind)) return Height{error};
+  if (run.status == Status::Converged) return std::nullopt;
+  const RunErrors& errors = run.errors;
+  const Height edge{std::nullopt, "error not known, at the upper edge"};
+  if (kind == ErrorKind::Total) {
+    if (!errors.algebraic && !errors.method) return edge;
+    return Height{(errors.algebraic ? errors.algebraic->max : 0) + errors.method.value_or(0),
+                  "the part of the error that is known"};
+  }
+  const MethodModel model = bench.methods[run.method].model;
+  if (model == MethodModel::Constraints) return std::nullopt;  // has no such error
+  if (!errors.method || model != bench.methods.front().model) return edge;
+  return Height{errors.method, "distance to the equilibrium of " + bench.methods.front().name};
+}
+
+// Above all heights that are known. A hair below the power of ten where the axis then ends.
+double upper_edge(const Benchmark& bench, ErrorKind kind) {
+  double greatest = 0;
+  for (const BenchRun& run : bench.runs)
+    if (const auto height = height_of(bench, run, kind))
+      greatest = std::max(greatest, height->mm.value_or(0));
+  if (!(greatest > 0)) greatest = std::max(bench.extent_mm, 1.0);
+  return std::pow(10, std::ceil(std::log10(greatest))) * (1 - 1e-6);
+}
+
 // Error over time: a line for every method and mesh, from the loosest tolerance to the tightest.
 PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& title, const std::string& axis,
                     const std::string& note) {
@@ -27,17 +63,22 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
   plot.x = {"wall time [s], median", Scale::Logarithmic};
   plot.y = {axis, Scale::Logarithmic};
   plot.note = note;
+  const double edge = upper_edge(bench, kind);
   for (size_t method = 0; method < bench.methods.size(); ++method)
     for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh) {
       PageSeries series{.name = bench.methods[method].name + ", " + mesh_text(bench.meshes[mesh]),
                         .kin = static_cast<int>(method)};
-      for (const BenchRun& run : bench.runs)
-        if (const auto error = error_of(run, kind); error && run.method == method && run.mesh == mesh)
-          series.points.push_back(
-              {.x = run.wall.median,
-               .y = *error,
-               .stopped_early = run.status != Status::Converged,
-               .label = "tolerance " + page_number(run.tolerance) + ", " + words(status_name(run.status))});
+      for (const BenchRun& run : bench.runs) {
+        if (run.method != method || run.mesh != mesh) continue;
+        const std::optional<Height> height = height_of(bench, run, kind);
+        if (!height) continue;
+        series.points.push_back({.x = run.wall.median,
+                                 .y = height->mm.value_or(edge),
+                                 .stopped_early = run.status != Status::Converged,
+                                 .label = "tolerance " + page_number(run.tolerance) + ", " +
+                                          words(status_name(run.status)) +
+                                          (height->remark.empty() ? "" : ", " + height->remark)});
+      }
       if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
   return plot;
@@ -61,7 +102,8 @@ PageSection plots_section(const Benchmark& bench) {
   section.blocks.emplace_back(error_plot(
       bench, ErrorKind::Total, "Total error against wall time", "total error [mm]",
       "Greatest algebraic error, discretisation error of 95 % of the surface and method error together. "
-      "Hollow and crossed: the run stopped before its tolerance."));
+      "Hollow and crossed: the run stopped before its tolerance; what is not known of its error is left out, "
+      "and where nothing is known it stands at the upper edge. The numbers say which."));
   section.blocks.emplace_back(error_plot(
       bench, ErrorKind::Algebraic, "Algebraic error against wall time", "algebraic error [mm]",
       "Of the vertex farthest from the equilibrium on the same mesh. Without the error of the mesh."));
@@ -104,6 +146,7 @@ PageTable meshes_table(const Benchmark& bench) {
                    {"greatest [mm]"},
                    {"observed order"},
                    {"discretisation error [mm]"},
+                   {"residual of the equilibrium"},
                    {"Hessian and factorisation [CPU s]"}};
   using Figures = std::optional<DistanceFigures>;
   const auto figure = [](const Figures& to_next, double DistanceFigures::*member) {
@@ -117,10 +160,12 @@ PageTable meshes_table(const Benchmark& bench) {
                           figure(to_next, &DistanceFigures::max),
                           number_cell(mesh.order),
                           number_cell(mesh.error_mm),
+                          number_cell(mesh.residual),
                           number_cell(mesh.factorisation_s)});
   }
   table.note = "Beyond the last mesh distances are taken to fall with order " +
-               page_number(bench.assumed_order, 3) + ".";
+               page_number(bench.assumed_order, 3) + ". An equilibrium is what has a residual of at most " +
+               page_number(bench.equilibrium_residual()) + ".";
   return table;
 }
 

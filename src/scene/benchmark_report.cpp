@@ -78,6 +78,7 @@ OrderedJson end_json(const Benchmark& bench, const BenchEnd& end) {
   json["verdict"] = std::string(verdict_name(end.verdict));
   json["failure"] = end.failure;
   json["residual_of_equilibrium"] = number_json(end.residual);
+  json["no_equilibrium"] = end.missing.empty() ? OrderedJson(nullptr) : OrderedJson(end.missing);
   json["distance_to_reference_method"] = end.gap ? gap_json(*end.gap) : OrderedJson(nullptr);
   return json;
 }
@@ -128,6 +129,7 @@ OrderedJson benchmark_as_json(const Benchmark& bench) {
                       {"reference", bench.methods.front().name},
                       {"tolerances", bench.tolerances},
                       {"equilibrium_tolerance", kEquilibrium},
+                      {"equilibrium_residual", bench.equilibrium_residual()},
                       {"extent_mm", number_json(bench.extent_mm)},
                       {"same_shape_mm", number_json(kSameShape * bench.extent_mm)}};
   json["closed_surface"] =
@@ -145,6 +147,7 @@ OrderedJson benchmark_as_json(const Benchmark& bench) {
   for (const BenchEnd& end : bench.ends) json["ends"].push_back(end_json(bench, end));
   json["time_to"] = times_json(bench);
   json["growth"] = growth_json(bench);
+  json["warnings"] = missing_equilibria(bench);
   json["recommendations"] = OrderedJson::array();
   for (const double mm : kTotalAccuracies) json["recommendations"].push_back(recommendation(bench, mm));
   return json;

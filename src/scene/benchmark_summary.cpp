@@ -25,8 +25,14 @@ std::string described(const Benchmark& bench, const BenchRun& run) {
          page_number(run.wall.median, 2) + " s";
 }
 
-std::string not_found(const BenchMesh& mesh) {
-  return "the equilibrium on " + mesh_text(mesh) + " was not found";
+std::string not_found(const Benchmark& bench, size_t method, const BenchMesh& mesh) {
+  return "the equilibrium of " + bench.methods[method].name + " on " + mesh_text(mesh) + " was not found";
+}
+
+// That of the reference method; on the mesh that is not benchmarked no method was run.
+std::string not_found(const Benchmark& bench, const BenchMesh& mesh) {
+  return mesh.is_benchmarked ? not_found(bench, 0, mesh)
+                             : "the equilibrium on " + mesh_text(mesh) + " was not found";
 }
 
 // Why no run has a total error.
@@ -35,7 +41,7 @@ std::string why_unknown(const Benchmark& bench) {
   const auto is_converged = [](const BenchRun& run) { return run.status == Status::Converged; };
   if (std::none_of(bench.runs.begin(), bench.runs.end(), is_converged)) return "no run reached its tolerance";
   for (const BenchMesh& mesh : bench.meshes)
-    if (!mesh.missing.empty()) return not_found(mesh);
+    if (!mesh.missing.empty()) return not_found(bench, mesh);
   return "no error is";
 }
 
@@ -108,7 +114,10 @@ std::string mesh_text(const BenchMesh& mesh) {
 std::vector<std::string> missing_equilibria(const Benchmark& bench) {
   std::vector<std::string> all;
   for (const BenchMesh& mesh : bench.meshes)
-    if (!mesh.missing.empty()) all.push_back(not_found(mesh) + ": " + mesh.missing);
+    if (!mesh.missing.empty()) all.push_back(not_found(bench, mesh) + ": " + mesh.missing);
+  for (const BenchEnd& end : bench.ends)
+    if (end.method > 0 && !end.missing.empty())
+      all.push_back(not_found(bench, end.method, bench.meshes[end.mesh]) + ": " + end.missing);
   return all;
 }
 

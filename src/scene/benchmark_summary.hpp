@@ -50,8 +50,9 @@ std::optional<Growth> growth(const Benchmark& bench, size_t method);
 // error is known, why.
 std::string recommendation(const Benchmark& bench, double mm);
 
-// "the equilibrium on 10,080 triangles was not found: ...": what errors could not be measured to, mesh by
-// mesh. The error of the mesh is then known less well, or not at all.
+// "the equilibrium of newton on 10,080 triangles was not found: ...": what errors could not be measured to,
+// first the reference method's, mesh by mesh; without those the error of the mesh is known less well, or not
+// at all. Then those of the other methods.
 std::vector<std::string> missing_equilibria(const Benchmark& bench);
 
 // "2,500 triangles", or nodes in a scene without a mesh.

@@ -124,7 +124,7 @@ ChordTuningRecord read_chord_tuning_checkpoint(const std::filesystem::path& path
 // The text of tuning.json. Numbers that are not finite or not known are null.
 std::string chord_tuning_json(const ChordTuning& found);
 
-// report.html: the history, every figure before and after, the lengths, both shapes.
+// report.html: the history, every figure before and after, the lengths, what determines them, both shapes.
 std::string chord_tuning_page(const ChordTuning& found);
 
 // Writes tuning.json, tuning.csv (a row for each length) and report.html. Throws InputError when a file

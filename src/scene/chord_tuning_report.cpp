@@ -34,17 +34,27 @@ OrderedJson length_json(const TunedLength& length) {
            std::isnan(length.deviation) ? OrderedJson(nullptr) : OrderedJson(length.is_determined)}};
 }
 
-// The main lengths of a direction, by name.
+// A direction of the spectrum: the lengths that it mixes most, each with its share.
+std::vector<std::pair<std::string, double>> main_lengths(const ChordTuning& found, Eigen::Index k) {
+  std::vector<std::pair<std::string, double>> lengths;
+  for (size_t j = 0; j < found.lengths.size(); ++j)
+    if (const double share = found.determinacy->directions(static_cast<Eigen::Index>(j), k);
+        std::abs(share) > kMainShare)
+      lengths.emplace_back(found.lengths[j].name, share);
+  return lengths;
+}
+
+bool is_determined(const ChordTuning& found, Eigen::Index k) {
+  return found.determinacy->direction_deviation[k] <= found.determined;
+}
+
 OrderedJson direction_json(const ChordTuning& found, Eigen::Index k) {
   const Determinacy& spectrum = *found.determinacy;
   OrderedJson lengths = OrderedJson::object();
-  for (size_t j = 0; j < found.lengths.size(); ++j)
-    if (const double share = spectrum.directions(static_cast<Eigen::Index>(j), k);
-        std::abs(share) > kMainShare)
-      lengths[found.lengths[j].name] = share;
+  for (const auto& [name, share] : main_lengths(found, k)) lengths[name] = share;
   return {{"singular_value", number_json(spectrum.singular_values[k])},
           {"standard_deviation_mm", number_json(spectrum.direction_deviation[k])},
-          {"determined", spectrum.direction_deviation[k] <= found.determined},
+          {"determined", is_determined(found, k)},
           {"main_lengths", lengths}};
 }
 
@@ -201,6 +211,67 @@ PagePlot history_plot(const ChordTuning& found) {
   return plot;
 }
 
+PagePlot spectrum_plot(const ChordTuning& found) {
+  PagePlot plot{.title = "Singular value of each combination of lengths",
+                .x = {"combination, best determined first"},
+                .y = {"singular value [mm/mm]", Scale::Logarithmic}};
+  PageSeries known{.name = "determined", .is_joined = false},
+      open{.name = "not determined", .is_joined = false};
+  const Determinacy& spectrum = *found.determinacy;
+  int without = 0;
+  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k) {
+    if (!std::isfinite(spectrum.direction_deviation[k])) {
+      ++without;  // its value is rounding
+      continue;
+    }
+    PageSeries& series = is_determined(found, k) ? known : open;
+    series.points.push_back({static_cast<double>(k + 1), spectrum.singular_values[k], false,
+                             "standard deviation " + page_number(spectrum.direction_deviation[k]) + " mm"});
+  }
+  for (const PageSeries& series : {known, open})
+    if (!series.points.empty()) plot.series.push_back(series);
+  plot.note =
+      "Root mean square of how far the distances from the target move where the lengths change by 1 mm along "
+      "the combination.";
+  if (without > 0) plot.note += " Not shown: " + std::to_string(without) + " that have no influence on them.";
+  return plot;
+}
+
+std::string combination_text(const ChordTuning& found, Eigen::Index k) {
+  std::string text;
+  for (const auto& [name, share] : main_lengths(found, k)) {
+    if (text.empty())
+      text = share < 0 ? "−" : "";
+    else
+      text += share < 0 ? " − " : " + ";
+    text += page_number(std::abs(share), 2) + " " + name;
+  }
+  return text.empty() ? "many lengths, a little of each" : text;
+}
+
+PageTable spectrum_table(const ChordTuning& found) {
+  PageTable table{.caption = "Combinations of lengths",
+                  .columns = {{"combination"},
+                              {"singular value [mm/mm]"},
+                              {"standard deviation [mm]"},
+                              {"determined", true},
+                              {"lengths with the greatest shares", true}}};
+  const Determinacy& spectrum = *found.determinacy;
+  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k) {
+    const bool is_known = is_determined(found, k);
+    table.rows.push_back({{std::to_string(k + 1)},
+                          {page_number(spectrum.singular_values[k])},
+                          {page_number(spectrum.direction_deviation[k])},
+                          {is_known ? "yes" : "no", is_known ? Tone::Plain : Tone::Caution},
+                          {combination_text(found, k)}});
+  }
+  table.note =
+      "Unit directions in the lengths, from the singular values of the derivatives of all distances: "
+      "docs/tuning.md. Lengths with a share above " +
+      page_number(kMainShare) + " are named; – is a standard deviation without bound.";
+  return table;
+}
+
 PageList messages(const ChordTuning& found) {
   PageList list;
   list.items.push_back({found.tuning.message, found.has_converged() ? Tone::Good : Tone::Caution});
@@ -291,6 +362,8 @@ std::string chord_tuning_page(const ChordTuning& found) {
   if (const auto view = compared_view(shapes, shapes.size() - 1, "tuning", "Before ↔ after"))
     page.sections.push_back({"Shapes", {shape_view_html(*view)}});
   page.sections.push_back({"Lengths", {length_table(found)}});
+  if (found.determinacy)
+    page.sections.push_back({"What the target determines", {spectrum_plot(found), spectrum_table(found)}});
   page.sections.push_back({"Figures", {figure_table(found)}});
   return report_page(page);
 }

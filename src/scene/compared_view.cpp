@@ -5,8 +5,8 @@
 namespace coapt {
 namespace {
 
-// The nodes that are drawn: obstacles, which come last, are not.
-Eigen::Index drawn_nodes(const Model& model) {
+// The nodes of sheet and lines; those of obstacles come last.
+Eigen::Index own_nodes(const Model& model) {
   int last = model.mesh.vertex_count() - 1;
   for (const Line& line : model.lines) last = std::max({last, line.a, line.b});
   return last + 1;
@@ -27,6 +27,10 @@ void add_fields(const std::vector<ViewField>& fields, size_t state_count, std::v
   for (ViewField& field : all) field.values.resize(state_count);
 }
 
+bool has_same_obstacles(const Model& a, const Model& b) {
+  return a.X.cols() == b.X.cols() && a.obstacles.cols() == b.obstacles.cols() && a.obstacles == b.obstacles;
+}
+
 bool has_same_lines(const Model& a, const Model& b) {
   return std::equal(a.lines.begin(), a.lines.end(), b.lines.begin(), b.lines.end(),
                     [](const Line& x, const Line& y) { return x.a == y.a && x.b == y.b; });
@@ -38,15 +42,21 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
                                        const std::string& name, const std::string& slider) {
   if (shapes.empty()) return std::nullopt;
   const Model& surface = *shapes.at(base).model;
-  const Eigen::Index nodes = drawn_nodes(surface);
-  const auto is_like_base = [&](const Model& model) {
-    return drawn_nodes(model) == nodes && model.mesh.triangles.cols() == surface.mesh.triangles.cols() &&
+  Eigen::Index nodes = own_nodes(surface);
+  const auto is_like_base = [&, own = nodes](const Model& model) {
+    return own_nodes(model) == own && model.mesh.triangles.cols() == surface.mesh.triangles.cols() &&
            model.mesh.triangles == surface.mesh.triangles;
   };
+  const bool has_obstacles =
+      surface.obstacles.cols() > 0 &&
+      std::all_of(shapes.begin(), shapes.end(), [&](const ComparedShape& shape) {
+        return !is_like_base(*shape.model) || has_same_obstacles(*shape.model, surface);
+      });
+  if (has_obstacles) nodes = surface.X.cols();
   ShapeView view = bare_view(surface, shapes[base].report->fields);
   view.name = name;
   view.slider = slider;
-  view.obstacles.resize(3, 0);
+  if (!has_obstacles) view.obstacles.resize(3, 0);
   if (!surface.lines.empty())
     view.line_force = {.title = "Force in chords and cables", .unit = "N", .place = ViewPlace::Line};
   for (const ComparedShape& shape : shapes)
@@ -55,10 +65,11 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
     const Model& model = *shape.model;
     const Fields& fields = shape.report->fields;
     if (!is_like_base(model)) continue;
-    view.states.push_back(
-        {shape.label, fields.x.leftCols(nodes).colwise() + (model.origin - surface.origin)});
-    add_fields(view_fields(model, fields), view.states.size(), view.fields);
-    if (view.line_force) view.line_force->values.push_back(fields.line_force);
+    const Points& x = shape.is_at_rest ? model.X : fields.x;
+    view.states.push_back({shape.label, x.leftCols(nodes).colwise() + (model.origin - surface.origin)});
+    add_fields(shape.is_at_rest ? std::vector<ViewField>{} : view_fields(model, fields), view.states.size(),
+               view.fields);
+    if (view.line_force) view.line_force->values.push_back(shape.is_at_rest ? Vector() : fields.line_force);
   }
   return view;
 }

@@ -1,8 +1,10 @@
 // report.html of a comparison.
 #include "scene/compared_view.hpp"
 #include "scene/comparison_report.hpp"
+#include "scene/suggestion.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace coapt {
 namespace {
@@ -115,17 +117,52 @@ PagePlot work_plot(const Comparison& comparison) {
   return plot;
 }
 
-// Every method's shape, the reference's first; none where nothing was solved.
+// Each once, with the names of the methods where not all of them say it.
+PageList warnings(const Comparison& comparison) {
+  std::vector<std::string> texts;
+  std::map<std::string, std::vector<std::string>> names;
+  size_t solved = 0;
+  for (const ComparedMethod& method : comparison.methods) {
+    if (!method.run) continue;
+    ++solved;
+    for (const std::string& text : method.run->report.warnings) {
+      std::vector<std::string>& those = names[text];
+      if (those.empty()) texts.push_back(text);
+      if (those.empty() || those.back() != method.name) those.push_back(method.name);
+    }
+  }
+  PageList list;
+  for (const std::string& text : texts)
+    list.items.push_back(
+        {"Warning" + (names[text].size() < solved ? " (" + listed(names[text]) + ")" : "") + ": " + text,
+         Tone::Caution});
+  return list;
+}
+
+// The shape at rest, then that of every method, the reference's last: there its outlines are drawn. None
+// where nothing was solved.
 std::optional<ShapeView> shapes(const Comparison& comparison) {
   std::vector<ComparedShape> all;
   for (const ComparedMethod& method : comparison.methods)
     if (method.run)
       all.push_back({method.name + ": " + std::string(verdict_name(method.verdict)), &method.run->model,
                      &method.run->report});
-  std::optional<ShapeView> view = compared_view(all, 0, "comparison", "Method");
-  if (!view) return view;
+  if (all.empty()) return std::nullopt;
+  const std::optional<RunReport>& reference = comparison.reference().run;
+  if (reference) std::rotate(all.begin(), all.begin() + 1, all.end());
+  ComparedShape open = reference ? all.back() : all.front();
+  const bool is_valve = annulus_of(*open.model) != nullptr;
+  open.label = is_valve ? "open" : "at rest";
+  open.is_at_rest = true;
+  all.insert(all.begin(), open);
+  std::optional<ShapeView> view =
+      compared_view(all, 0, "comparison", is_valve ? "Open, then each method" : "At rest, then each method");
   const auto is_distance = [](const ViewField& field) { return field.title.starts_with("Distance"); };
   std::stable_partition(view->fields.begin(), view->fields.end(), is_distance);
+  if (!reference) return view;
+  add_outlines(reference->report.metrics, *view);
+  for (ViewField& field : view->fields)  // its distance to itself, so that the view does not open in grey
+    if (field.title == kMethodDistance) field.values.back().setZero(reference->model.mesh.vertex_count());
   return view;
 }
 
@@ -136,6 +173,8 @@ std::string comparison_page(const Comparison& comparison) {
   page.lead = comparison.has_converged() ? "every method converged" : "not every method converged";
   page.tone = comparison.has_converged() ? Tone::Good : Tone::Bad;
   page.sections.push_back({"Distances", {distance_table(comparison), messages(comparison)}});
+  if (PageList said = warnings(comparison); !said.items.empty())
+    page.sections.back().blocks.emplace_back(std::move(said));
   if (const std::optional<ShapeView> view = shapes(comparison))
     page.sections.push_back({"Closed shapes", {shape_view_html(*view)}});
   page.sections.push_back({"Figures", {figure_table(comparison)}});

@@ -41,8 +41,7 @@ void add_distances(const Fields& fields, std::vector<ViewField>& all) {
                    .unit = "mm",
                    .values = {fields.reference_distance}});
   if (fields.method_distance.size() > 0)
-    all.push_back(
-        {.title = "Distance to the reference method", .unit = "mm", .values = {fields.method_distance}});
+    all.push_back({.title = kMethodDistance, .unit = "mm", .values = {fields.method_distance}});
 }
 
 void add_strains(const Fields& fields, std::vector<ViewField>& all) {
@@ -90,11 +89,6 @@ std::string label(const Result& result) {
   return "result: " + std::string(status_name(result.status)) + text;
 }
 
-void add_outlines(const Closure& closure, ShapeView& view) {
-  for (const Seam& seam : closure.line) view.outlines.push_back({false, seam.points});
-  for (const Orifice& orifice : closure.orifices) view.outlines.push_back({true, orifice.outline.corners});
-}
-
 // The input's x axis to the right, or where one looks along it, its y axis: the same valve stands the same
 // way in every page.
 ViewFrame upright(ViewFrame frame) {
@@ -140,6 +134,16 @@ std::vector<ViewField> view_fields(const Model& model, const Fields& fields) {
   return all;
 }
 
+void add_outlines(const Metrics& metrics, ShapeView& view) {
+  if (metrics.closure) {
+    for (const Seam& seam : metrics.closure->line) view.outlines.push_back({false, seam.points});
+    for (const Orifice& orifice : metrics.closure->orifices)
+      view.outlines.push_back({true, orifice.outline.corners});
+  }
+  if (metrics.orifice_area_mm2)
+    view.orifice_text = "orifice outline, " + page_number(*metrics.orifice_area_mm2) + " mm²";
+}
+
 ShapeView solved_view(const Model& model, const Report& report) {
   ShapeView view = bare_view(model, report.fields);
   view.name = "coapt";
@@ -153,9 +157,7 @@ ShapeView solved_view(const Model& model, const Report& report) {
                        .unit = "N",
                        .place = ViewPlace::Line,
                        .values = {report.fields.line_force}};
-  if (report.metrics.closure) add_outlines(*report.metrics.closure, view);
-  if (report.metrics.orifice_area_mm2)
-    view.orifice_text = "orifice outline, " + page_number(*report.metrics.orifice_area_mm2) + " mm²";
+  add_outlines(report.metrics, view);
   return view;
 }
 

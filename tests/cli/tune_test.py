@@ -3,8 +3,10 @@
 Usage: tune_test.py COAPT_BINARY [unittest arguments]
 """
 import csv
+import html
 import json
 import math
+import re
 import signal
 import subprocess
 import sys
@@ -39,6 +41,12 @@ class TuneTest(CommandCase):
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run, self.read()
 
+    def table(self, page, caption):
+        """The cells of a table of the page, row by row."""
+        body = page.split(f"<caption>{caption}</caption>")[1].split("</table>")[0].split("<tbody>")[1]
+        return [[html.unescape(re.sub("<[^>]*>", "", cell)) for cell in re.findall("<t[hd].*?</t[hd]>", row, re.DOTALL)]
+                for row in re.findall("<tr>.*?</tr>", body, re.DOTALL)]
+
     def read(self):
         text = (self.folder / "out" / "tuning.json").read_text()
         self.assertNotIn("NaN", text)
@@ -59,8 +67,22 @@ class TuneTest(CommandCase):
         rows = list(csv.DictReader((self.folder / "out" / "tuning.csv").read_text().splitlines()))
         self.assertAlmostEqual(float(rows[0]["after_mm"]), lengths["tip_0"]["after_mm"], places=6)
         page = (self.folder / "out" / "report.html").read_text()
-        for piece in ["Cost of each solve", "Rest lengths", "orifice_area_mm2", "tip_1"]:
-            self.assertIn(piece, page)
+        for piece in ["Cost of each solve", "Rest lengths", "orifice_area_mm2", "tip_1", "What the target determines",
+                      "Singular value of each combination of lengths"]:
+            self.assertTrue(piece in page, piece)
+        rows = self.table(page, "Combinations of lengths")
+        self.assertEqual(len(rows), len(found["spectrum"]))
+        for number, (row, direction) in enumerate(zip(rows, found["spectrum"]), 1):
+            self.assertEqual((row[0], row[3]), (str(number), "yes" if direction["determined"] else "no"))
+            self.assertAlmostEqual(float(row[1]), direction["singular_value"], delta=0.01 * direction["singular_value"])
+            deviation = direction["standard_deviation_mm"]
+            if deviation is None:
+                self.assertEqual(row[2], "–")
+            else:
+                self.assertAlmostEqual(float(row[2]), deviation, delta=0.01 * deviation)
+            for name in direction["main_lengths"]:
+                self.assertIn(name, row[4])
+        self.assertIn("yes", [row[3] for row in rows])
         # The scene that it writes is solved by itself, to the same figures.
         alone = coapt("solve", self.folder / "out" / "tuned.json", "-o", self.folder / "alone")
         self.assertEqual(alone.returncode, 0, alone.stdout + alone.stderr)
@@ -68,6 +90,27 @@ class TuneTest(CommandCase):
         for name in ["orifice_area_mm2", "leaflet_area_closed_mm2", "max_chord_force_n"]:
             self.assertTrue(math.isclose(metrics[name], found["metrics"][name]["after"], rel_tol=1e-3), name)
             self.assertIn(name, self.result(self.folder / "out" / "after")["metrics"])
+
+    def test_lessens_orifice_or_chord_force(self):
+        scene = self.valve()
+        if not re.search("^  with +NLopt", coapt("--version").stdout, re.MULTILINE):
+            self.skipTest("skipped: built without NLopt")
+        figures = {}
+        for name, weights in {"orifice": (1, 0.01), "force": (0.01, 1)}.items():
+            _, found = self.tune(scene, "--orifice-weight", weights[0], "--force-weight", weights[1], "--change-weight",
+                                 0, "--by", "tip", "--bounds=-5%..5%", "--max-solves", 100)
+            self.assertEqual((found["weights"]["orifice_per_mm2"], found["weights"]["force_per_n"]), weights)
+            self.assertIsNone(found["spectrum"])
+            self.assertNotIn("What the target determines", (self.folder / "out" / "report.html").read_text())
+            self.assertLess(found["cost"]["after"], 0.95 * found["cost"]["before"])
+            for length in found["lengths"]:
+                self.assertTrue(0.95 - 1e-9 <= length["factor"] <= 1.05 + 1e-9, length)
+            figures[name] = found["metrics"]
+        orifice, force = figures["orifice"]["orifice_area_mm2"], figures["force"]["max_chord_force_n"]
+        self.assertLess(orifice["after"], 0.8 * orifice["before"])
+        self.assertLess(force["after"], 0.93 * force["before"])
+        self.assertLess(orifice["after"], 0.8 * figures["force"]["orifice_area_mm2"]["after"])
+        self.assertLess(force["after"], 0.95 * figures["orifice"]["max_chord_force_n"]["after"])
 
     def test_is_cut_short_and_goes_on(self):
         scene = self.valve()

@@ -1,4 +1,4 @@
-"""Solves the scenes of one example and checks every number of its expected.json.
+"""Solves the scenes of one example, and checks their derivatives and every number of its expected.json.
 
     run_examples.py COAPT EXAMPLE_FOLDER...
 """
@@ -12,7 +12,10 @@ from measures import Outcome, measured
 
 
 def scene_defects(coapt: str, scene: pathlib.Path, expected: list[dict]) -> list[str]:
-    """What is wrong with the result of one scene; prints the numbers that were compared."""
+    """What is wrong with one scene or its result; prints the numbers that were compared."""
+    check = subprocess.run([coapt, "check", str(scene)], capture_output=True, text=True)
+    if check.returncode != 0:
+        return [f"{scene}: check: exit code {check.returncode}\n{check.stdout}{check.stderr}"]
     with tempfile.TemporaryDirectory() as scratch:
         run = subprocess.run([coapt, "solve", str(scene), "-o", scratch], capture_output=True, text=True)
         if run.returncode != 0:

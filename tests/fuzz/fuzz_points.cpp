@@ -1,5 +1,5 @@
-// Markups of 3D Slicer, closed curves, pairs of facets, valve JSON and the tables that a scene names (numbers of
-// triangles and of vertices, fibres, forces, positions): every input is read as each of them.
+// Markups of 3D Slicer, closed curves, pairs of facets, valve JSON and the tables that a scene names (numbers
+// of triangles and of vertices, fibres, forces, positions): every input is read as each of them.
 #include "fuzz/fuzz_target.hpp"
 #include "scene/build.hpp"
 #include "scene/closed_curve.hpp"

@@ -21,9 +21,9 @@ class IdleSolver : public Solver {
 
 class BenchFixture : public testing::Test {
  protected:
-  // One smooth equilibrium; the centre rises by some 1.4 mm. 54 triangles on a disc of radius 10 mm.
-  Scene disc_scene() {
-    write_mesh(folder_.path() / "disc.obj", disc(10, 54));
+  // One smooth equilibrium; the centre rises by some 1.4 mm. A disc of radius 10 mm.
+  Scene disc_scene(int triangles = 54) {
+    write_mesh(folder_.path() / "disc.obj", disc(10, triangles));
     return load_scene(folder_.write("disc.json", R"({ "mesh": { "file": "disc.obj" },
       "boundary": [{ "nodes": "boundary", "fix": true }],
       "terms": [{ "type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },

@@ -1,16 +1,20 @@
 // Methods x tolerances x meshes on one scene: each error against a truth that is known otherwise, and what is
-// recommended against the table that it comes from.
-#include "mesh/cut_in_four.hpp"
+// told of runs and equilibria that are not there.
 #include "scene/bench_fixture.hpp"
 #include "scene/benchmark_report.hpp"
 #include "scene/benchmark_summary.hpp"
+#include "scene/detail/peak_memory.hpp"
+#include "scene/mass_spring_scene.hpp"
 #include "scene/mesh_study.hpp"
+#include "scene/report_page.hpp"
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -66,7 +70,6 @@ TEST_F(BenchmarkTest, MeasuresEachErrorAgainstATruthOfItsOwn) {
     EXPECT_GT(timed.cpu.best, 0);
     EXPECT_GT(timed.evaluations.gradient, 0);
     EXPECT_GT(timed.phase_s.at("gradient"), 0);
-    EXPECT_GE(timed.peak_memory_mb.value_or(0), 0);
     if (timed.mesh > 0 || timed.method > 0) continue;
     run_.tolerance = timed.tolerance;
     const Points x = run(scene, solvers(), run_).report.fields.x;
@@ -76,6 +79,110 @@ TEST_F(BenchmarkTest, MeasuresEachErrorAgainstATruthOfItsOwn) {
     EXPECT_EQ(end.verdict, end.method == 0 ? Verdict::Reference : Verdict::SameEquilibrium);
     EXPECT_LE(end.residual.value(), 1e-12);
   }
+}
+
+double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const double at = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - at * (b - a)).norm();
+}
+
+double to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const auto is_inside = [&](const Vec3& from, const Vec3& to) {
+    return (to - from).cross(p - from).dot(normal) >= 0;
+  };
+  if (is_inside(a, b) && is_inside(b, c) && is_inside(c, a))
+    return std::abs((p - a).dot(normal)) / normal.norm();
+  return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
+}
+
+// How near 95 % of the area of a surface are to another: corners, middles of edges and centroid of each
+// triangle, weighed as mesh/surface_distance.hpp says, against every triangle of the other.
+double distance_of_most(const TriangleMesh& from, const TriangleMesh& to) {
+  std::vector<std::pair<double, double>> samples;  // distance and weight
+  double total = 0;
+  const auto add = [&](const Vec3& p, double weight) {
+    double least = kInfinity;
+    for (const auto& t : to.triangles.colwise())
+      least = std::min(least,
+                       to_triangle(p, to.vertices.col(t[0]), to.vertices.col(t[1]), to.vertices.col(t[2])));
+    samples.emplace_back(least, weight);
+    total += weight;
+  };
+  for (const auto& t : from.triangles.colwise()) {
+    const Vec3 corners[] = {from.vertices.col(t[0]), from.vertices.col(t[1]), from.vertices.col(t[2])};
+    const double area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    for (int k = 0; k < 3; ++k) {
+      add(corners[k], area / 20);
+      add((corners[k] + corners[(k + 1) % 3]) / 2, 2 * area / 15);
+    }
+    add((corners[0] + corners[1] + corners[2]) / 3, 9 * area / 20);
+  }
+  std::sort(samples.begin(), samples.end());
+  double below = 0;
+  for (const auto& [distance, weight] : samples)
+    if ((below += weight) >= 0.95 * total) return distance;
+  return samples.back().first;
+}
+
+// Springs in place of the membrane: another shape, whose distance is known without the benchmark.
+TEST_F(BenchmarkTest, TheErrorOfTheMethodIsTheDistanceBetweenTheTwoShapes) {
+  const Scene scene = disc_scene();
+  BenchOptions options;
+  options.methods = {"newton", "mass-spring"};
+  options.tolerances = {1e-2, 1e-6};
+  options.levels = 0;
+  options.repeats = 1;
+  const Benchmark found = bench(scene, options);
+  ASSERT_EQ(found.runs.size(), 4u);
+  run_.writes = false;
+  run_.tolerance = 1e-11;
+  const auto closed = [&](const Scene& solved) {
+    const RunReport report = run(solved, solvers(), run_);
+    EXPECT_EQ(report.report.result.status, Status::Converged);
+    return surface_at(report.model, report.report.fields.x);
+  };
+  const TriangleMesh sheet = closed(scene), springs = closed(mass_spring_scene(scene));
+  const double distance = std::max(distance_of_most(sheet, springs), distance_of_most(springs, sheet));
+  std::printf("  %.6f mm between membrane and springs\n", distance);
+  EXPECT_GT(distance, 0.01);
+  for (const BenchRun& timed : found.runs) {
+    EXPECT_EQ(timed.errors.method.has_value(), timed.method == 1);
+    if (timed.method == 1) {
+      EXPECT_NEAR(*timed.errors.method, distance, 1e-7);  // whatever its own tolerance
+    }
+  }
+}
+
+TEST_F(BenchmarkTest, TellsTheMemoryOfARun) {
+  if (!PeakMemory().risen_mb()) GTEST_SKIP() << "this system does not tell the peak of resident memory";
+  BenchOptions options;
+  options.methods = {"newton"};
+  options.tolerances = {1e-2};
+  options.levels = 0;
+  options.repeats = 1;
+  options.truth_seconds = 1e-9;  // the finer mesh is not wanted
+  const Benchmark found = bench(disc_scene(2400), options);
+  ASSERT_EQ(found.runs.size(), 1u);
+  ASSERT_TRUE(found.runs[0].peak_memory_mb);
+  std::printf("  %.1f MB for 2,400 triangles\n", *found.runs[0].peak_memory_mb);
+  EXPECT_GT(*found.runs[0].peak_memory_mb, 1);
+  EXPECT_LT(*found.runs[0].peak_memory_mb, 500);
+  EXPECT_EQ(nlohmann::json::parse(benchmark_json(found)).at("runs").at(0).at("peak_memory_mb").get<double>(),
+            *found.runs[0].peak_memory_mb);
+}
+
+TEST(PeakMemory, IsThatOfWhatIsHeldMeanwhile) {
+  const PeakMemory memory;
+  if (!memory.risen_mb()) GTEST_SKIP() << "this system does not tell the peak of resident memory";
+  EXPECT_LT(*memory.risen_mb(), 10);
+  {
+    std::vector<char> held(size_t{64} << 20);
+    volatile char* bytes = held.data();
+    for (size_t k = 0; k < held.size(); k += 1024) bytes[k] = 1;  // every page, or it is not resident
+  }
+  EXPECT_NEAR(*memory.risen_mb(), 64, 10);  // also after it was given back
+  EXPECT_LT(*PeakMemory().risen_mb(), 10);  // which is no matter of what comes later
 }
 
 TEST_F(BenchmarkTest, EstimatesTheErrorOfTheMesh) {
@@ -110,6 +217,15 @@ TEST_F(BenchmarkTest, EstimatesTheErrorOfTheMesh) {
   }
 }
 
+// Marks of runs that stopped early, of a method in all plots of the page: tooltip and drawing.
+std::vector<std::string> early_marks(const std::string& page, const std::string& method) {
+  std::vector<std::string> marks;
+  const std::string opening = "<g class=\"mark early\"><title>" + method + ", ";
+  for (size_t at = page.find(opening); at != std::string::npos; at = page.find(opening, at + 1))
+    marks.push_back(page.substr(at, page.find("</g>", at) - at));
+  return marks;
+}
+
 TEST_F(BenchmarkTest, AMethodThatStopsEarlyIsNeverRecommended) {
   BenchOptions options;
   options.methods = {"idle", "newton", "broken"};
@@ -128,10 +244,66 @@ TEST_F(BenchmarkTest, AMethodThatStopsEarlyIsNeverRecommended) {
   EXPECT_EQ(found.ends[2].verdict, Verdict::Failed);
   EXPECT_NE(found.ends[2].failure.find("it is broken"), std::string::npos);
   const std::string page = benchmark_page(found);
-  EXPECT_NE(page.find("stalled"), std::string::npos);
+  EXPECT_EQ(early_marks(page, "idle").size(), 2u);  // of its total and of its algebraic error
+  EXPECT_TRUE(early_marks(page, "newton").empty());
   EXPECT_EQ(page.find("<b>really"), std::string::npos);
   for (const double mm : kTotalAccuracies)
     EXPECT_EQ(recommendation(found, mm).find("idle"), std::string::npos);
+}
+
+// Without newton nobody goes on from where the idle method stands: its equilibrium stays unknown.
+TEST_F(BenchmarkTest, DrawsAStopWhoseEquilibriumIsNotKnown) {
+  SolverTable table = solvers();
+  table.erase("newton");
+  Scene scene = disc_scene();
+  scene.solver.type = "lbfgs";
+  BenchOptions options;
+  options.methods = {"lbfgs", "idle"};
+  options.tolerances = {1e-2, 1e-6};
+  options.levels = 0;
+  options.repeats = 1;
+  run_.folder = folder_.path() / "result";
+  const Benchmark found = run_benchmark(scene, table, options, run_);
+  ASSERT_EQ(found.runs.size(), 3u);
+  const BenchRun& idle = found.runs.back();
+  ASSERT_EQ(idle.status, Status::Stalled);
+  EXPECT_FALSE(idle.errors.algebraic);
+  // Flat as at rest, it is as far from the dome as that has risen.
+  ASSERT_TRUE(idle.errors.method && idle.errors.discretisation && idle.errors.total);
+  EXPECT_NEAR(*idle.errors.method, 1.34, 0.02);
+  EXPECT_EQ(*idle.errors.total, *idle.errors.method + *idle.errors.discretisation);
+  const std::vector<std::string> warnings = missing_equilibria(found);
+  ASSERT_EQ(warnings.size(), 1u);
+  for (const char* piece : {"the equilibrium of idle on 54 triangles was not found: stalled", "1e-08 wanted"})
+    EXPECT_NE(warnings[0].find(piece), std::string::npos) << warnings[0];
+  const std::vector<std::string> marks = early_marks(benchmark_page(found), "idle");
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_NE(marks[1].find("distance to the equilibrium of lbfgs"), std::string::npos) << marks[1];
+}
+
+// Nobody knows how far the reference itself is off: it stands at the upper edge, which is 14 px from the top.
+TEST_F(BenchmarkTest, DrawsAStopWithoutAnyErrorAtTheUpperEdge) {
+  SolverTable table = solvers();
+  table.erase("newton");
+  Scene scene = disc_scene();
+  scene.solver.type = "lbfgs";
+  BenchOptions options;
+  options.methods = {"lbfgs", "idle"};
+  options.reference = "idle";
+  options.tolerances = {1e-2, 1e-6};
+  options.levels = 0;
+  options.repeats = 1;
+  run_.folder = folder_.path() / "result";
+  const Benchmark found = run_benchmark(scene, table, options, run_);
+  ASSERT_EQ(found.runs.size(), 3u);
+  for (const BenchRun& timed : found.runs) EXPECT_FALSE(timed.errors.total);
+  EXPECT_TRUE(found.runs[1].errors.algebraic && found.runs[2].errors.algebraic);
+  const std::vector<std::string> marks = early_marks(benchmark_page(found), "idle");
+  ASSERT_EQ(marks.size(), 2u);
+  for (const std::string& mark : marks) {
+    EXPECT_NE(mark.find("error not known, at the upper edge"), std::string::npos) << mark;
+    EXPECT_NE(mark.find("cy=\"14.0\""), std::string::npos) << mark;
+  }
 }
 
 TEST_F(BenchmarkTest, MeasuresAGivenClosedSurface) {
@@ -194,13 +366,28 @@ TEST_F(BenchmarkTest, SaysWhichEquilibriumIsMissing) {
   EXPECT_EQ(found.meshes[0].missing + found.meshes[1].missing, "");
   EXPECT_TRUE(found.meshes[0].error_mm && found.meshes[1].error_mm);
   EXPECT_FALSE(found.meshes[1].to_next || found.meshes[2].error_mm);
+  // lbfgs ends just below its tolerance: that is no truth for a run to it. newton ended far below.
   const std::vector<std::string> missing = missing_equilibria(found);
-  ASSERT_EQ(missing.size(), 1u);
-  for (const char* piece : {"triangles was not found: stopped at the time limit", "--truth-seconds"})
-    EXPECT_NE(missing[0].find(piece), std::string::npos) << missing[0];
-  EXPECT_NE(benchmark_page(found).find("Warning: the equilibrium on "), std::string::npos);
-  EXPECT_EQ(nlohmann::json::parse(benchmark_json(found)).at("meshes").at(2).at("no_equilibrium"),
-            found.meshes[2].missing);
+  ASSERT_EQ(missing.size(), 3u);
+  EXPECT_EQ(missing[0].find("the equilibrium on 864 triangles"), 0u) << missing[0];
+  EXPECT_EQ(missing[1].find("the equilibrium of lbfgs on 54 triangles"), 0u) << missing[1];
+  EXPECT_EQ(missing[2].find("the equilibrium of lbfgs on 216 triangles"), 0u) << missing[2];
+  const std::string page = benchmark_page(found);
+  for (const std::string& text : missing) {
+    for (const char* piece : {" was not found: stopped at the time limit", "its residual of ",
+                              " is above the 1e-09 wanted", "--truth-seconds"})
+      EXPECT_NE(text.find(piece), std::string::npos) << piece << " in " << text;
+    EXPECT_NE(page.find("Warning: " + text), std::string::npos) << text;
+  }
+  for (const BenchRun& timed : found.runs) {
+    EXPECT_EQ(timed.errors.algebraic.has_value(), timed.method == 0);
+    EXPECT_TRUE(timed.errors.total);  // by the distance to the equilibrium of newton
+  }
+  const nlohmann::json json = nlohmann::json::parse(benchmark_json(found));
+  EXPECT_EQ(json.at("warnings"), nlohmann::json(missing));
+  EXPECT_EQ(json.at("meshes").at(2).at("no_equilibrium"), found.meshes[2].missing);
+  EXPECT_TRUE(json.at("ends").at(0).at("no_equilibrium").is_null());
+  EXPECT_EQ(json.at("ends").at(1).at("no_equilibrium"), found.ends[1].missing);
 
   options.levels = 0;
   const Benchmark coarse = bench(scene, options);
@@ -248,6 +435,10 @@ TEST_F(BenchmarkTest, TellsTheSameInJsonRowsAndPage) {
   const std::string page = benchmark_page(found);
   EXPECT_NE(page.find(json.at("recommendations").at(0).get<std::string>()), std::string::npos);
   EXPECT_EQ(page.find("<script src"), std::string::npos);
+  EXPECT_TRUE(json.at("warnings").empty());
+  EXPECT_NE(page.find("residual of the equilibrium"), std::string::npos);
+  for (const BenchMesh& mesh : found.meshes)
+    EXPECT_NE(page.find(">" + page_number(mesh.residual.value(), 3) + "<"), std::string::npos);
 
   // Where on the mesh its error is: what the figures of the mesh say of the same two surfaces.
   ASSERT_EQ(found.mesh_view.has_value(), has_shape_view());
@@ -258,116 +449,6 @@ TEST_F(BenchmarkTest, TellsTheSameInJsonRowsAndPage) {
   EXPECT_GT(distance.values[0].maxCoeff(), 0);
   EXPECT_LE(distance.values[0].maxCoeff(), *found.meshes.front().error_mm * 2);
   EXPECT_NE(page.find("id=\"shape-data\""), std::string::npos);
-}
-
-// --- what follows from a table, without a solve
-
-TEST(DiscretisationEstimate, IsExactForAGeometricSequence) {
-  // Errors of 4^-k at mesh k, all on one side of the limit.
-  const auto figures = [](double distance) { return DistanceFigures{distance, distance, distance}; };
-  const DiscretisationEstimate found =
-      estimate_discretisation({{figures(0.75), figures(0.1875)}, {figures(0.9375), figures(0.1875)}});
-  EXPECT_NEAR(found.order.value(), 2, 1e-12);
-  ASSERT_EQ(found.error_mm.size(), 3u);
-  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found.error_mm[k], std::pow(0.25, k), 1e-12);
-}
-
-// Vertices of the finer mesh lie where the coarser is farthest off: the distance between the two is 3/4 of
-// the error in the middle of a facet and all of it in the middle of an edge. What a mesh before shows is
-// kept.
-TEST(DiscretisationEstimate, LearnsFromTheMeshBeforeWhatADistanceMeans) {
-  const DiscretisationEstimate found =
-      estimate_discretisation({{{0.8, 0.9, 1}, {0.2, 0.225, 0.25}}, {{0.9, 0.9375, 1}, {0.2, 0.225, 0.25}}});
-  EXPECT_NEAR(found.error_mm[0], 1, 1e-12);
-  EXPECT_NEAR(found.error_mm[1], 0.25, 1e-12);
-  EXPECT_NEAR(found.error_mm[2], 0.0625, 1e-12);
-}
-
-TEST(DiscretisationEstimate, StaysWithinReasonWhereNoOrderIsSeen) {
-  const DiscretisationEstimate one = estimate_discretisation({{{0.2, 0.5, 0.9}}, {{0.2, 0.5, 0.9}}});
-  EXPECT_FALSE(one.order);
-  EXPECT_GT(one.error_mm[0], 0.5);  // there is more beyond the next mesh
-  EXPECT_LT(one.error_mm[0], 1);    // than with errors that halve
-  EXPECT_NEAR(one.error_mm[0] - one.error_mm[1], 0.5, 1e-12);
-  // The finest mesh found another branch: what the first two meshes have in common says nothing then.
-  const DiscretisationEstimate rising =
-      estimate_discretisation({{{0.01, 0.01, 0.01}, {1, 1, 1}}, {{1, 1, 1}, {1, 1, 1}}});
-  EXPECT_LT(rising.order.value(), 0);
-  EXPECT_EQ(rising.assumed_order, 0.5);
-  EXPECT_GE(rising.error_mm[1], 1);
-  EXPECT_LT(rising.error_mm[1], 4);
-  const DistanceFigures none;
-  EXPECT_EQ(estimate_discretisation({{none, none}, {none, none}}).error_mm[0], 0);
-}
-
-// A triangle over a shallow bowl: two facets of the finer mesh meet at the middle of its long edge.
-TEST(DiscretisationEstimate, SamplesBothMeshesAsClosely) {
-  TriangleMesh coarse;
-  coarse.vertices.resize(3, 3);
-  coarse.vertices << 0, 1, 0, 0, 0, 1, 0, 0, 0;
-  coarse.triangles.resize(3, 1);
-  coarse.triangles << 0, 1, 2;
-  TriangleMesh fine = cut_in_four(coarse).mesh;
-  for (auto x : fine.vertices.colwise()) x[2] = 0.01 * (x[0] * (1 - x[0]) + x[1] * (1 - x[1]));
-  const MeshDistances found = distances_between_meshes({coarse, fine});
-  ASSERT_EQ(found.to_next.size(), 1u);
-  // A quarter of the area each: three corners that rise from nothing to their middles, and the middle.
-  const double middles = (0.0025 + 0.0025 + 0.005) / 3;
-  EXPECT_NEAR(found.to_next[0].mean, (middles + 2 * middles) / 4, 0.02 * middles);
-  EXPECT_LT(found.to_next[0].p95, 0.005);
-}
-
-// Two methods on two meshes: times grow with triangles^1.3, errors of the mesh fall by four.
-Benchmark table() {
-  Benchmark bench;
-  bench.methods = {{"newton"}, {"hasty"}};
-  bench.meshes = {{.triangles = 1000, .error_mm = 0.2}, {.triangles = 4000, .error_mm = 0.05}};
-  bench.tolerances = {1e-2, 1e-6};
-  for (const size_t method : {size_t{0}, size_t{1}})
-    for (const size_t mesh : {size_t{0}, size_t{1}})
-      for (const double tolerance : bench.tolerances) {
-        BenchRun run{.method = method, .mesh = mesh, .tolerance = tolerance, .status = Status::Converged};
-        const double seconds = std::pow(bench.meshes[mesh].triangles / 1000.0, 1.3) *
-                               (tolerance < 1e-3 ? 2 : 1) * (method == 0 ? 1 : 0.1);
-        run.wall = run.cpu = {seconds, 0.9 * seconds};
-        run.errors.algebraic = NodeError{30 * tolerance, 10 * tolerance};
-        run.errors.discretisation = bench.meshes[mesh].error_mm;
-        run.errors.total = run.errors.algebraic->max + *bench.meshes[mesh].error_mm;
-        if (method == 1) run.status = Status::Stalled;
-        bench.runs.push_back(run);
-      }
-  return bench;
-}
-
-TEST(BenchmarkSummary, RecommendsTheFastestOfThoseThatAreGoodEnough) {
-  const Benchmark bench = table();
-  for (const double mm : {10.0, 1.0, 0.3, 0.1, 0.06}) {
-    const BenchRun* found = fastest_run(bench, ErrorKind::Total, mm);
-    ASSERT_NE(found, nullptr) << mm;
-    EXPECT_LE(*found->errors.total, mm);
-    for (const BenchRun& run : bench.runs)
-      EXPECT_FALSE(run.status == Status::Converged && *run.errors.total <= mm &&
-                   run.wall.median < found->wall.median)
-          << mm;
-  }
-  EXPECT_EQ(recommendation(bench, 0.1),
-            "for 0.1 mm on this scene: newton, 4,000 triangles, 12 s (tolerance 1e-06, error 0.05 mm)");
-  const std::string none = recommendation(bench, 0.01);
-  for (const char* piece : {"none of these runs", "newton, 4,000 triangles", "--levels"})
-    EXPECT_NE(none.find(piece), std::string::npos) << none;
-  EXPECT_EQ(fastest_run(bench, ErrorKind::Total, 1, {.method = 1}), nullptr);
-  EXPECT_EQ(fastest_run(bench, ErrorKind::Algebraic, 1e-3, {0, 0})->tolerance, 1e-6);
-}
-
-TEST(BenchmarkSummary, SeesHowTimeGrows) {
-  Benchmark bench = table();
-  const auto found = growth(bench, 0);
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->exponent, 1.3, 1e-12);
-  EXPECT_EQ(found->tolerance, 1e-6);
-  EXPECT_FALSE(growth(bench, 1));          // it never converged
-  bench.runs[3].status = Status::Stalled;  // the tightest on the second mesh
-  EXPECT_EQ(growth(bench, 0)->tolerance, 1e-2);
 }
 
 }  // namespace

@@ -188,20 +188,28 @@ TEST_F(ChordTuningTest, GoesOnFromTheWayToTheTarget) {
   EXPECT_LE(resumed.solves, 45);
 }
 
+// Each by itself: no springs draw the leaflets to the target, whose lengths Gauss-Newton would fit, and no
+// group is slack, so that there is nothing to take up where a method ends.
 TEST_F(ChordTuningTest, EveryMethodReachesTheSameFit) {
   ChordTuningOptions options;
   options.target = target(two_tips());
   options.grouping = ChordGrouping::Tip;
   options.only = {"tip_0", "tip_1"};
   options.change_weight = 0;
+  options.is_direct = true;
   for (const auto& [name, make] : minimisers()) {
     SCOPED_TRACE(name);
     options.method = name;
     const ChordTuning found = tuned(options);
     EXPECT_EQ(found.method, name);
-    EXPECT_LT(found.misfit_after(), 0.01 * found.misfit_before());
+    EXPECT_TRUE(found.has_converged()) << found.tuning.message;
+    for (const TuningTrial& trial : found.tuning.best.history) EXPECT_FALSE(trial.is_aided);
+    // Below the least step a fit counts as reached; COBYLA, which ends by its steps, leaves a seventh of it.
+    EXPECT_LT(found.misfit_after(), options.step);
+    EXPECT_GT(found.misfit_before(), 0.1);
     for (const TunedLength& length : found.lengths) {
-      EXPECT_NEAR(length.factor, length.name == "tip_0" ? 0.94 : 1.03, 2e-3) << length.name;
+      EXPECT_FALSE(length.is_slack) << length.name;
+      EXPECT_NEAR(length.factor, length.name == "tip_0" ? 0.94 : 1.03, 5e-4) << length.name;
     }
     ASSERT_TRUE(found.after);
     EXPECT_EQ(found.after->report.result.status, Status::Converged);
@@ -231,7 +239,55 @@ TEST_F(ChordTuningTest, TheTunedSceneIsTheTunedShape) {
 }
 
 #ifdef COAPT_HAS_NLOPT
-TEST_F(ChordTuningTest, LessensForceWithinTheBounds) {
+// What has the weight falls, the smooth figure that is minimised and the sharp one that is reported.
+TEST_F(ChordTuningTest, LessensOrificeOrForceWithinTheBounds) {
+  ChordTuningOptions options;
+  options.change_weight = 0;
+  options.grouping = ChordGrouping::Tip;
+  options.lowest = -0.03;
+  options.highest = 0.02;
+  options.max_solves = 60;
+  struct Figures {
+    double smooth_orifice = 0, smooth_force = 0, orifice = 0, force = 0;  // mm2, N
+  };
+  const auto figures = [](const TuningTrial& trial, const Metrics& metrics) {
+    return Figures{trial.metrics.at(0), trial.metrics.at(1), metrics.orifice_area_mm2.value(),
+                   metrics.max_chord_force_n.value()};
+  };
+  const auto of_weights = [&](double orifice, double force) {
+    options.orifice_weight = orifice;
+    options.force_weight = force;
+    const ChordTuning found = tuned(options);
+    EXPECT_EQ(found.method, "slsqp");
+    EXPECT_EQ(found.tuning.failed, 0);
+    EXPECT_FALSE(found.determinacy);
+    EXPECT_EQ(found.lengths.size(), 8u);
+    bool has_bound = false;
+    for (const TunedLength& length : found.lengths) {
+      EXPECT_GE(length.factor, 0.97 - 1e-12);
+      EXPECT_LE(length.factor, 1.02 + 1e-12);
+      has_bound = has_bound || length.at_bound != 0;
+    }
+    EXPECT_TRUE(has_bound);
+    const std::vector<TuningTrial>& history = found.tuning.best.history;
+    const auto best =
+        std::min_element(history.begin(), history.end(),
+                         [](const auto& one, const auto& other) { return one.cost < other.cost; });
+    return std::pair(figures(history.front(), found.before.report.metrics),
+                     figures(*best, found.after.value().report.metrics));
+  };
+  const auto [open, narrow] = of_weights(1, 0.01);
+  EXPECT_LT(narrow.smooth_orifice, 0.8 * open.smooth_orifice);
+  EXPECT_LT(narrow.orifice, 0.95 * open.orifice);
+  const auto [loaded, relieved] = of_weights(0.01, 1);
+  EXPECT_LT(relieved.smooth_force, 0.95 * loaded.smooth_force);
+  EXPECT_LT(relieved.force, 0.93 * loaded.force);
+  // Each is better at what it was asked for.
+  EXPECT_LT(narrow.smooth_orifice, 0.9 * relieved.smooth_orifice);
+  EXPECT_LT(relieved.smooth_force, 0.9 * narrow.smooth_force);
+}
+
+TEST_F(ChordTuningTest, AGreaterWeightOfTheChangeKeepsTheLengthsNearer) {
   ChordTuningOptions options;
   options.force_weight = 1;
   options.orifice_weight = 0.01;
@@ -241,17 +297,6 @@ TEST_F(ChordTuningTest, LessensForceWithinTheBounds) {
   options.highest = 0.02;
   options.max_solves = 40;
   const ChordTuning found = tuned(options);
-  EXPECT_EQ(found.method, "slsqp");
-  EXPECT_LT(found.tuning.cost_after, 0.99 * found.tuning.cost_before);
-  EXPECT_FALSE(found.determinacy);
-  bool has_bound = false;
-  for (const TunedLength& length : found.lengths) {
-    EXPECT_GE(length.factor, 0.97 - 1e-12);
-    EXPECT_LE(length.factor, 1.02 + 1e-12);
-    has_bound = has_bound || length.at_bound != 0;
-  }
-  EXPECT_TRUE(has_bound);
-  // A greater weight of the change leaves the lengths nearer to what they were.
   options.change_weight = 1;
   const ChordTuning held = tuned(options);
   const auto change = [](const ChordTuning& tuning) {
@@ -261,6 +306,7 @@ TEST_F(ChordTuningTest, LessensForceWithinTheBounds) {
     return sum;
   };
   EXPECT_LT(change(held), 0.5 * change(found));
+  EXPECT_LT(held.tuning.cost_after, held.tuning.cost_before);
 }
 #endif
 

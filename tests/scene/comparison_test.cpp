@@ -1,9 +1,13 @@
 // Several methods on one scene: who agrees with whom, and what is said where they do not.
 #include "core/error.hpp"
+#include "mesh/generators/mitral.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "optim/newton.hpp"
 #include "scene/comparison_report.hpp"
+#include "scene/detail/base64.hpp"
+#include "scene/import.hpp"
+#include "scene/scene_text.hpp"
 #include "scene/shape_view.hpp"
 #include "scene/temporary_folder.hpp"
 
@@ -365,26 +369,91 @@ TEST_F(ComparisonTest, TellsItOnAPageThatNeedsNothingElse) {
     EXPECT_NE(page.find(word), std::string::npos) << word;
 }
 
-TEST_F(ComparisonTest, ShowsEveryShapeOnOneScale) {
-  if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
-  const Comparison found = compare(disc_scene(), {"newton", "idle", "broken"});
-  const std::string page = comparison_page(found), opening = "id=\"shape-data\">";
+// What the 3-D view of the page is given.
+nlohmann::json shape_data(const std::string& page) {
+  const std::string opening = "id=\"shape-data\">";
   const size_t from = page.find(opening) + opening.size(), to = page.find("</script>", from);
   const std::string data = page.substr(from, to - from);
   EXPECT_EQ(data.find('<'), std::string::npos) << "it could end the script";
-  const nlohmann::json json = nlohmann::json::parse(data);
-  ASSERT_EQ(json.at("states").size(), 2U);
+  return nlohmann::json::parse(data);
+}
+
+std::string floats(const Eigen::MatrixXd& numbers) {
+  const Eigen::MatrixXf singles = numbers.cast<float>();
+  return base64(std::span<const float>(singles.data(), static_cast<size_t>(singles.size())));
+}
+
+// As the view has them, which adds the way between two origins: here nothing, but -0 becomes 0.
+std::string nodes(const Points& x) { return floats(x.array() + 0.0); }
+
+std::vector<std::string> labels(const nlohmann::json& shapes) {
+  std::vector<std::string> all;
+  for (const nlohmann::json& state : shapes.at("states")) all.push_back(state.at("label"));
+  return all;
+}
+
+TEST_F(ComparisonTest, ShowsEveryShapeOnOneScale) {
+  if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
+  const Comparison found = compare(disc_scene(), {"newton", "idle", "broken", "lbfgs"});
+  const nlohmann::json json = shape_data(comparison_page(found));
+  EXPECT_EQ(labels(json), (std::vector<std::string>{"at rest", "idle: not converged",
+                                                    "lbfgs: same equilibrium", "newton: reference"}));
   const Model& model = found.reference().run->model;
   // Base64 of 4 bytes a number.
   EXPECT_EQ(json.at("triangles").get<std::string>().size(),
             static_cast<size_t>((4 * model.mesh.triangles.size() + 2) / 3 * 4));
+  EXPECT_EQ(json.at("states").at(0).at("nodes"), nodes(model.X));
+  EXPECT_EQ(json.at("states").at(2).at("nodes"), nodes(found.methods[3].run->report.fields.x));
+  EXPECT_EQ(json.at("states").at(3).at("nodes"), nodes(found.reference().run->report.fields.x));
   const nlohmann::json& distance = json.at("fields").at(0);
   EXPECT_EQ(distance.at("title"), "Distance to the reference method");
-  ASSERT_EQ(distance.at("values").size(), 2U);
+  ASSERT_EQ(distance.at("values").size(), 4U);
   EXPECT_TRUE(distance.at("values").at(0).is_null());
-  EXPECT_EQ(distance.at("values").at(1).get<std::string>().size(),
-            static_cast<size_t>((4 * model.mesh.vertex_count() + 2) / 3 * 4));
-  EXPECT_NE(json.at("states").at(0).at("nodes"), json.at("states").at(1).at("nodes"));
+  EXPECT_EQ(distance.at("values").at(1), floats(found.methods[1].run->report.fields.method_distance));
+  EXPECT_EQ(distance.at("values").at(3), floats(Vector::Zero(model.mesh.vertex_count())));
+  for (const nlohmann::json& field : json.at("fields")) EXPECT_TRUE(field.at("values").at(0).is_null());
+  EXPECT_TRUE(json.at("outlines").empty());
+}
+
+// The open valve, the methods, the reference last: with its orifice, as the view draws outlines of the last
+// shape. The obstacle is there too, far below, and nothing keeps the valve off it.
+TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfTheReference) {
+  if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
+  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
+  folder_.write("floor.obj", "v -90 -90 -80\nv 90 -90 -80\nv 0 90 -80\nf 1 2 3\n");
+  nlohmann::json text = nlohmann::json::parse(scene_text(folder_.path() / "scene.json"));
+  text["obstacles"] = {{{"name", "floor"}, {"file", "floor.obj"}}};
+  const Comparison found =
+      compare(load_scene(folder_.write("standing.json", text.dump())), {"newton", "idle"});
+  const std::string page = comparison_page(found);
+  const nlohmann::json json = shape_data(page);
+  EXPECT_EQ(labels(json), (std::vector<std::string>{"open", "idle: not converged", "newton: reference"}));
+  const Model& model = found.reference().run->model;
+  EXPECT_EQ(json.at("states").at(0).at("nodes"), nodes(model.X));
+  const std::uint32_t last = static_cast<std::uint32_t>(model.X.cols()),
+                      corners[] = {last - 3, last - 2, last - 1};
+  EXPECT_EQ(json.at("obstacles"), base64(std::span<const std::uint32_t>(corners)));
+  ASSERT_TRUE(json.at("line_force").at("values").at(0).is_null());
+  EXPECT_EQ(json.at("line_force").at("values").at(2),
+            floats(found.reference().run->report.fields.line_force));
+
+  const Metrics& metrics = found.reference().run->report.metrics;
+  ASSERT_FALSE(metrics.closure.value().orifices.empty());
+  std::vector<std::string> outlines, wanted;
+  for (const nlohmann::json& outline : json.at("outlines"))
+    if (outline.at("kind") == "orifice") outlines.push_back(outline.at("points"));
+  for (const Orifice& orifice : metrics.closure->orifices) wanted.push_back(floats(orifice.outline.corners));
+  EXPECT_EQ(outlines, wanted);
+  EXPECT_EQ(json.at("orifice_text"),
+            "orifice outline, " + page_number(metrics.orifice_area_mm2.value()) + " mm²");
+
+  // Said once where every method says it, else with the names of those that do.
+  const size_t warning = page.find("nothing keeps the membrane off them");
+  ASSERT_NE(warning, std::string::npos);
+  EXPECT_EQ(page.find("nothing keeps the membrane off them", warning + 1), std::string::npos);
+  ASSERT_GT(metrics.intersections, 0);
+  EXPECT_NE(page.find("Warning (newton): " + std::to_string(metrics.intersections) + " pairs of facets"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -208,7 +208,8 @@ TEST_F(RepairedValve, ARingOfACurveHoldsTheAnnulusOnIt) {
     return Points(ringed.motion.positions(1)(Eigen::all, ringed.sets.at("annulus")).colwise() +
                   ringed.origin);
   };
-  for (const auto& x : held(R"(, "size": "26 mm")").colwise()) {
+  const Points scaled = held(R"(, "size": "26 mm")");
+  for (const auto& x : scaled.colwise()) {
     EXPECT_NEAR(x.z(), 1, 1e-9);
     EXPECT_NEAR(x.head<2>().norm(), 13, 0.02) << "the circle, scaled";
   }

@@ -180,7 +180,8 @@ TEST(SceneFile, RefusesAValueOfAnyOtherKindAtEveryPlaceAsADefectOfTheFile) {
                                    nlohmann::json::array(),
                                    nlohmann::json::object(),
                                    nlohmann::json::array({nlohmann::json::object()})};
-  const TemporaryFolder folder;  // holds the files that the scenes name: a missing one would be a defect already
+  const TemporaryFolder
+      folder;  // holds the files that the scenes name: a missing one would be a defect already
   folder.write("mesh.obj", kMesh);
   folder.write("floor.obj", kMesh);
   folder.write("valve.json", "{}");

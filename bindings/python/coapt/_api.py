@@ -74,9 +74,9 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
     """Finds the equilibrium of a membrane whose mesh is in memory.
 
     Args:
-        V: vertices of the reference shape, (n, 3) [mm]. float64 in C order is read in place.
-        F: corners of each triangle, (m, 3), counted from 0, counter-clockwise seen from the front. int32 in C order is
-            read in place.
+        V: vertices of the reference shape, (n, 3) [mm]. float64 in C order needs no conversion; the library copies it.
+        F: corners of each triangle, (m, 3), counted from 0, counter-clockwise seen from the front. int32 in C order
+            needs no conversion; the library copies it.
         terms: energies and loads: dicts with the keys of the scene file ({"type": "cst_stvk", "young": "1 MPa", ...}),
             and energies of one's own (see `Term`), in any order.
         fixed: what is held: node numbers, the name of a set ("boundary"), or true and false of shape (n,) or, for

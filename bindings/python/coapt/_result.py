@@ -29,7 +29,8 @@ class Result(dict[str, Any]):
     """A solved scene, shaped as the results of SciPy: a dict whose keys are attributes too.
 
     n nodes (the m_v vertices of the mesh first, then papillary tips and branch points of chords, then obstacles),
-    m triangles, k chords and cables. Arrays look into the memory of the solver's result; nothing is copied.
+    m triangles, k chords and cables. Arrays look into the memory of the solver's result and keep it
+    alive; `lines` and `fields["regime"]` are copies.
     """
 
     x: Array  #: positions of all nodes, (n, 3), in the coordinates of the input [mm]

@@ -223,7 +223,8 @@ std::vector<std::string> option_defects(const LeafletChordOptions& o) {
   if (o.zones.empty()) defects.push_back("chords: zones: name at least one");
   for (const ChordZone& zone : o.zones)
     if (!(zone.height > 0 && zone.height <= 1) || !(zone.area > 0))
-      defects.push_back("chords: zone of the " + zone.material + " chords: height must be in (0, 1] and area above 0");
+      defects.push_back("chords: zone of the " + zone.material +
+                        " chords: height must be in (0, 1] and area above 0");
   if (!o.level_areas.empty() && static_cast<int>(o.level_areas.size()) != o.levels)
     defects.push_back("chords: level_areas: holds " + std::to_string(o.level_areas.size()) + " areas for " +
                       std::to_string(o.levels) + " levels");

@@ -4,6 +4,7 @@
 #include "scene/detail/method_list.hpp"
 #include "scene/detail/method_verdict.hpp"
 #include "scene/detail/timed_run.hpp"
+#include "scene/report_page.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,11 +56,13 @@ RunOptions truth_options(const BenchCourse& course, const std::string& solver, d
 }
 
 // What keeps an equilibrium from being known, and what would help.
-Equilibrium missing_equilibrium(const Result& result, Points x = {}) {
+Equilibrium missing_equilibrium(const Benchmark& found, const Result& result, Points x = {}) {
   const bool lacks_time = result.status == Status::TimeLimit;
   return {.x = std::move(x),
           .residual = result.residual,
-          .missing = result.message + (lacks_time ? "; --truth-seconds gives it more time" : "")};
+          .missing = result.message + "; its residual of " + page_number(result.residual, 3) +
+                     " is above the " + page_number(found.equilibrium_residual(), 3) + " wanted" +
+                     (lacks_time ? "; --truth-seconds gives it more time" : "")};
 }
 
 std::string refining_solver(const BenchCourse& course, const std::string& method) {
@@ -78,10 +81,9 @@ Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, cons
   Model model = build(scene, ground);
   const Result result = solve_again(x, model, setup);
   found.is_cancelled = result.status == Status::Cancelled;
-  const bool is_found =
-      !found.is_cancelled && result.residual <= std::max(kEquilibrium, found.tolerances.back());
+  const bool is_found = !found.is_cancelled && result.residual <= found.equilibrium_residual();
   const Points end = model.objective->positions(result.q);
-  return is_found ? Equilibrium{true, end, result.residual} : missing_equilibrium(result, end);
+  return is_found ? Equilibrium{true, end, result.residual} : missing_equilibrium(found, result, end);
 }
 
 BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tolerance) {
@@ -165,6 +167,7 @@ Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size
     const bool has_energy = found.methods[method].model != MethodModel::Constraints;
     if (has_energy && !found.is_cancelled && !shapes.empty())
       own = equilibrium_near(course, scene, ground, shapes.back(), name, found);
+    if (!found.is_cancelled) end.missing = own.missing;
     if (!has_energy) own.missing = name + " solves constraints, which have no energy of the scene";
     if (!found.is_cancelled && !shapes.empty()) measure_errors(ground, shapes, own, reference, end, found);
   } catch (const InputError& error) {
@@ -174,6 +177,7 @@ Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size
   }
   if (!end.failure.empty()) {
     found.runs.resize(runs_before);
+    end.missing.clear();
     own.missing = end.failure;
   }
   found.ends.push_back(std::move(end));
@@ -189,7 +193,7 @@ Equilibrium equilibrium_from_start(const BenchCourse& course, const Groundwork& 
     Model model = build(course.scene, ground);
     const Result result = solve_scene(course.scene, ground, model, setup).result;
     found.is_cancelled = result.status == Status::Cancelled;
-    if (result.status != Status::Converged) return missing_equilibrium(result);
+    if (result.status != Status::Converged) return missing_equilibrium(found, result);
     return equilibrium_near(course, course.scene, ground, model.objective->positions(result.q), method,
                             found);
   } catch (const InputError& error) {  // a finer mesh that cannot be solved leaves the others less well known

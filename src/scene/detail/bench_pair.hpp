@@ -16,7 +16,7 @@ struct BenchCourse {
 };
 
 struct Equilibrium {
-  bool is_found = false;     // to kEquilibrium, or at least to the tightest tolerance
+  bool is_found = false;     // its residual is at most Benchmark::equilibrium_residual()
   Points x = {};             // 3 x node_count, relative to the model's origin [mm]
   double residual = 0;       // relative
   std::string missing = {};  // why it is not found

@@ -69,7 +69,9 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
   run.solver = how.solver;
   run.max_seconds = solved.seconds;
   run.factorisations = options_.factorisations;
-  SolveSetup setup = solve_setup(subject.scene, options_.solvers, run);
+  SolveSetup setup =
+      solve_setup(subject.scene,
+                  how.recorder == nullptr ? options_.solvers : how.recorder->recorded(options_.solvers), run);
   solved.model = build(subject.scene, subject.ground);
   Model& model = solved.model;
   if (how.edit) how.edit(model);
@@ -84,6 +86,7 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
     if (options_.is_cancelled && options_.is_cancelled()) return false;
     return !how.observer || how.observer(iteration, q);
   };
+  if (how.recorder != nullptr) setup.observer = how.recorder->recorded(setup.observer);
   const double start = wall_seconds();
   if (how.start != nullptr)
     solved.result = solve_again(*how.start, model, setup);

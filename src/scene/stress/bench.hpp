@@ -2,6 +2,7 @@
 // whether what came out is true. Private to this room.
 #pragma once
 
+#include "optim/run_record.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/stress/stress.hpp"
 
@@ -27,6 +28,7 @@ struct StressSolve {
   std::optional<double> seconds = {};  // time limit; empty: that of the rows
   const Points* start = nullptr;       // the supports are then where their motion ends
   Observer observer = {};              // besides that of the rows; may be empty
+  RunRecorder* recorder = nullptr;     // keeps the run or takes it up; may be null. Not with a start
   bool judges_every_state = false;     // counts intersections at each accepted state, not at the last alone
   std::function<void(Model&)> edit = {};  // changes the model before the solve; may be empty
 };

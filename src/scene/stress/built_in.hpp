@@ -64,4 +64,7 @@ std::vector<StressRow> large_scene_rows(const StressBench& bench);   // S24
 // The generated valve, 300 triangles, for the rows that are done to any scene. Written into the folder.
 StressScene built_in_valve(const std::filesystem::path& folder, bool has_contact);
 
+// The same with 5,200 triangles and without contact: elements enough for several threads.
+StressScene large_valve(const std::filesystem::path& folder);
+
 }  // namespace coapt

@@ -89,7 +89,8 @@ std::vector<BuiltRow> load_rows() {
   constexpr double kHencky = 0.653443345;  // of the cube root of q
   std::vector<BuiltRow> rows;
   for (const double q : {1e-9, 1e-6}) rows.push_back(disc_row({q, kHencky * std::cbrt(q)}));
-  for (const Load& load : {Load{1e-3, 0.0654043749}, Load{1e-2, 0.14138457}, Load{1e-1, 0.309515382}})
+  for (const Load& load :
+       {Load{1e-3, 0.0654043749}, Load{1e-2, 0.14138457}, Load{1e-1, 0.309515382}, Load{1, 0.720924752}})
     rows.push_back(disc_row(load));
   rows.push_back(bubble_row());
   rows.push_back(stiff_row());

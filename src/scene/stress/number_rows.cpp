@@ -69,9 +69,9 @@ std::vector<StressRow> number_rows(const SubjectPointer& subject) {
   std::vector<StressRow> rows;
   for (const double factor : {1e-6, 1e-3, 10.0, 100.0})
     rows.push_back(scaled_row(subject, "S3", "loads", factor, factor == 1e-3, is_load));
-  for (const double factor : {1e-2, 1e2, 1e4})
+  for (const double factor : {1e-2, 1e2, 1e4, 1e6, 1e8})
     rows.push_back(scaled_row(subject, "S4", "membranes", factor, factor == 1e2, is_membrane));
-  for (const double factor : {1e-2, 1e2, 1e4})
+  for (const double factor : {1e-2, 1e2, 1e4, 1e6, 1e8})
     rows.push_back(scaled_row(subject, "S4", "lines", factor, factor == 1e2, is_line));
   for (const double factor : {1e-12, 1e12})
     rows.push_back(scaled_row(subject, "S25", "membranes", factor, false, is_membrane));

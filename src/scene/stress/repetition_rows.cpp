@@ -1,36 +1,82 @@
 // S18, S19 and H3: the same run twice, on several threads, and by another method.
+#include "scene/build.hpp"
 #include "scene/stress/subject.hpp"
+
+#include <algorithm>
 
 namespace coapt {
 namespace {
 
-StressOutcome same_bits(StressSubject& subject, int threads) {
-  StressScene again = copy_of(own_scene(subject));
-  if (threads > 0) again.scene.solver.threads = threads;
-  const Stressed& own = own_solution(subject);
-  const Stressed solved = subject.bench.solve(again);
-  if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) return *wrong;
-  // What is stopped by the clock is not stopped at the same state.
-  if (own.result.status == Status::TimeLimit || solved.result.status == Status::TimeLimit)
-    return outcome_of(solved, StressVerdict::Stall, solved.result.message);
-  double different = (solved.x.array() != own.x.array()).cast<double>().sum();
-  if (solved.result.energy != own.result.energy) ++different;
-  if (solved.result.residual != own.result.residual) ++different;
-  if (solved.result.iterations != own.result.iterations) ++different;
-  return measured(solved, different, 0, "the two runs differ");
+constexpr const char* kDiffering = "numbers that differ";
+
+double differing_numbers(const Stressed& a, const Stressed& b) {
+  double different = (a.x.array() != b.x.array()).cast<double>().sum();
+  if (a.result.energy != b.result.energy) ++different;
+  if (a.result.residual != b.result.residual) ++different;
+  if (a.result.iterations != b.result.iterations) ++different;
+  return different;
 }
 
-StressRow repeated(const SubjectPointer& subject, const char* id, const std::string& name, int threads) {
-  return {id, subject->name, name, "numbers that differ", "", true, [subject, threads] {
-            return same_bits(*subject, threads);
-          }};
+// What is stopped by the clock is not stopped at the same state.
+bool is_out_of_time(const Stressed& solved) { return solved.result.status == Status::TimeLimit; }
+
+StressOutcome same_bits(StressSubject& subject) {
+  const Stressed& own = own_solution(subject);
+  const Stressed solved = subject.bench.solve(own_scene(subject));
+  if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) return *wrong;
+  if (is_out_of_time(own) || is_out_of_time(solved))
+    return outcome_of(solved, StressVerdict::Stall, solved.result.message);
+  return measured(solved, differing_numbers(solved, own), 0, "the two runs differ");
+}
+
+// Elements of the largest term. ElementTerm shares out the elements of one batch after the other.
+long largest_term(const StressScene& scene) {
+  const Model model = build(scene.scene, scene.ground);
+  long most = 0;
+  for (const auto& term : model.objective->terms())
+    most = std::max(most, static_cast<long>(term->stencils().count()));
+  return most;
+}
+
+// The first iterations of `newton` on the scene's own mesh, whatever the scene's method: each assembles a
+// Hessian, and a bit that differs in one of them is seen in all that follows.
+StressOutcome same_bits_on_threads(StressSubject& subject) {
+  constexpr long kBatch = 4096;  // elements, of energy/element_term.hpp
+  constexpr int kIterations = 5;
+  if (!subject.bench.has_solver("newton"))
+    return {StressVerdict::NotApplicable, {}, {}, "this build has no newton, which assembles Hessians"};
+  StressScene scene = copy_of(own_scene(subject));
+  const long elements = largest_term(scene);
+  if (elements <= kBatch)
+    return {
+        StressVerdict::NotApplicable,
+        {},
+        {},
+        "no term has more than one batch of " + std::to_string(kBatch) + " elements: threads get no work"};
+  scene.scene.solver.cascade = false;
+  scene.scene.solver.max_iterations = std::min(scene.scene.solver.max_iterations, kIterations);
+  std::optional<Stressed> one;
+  double different = 0;
+  for (const int threads : {1, 2, 4, 8}) {
+    scene.scene.solver.threads = threads;
+    Stressed solved = subject.bench.solve(scene, {.solver = "newton"});
+    if (auto wrong = untruth(solved, tolerance_of(scene))) return *wrong;
+    if (is_out_of_time(solved)) return outcome_of(solved, StressVerdict::Stall, solved.result.message);
+    if (one)
+      different += differing_numbers(solved, *one);
+    else
+      one = std::move(solved);
+  }
+  StressOutcome outcome = measured(*one, different, 0, "numbers depend on the number of threads");
+  outcome.message += "; the largest term has " + std::to_string(elements) + " elements";
+  return outcome;
 }
 
 }  // namespace
 
 std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
-  std::vector<StressRow> rows = {repeated(subject, "S18", "the same run again", 0),
-                                 repeated(subject, "S19", "four threads", 4)};
+  std::vector<StressRow> rows = {{"S18", subject->name, "the same run again", kDiffering, "", true,
+                                  [subject] { return same_bits(*subject); }}};
   for (const std::string solver : {"newton", "lbfgs"}) {
     if (!subject->bench.has_solver(solver)) continue;
     rows.push_back({"H3", subject->name, "by " + solver, kDistanceFromOwn, "", true,
@@ -42,6 +88,11 @@ std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
                     }});
   }
   return rows;
+}
+
+std::vector<StressRow> thread_rows(const SubjectPointer& subject) {
+  return {{"S19", subject->name, "1, 2, 4 and 8 threads", kDiffering, "", true,
+           [subject] { return same_bits_on_threads(*subject); }}};
 }
 
 }  // namespace coapt

@@ -19,8 +19,9 @@ std::vector<StressRow> subject_rows(const SubjectPointer& subject) {
   std::vector<StressRow> rows;
   for (const auto& family :
        {frame_rows, number_rows, start_rows, promise_rows, collision_rows, failure_rows, interrupt_rows,
-        repetition_rows, input_rows, descent_rows, derivative_rows, size_rows})
+        repetition_rows, thread_rows, input_rows, descent_rows, derivative_rows, size_rows})
     append(rows, family(subject));
+  for (StressRow& row : rows) row.view = [subject] { return own_view(*subject); };
   return rows;
 }
 
@@ -162,12 +163,18 @@ std::vector<StressRow> stress_rows(const StressOptions& options) {
       return built_in_valve(folder, has_contact);
     };
     subject->same_shape = kSameShape;
+    subject->same_way = true;
     std::vector<StressRow> more = subject_rows(subject);
     // What takes time with contact shows it without: of the quick ones the promises alone.
     if (has_contact)
       for (StressRow& row : more) row.is_quick = row.is_quick && (row.id == "S13" || row.id == "S18");
     append(rows, std::move(more));
   }
+  const auto large = std::make_shared<StressSubject>();
+  large->name = "large valve";
+  large->bench = bench;
+  large->make = [folder = options.folder / "scenes"] { return large_valve(folder); };
+  append(rows, thread_rows(large));
   return chosen(std::move(rows), options);
 }
 
@@ -184,6 +191,11 @@ StressMatrix run_stress(const std::vector<StressRow>& rows, const StressOptions&
     if (matrix.is_cancelled) break;
     matrix.results.push_back(std::move(result));
     if (options.report) options.report(matrix.results.back());
+  }
+  // The last that was solved: of the built-in scenes the valve with contact.
+  for (auto row = rows.rbegin(); row != rows.rend() && !matrix.view; ++row) {
+    if (row->view) matrix.view = row->view();
+    if (matrix.view) matrix.view_scene = row->scene;
   }
   return matrix;
 }

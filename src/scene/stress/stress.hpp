@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/run.hpp"
+#include "scene/shape_view.hpp"
 
 #include <functional>
 #include <optional>
@@ -42,6 +43,8 @@ struct StressRow {
   std::string unit;     // of the figure; empty: a pure number
   bool is_quick = false;
   std::function<StressOutcome()> run;
+  // The scene's own solution to look at, where a row has asked for it; may be empty.
+  std::function<std::optional<ShapeView>()> view = {};
 };
 
 struct StressResult {
@@ -55,9 +58,12 @@ struct StressMatrix {
   double row_seconds = 0;               // time limit of each solve
   std::vector<StressResult> results;
   bool is_cancelled = false;
+  std::optional<ShapeView> view;  // a solution that rows were compared with
+  std::string view_scene;         // name of its scene in the table
 
   int count(StressVerdict verdict) const;
   bool has_failed() const { return count(StressVerdict::Fail) > 0; }
+  bool holds() const { return !has_failed() && !is_cancelled; }  // exit code 0 of `coapt stress`
 };
 
 struct StressOptions {

@@ -39,7 +39,7 @@ OrderedJson matrix_json(const StressMatrix& matrix) {
   OrderedJson json = {{"version", version()}};
   json["scene"] = matrix.scene_file.empty() ? OrderedJson(nullptr) : OrderedJson(matrix.scene_file);
   json["time_limit_s"] = number_json(matrix.row_seconds);
-  json["holds"] = !matrix.has_failed() && !matrix.is_cancelled;
+  json["holds"] = matrix.holds();
   json["cancelled"] = matrix.is_cancelled;
   for (const StressVerdict verdict : kVerdicts)
     json["counts"][std::string(stress_verdict_name(verdict))] = matrix.count(verdict);
@@ -103,6 +103,12 @@ PageSection reading_section() {
                  {"n/a: the row means nothing for this scene, or the scene is refused with the reason."}}}}};
 }
 
+PageSection shape_section(const StressMatrix& matrix) {
+  return {
+      "The scene's own solution",
+      {PageText{matrix.view_scene + ": what the rows are compared with."}, shape_view_html(*matrix.view)}};
+}
+
 }  // namespace
 
 std::string stress_json(const StressMatrix& matrix) { return json_text(matrix_json(matrix), 2) + "\n"; }
@@ -156,6 +162,7 @@ std::string stress_page(const StressMatrix& matrix) {
     page.sections.push_back({"Failures", {std::move(failed)}});
   }
   page.sections.push_back(reading_section());
+  if (matrix.view) page.sections.push_back(shape_section(matrix));
   PageSection all{"The matrix", {}};
   for (size_t k = 0; k < matrix.results.size();) {
     const std::string& id = matrix.results[k].row.id;

@@ -1,5 +1,7 @@
 #include "scene/stress/subject.hpp"
 
+#include "scene/solve_view.hpp"
+
 #include <algorithm>
 
 namespace coapt {
@@ -58,7 +60,21 @@ std::optional<StressOutcome> no_yardstick(StressSubject& subject) {
   return outcome;
 }
 
-StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x) {
+std::optional<ShapeView> own_view(const StressSubject& subject) {
+  if (!has_shape_view() || !subject.solution || !subject.solution->x.allFinite()) return std::nullopt;
+  const Stressed& own = *subject.solution;
+  Report report;
+  report.result = own.result;
+  report.fields = compute_fields(own.model, own.x);
+  report.metrics = measure(own.model, own.result.q, report.fields, subject.bench.options().judge);
+  report.way = {{{}, own.model.X}};
+  ShapeView view = solved_view(own.model, report);
+  view.name = "stress";
+  return view;
+}
+
+StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x,
+                                double energy_unit) {
   const double tolerance = tolerance_of(own_scene(subject));
   if (auto outcome = not_converged(solved, tolerance)) return *outcome;
   if (auto outcome = no_yardstick(subject)) return *outcome;
@@ -80,8 +96,9 @@ StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, 
   StressOutcome outcome =
       outcome_of(solved, figure <= limit ? StressVerdict::Pass : StressVerdict::OtherBranch, note);
   if (outcome.verdict == StressVerdict::OtherBranch)
-    outcome.message = "another equilibrium of the same scene: energy " + short_number(solved.result.energy) +
-                      " mJ, of the scene's own solution " + short_number(own.result.energy) + " mJ";
+    outcome.message = "another equilibrium of the same scene: energy " +
+                      short_number(solved.result.energy / energy_unit) + " mJ, of the scene's own solution " +
+                      short_number(own.result.energy) + " mJ";
   outcome.figure = figure;
   outcome.limit = limit;
   return outcome;

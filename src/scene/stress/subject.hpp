@@ -12,6 +12,7 @@ struct StressSubject {
   StressBench bench;
   std::function<StressScene()> make;  // called once
   double same_shape = 1e-6;           // distance that counts as none, over the extent
+  bool same_way = false;              // judges status and number of iterations in other units too
   std::optional<StressScene> scene = {};
   std::optional<Stressed> solution = {};
 };
@@ -27,11 +28,16 @@ Stressed& own_solution(StressSubject& subject);
 
 double extent_of(StressSubject& subject);  // diagonal of the box around all nodes at rest [mm]
 
+// The own solution to look at, from rest to the end; nothing where no row has asked for it, or this build
+// draws no shapes.
+std::optional<ShapeView> own_view(const StressSubject& subject);
+
 // Judges a solve that must end in the scene's own shape. x: its shape in the frame of the scene, relative to
-// the origin there [mm]. Figure: the largest distance of a node from where it is in the own solution, over
-// the extent. Where that is above the limit both are solved on to a smaller residual first, so that a loose
-// tolerance is not taken for another answer.
-StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x);
+// the origin there [mm]; energy_unit: what an energy there is in the solve. Figure: the largest distance of a
+// node from where it is in the own solution, over the extent. Where that is above the limit both are solved
+// on to a smaller residual first, so that a loose tolerance is not taken for another answer.
+StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x,
+                                double energy_unit = 1);
 
 // The outcome where the scene itself is no yardstick, as it does not converge.
 std::optional<StressOutcome> no_yardstick(StressSubject& subject);
@@ -44,7 +50,8 @@ std::vector<StressRow> number_rows(const SubjectPointer& subject);      // S3, S
 std::vector<StressRow> start_rows(const SubjectPointer& subject);       // S8, S9, S10, S22
 std::vector<StressRow> failure_rows(const SubjectPointer& subject);     // S16
 std::vector<StressRow> interrupt_rows(const SubjectPointer& subject);   // S17
-std::vector<StressRow> repetition_rows(const SubjectPointer& subject);  // S18, S19, methods
+std::vector<StressRow> repetition_rows(const SubjectPointer& subject);  // S18, methods
+std::vector<StressRow> thread_rows(const SubjectPointer& subject);      // S19
 std::vector<StressRow> promise_rows(const SubjectPointer& subject);     // S13, S14, balance
 std::vector<StressRow> collision_rows(const SubjectPointer& subject);   // S15
 std::vector<StressRow> input_rows(const SubjectPointer& subject);       // S20
