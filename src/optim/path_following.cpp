@@ -72,7 +72,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
 // Whether a solver can begin there: a law that stiffens exponentially overflows where a sliver is stretched.
 bool is_finite(Objective& objective, const Vector& q) {
   Vector g;
-  return std::isfinite(objective.gradient(q, g)) && g.allFinite();
+  return std::isfinite(objective.gradient(q, g)) && std::isfinite(g.squaredNorm());
 }
 
 struct Move {

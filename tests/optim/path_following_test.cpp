@@ -30,7 +30,7 @@ struct SliveredStrip {
       x.rightCols(2).row(0).array() += stretch * t;
       return x;
     };
-    return solve(*make_newton(), problem, {.tolerance = 1e-8, .max_iterations = 2000});
+    return solve(*make_newton(), problem, {.tolerance = 1e-8, .max_iterations = 20000});
   }
 
   TriangleMesh mesh;

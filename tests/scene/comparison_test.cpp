@@ -421,7 +421,7 @@ TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfTheReference) {
   if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
   write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
   folder_.write("floor.obj", "v -90 -90 -80\nv 90 -90 -80\nv 0 90 -80\nf 1 2 3\n");
-  nlohmann::json text = nlohmann::json::parse(scene_text(folder_.path() / "scene.json"));
+  nlohmann::json text = nlohmann::json::parse(scene_text(folder_.path() / "scene.json"), nullptr, true, true);
   text["obstacles"] = {{{"name", "floor"}, {"file", "floor.obj"}}};
   const Comparison found =
       compare(load_scene(folder_.write("standing.json", text.dump())), {"newton", "idle"});
