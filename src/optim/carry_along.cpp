@@ -14,7 +14,7 @@ using Laplacian = Eigen::SparseMatrix<double>;
 using LaplacianFactor = Eigen::SimplicialLDLT<Laplacian>;
 
 constexpr double kLeastCotangent = 1e-3;  // obtuse and degenerate triangles: weights stay positive
-constexpr double kMostCotangent = 1e3;
+constexpr double kMostCotangent = 1e9;    // slivers are carried along whole, as far as the factor is exact
 
 struct WeightedEdge {
   int a, b;
