@@ -241,6 +241,35 @@ def test_ctrl_c_during_settle_leaves_a_shape_to_go_on_from(fresh):
     assert eq.settle().success
 
 
+def test_ctrl_c_ends_a_jacobian_between_two_of_its_linear_systems():
+    eq = followed(["chords.lengths"], tol=1e-8, triangles=300)
+    asked = []
+
+    class Counted(MeanSquare):
+        def gradient(self, x):
+            asked.append(1)
+            return super().gradient(x)
+
+    figures = [Counted(), *[coapt.metrics.strain_energy(eq)] * (eq.value.size - 2), Counted()]
+    start = time.monotonic()
+    assert eq.jacobian(figures).shape == (eq.value.size, eq.value.size) and len(asked) == 2
+    whole = time.monotonic() - start
+
+    def interrupt(number, frame):
+        raise KeyboardInterrupt
+
+    former = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.1 * whole)
+        with pytest.raises(KeyboardInterrupt):
+            eq.jacobian(figures)
+        assert len(asked) == 3, "the last figure was never reached"
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, former)
+    assert np.isfinite(eq.jacobian(figures[:1])).all()
+
+
 def test_a_snap_is_a_lost_branch(tmp_path):
     """A flat pyramid clamped at its foot: pressed from above it snaps through, and does not come back."""
     V, F = disc(1)
