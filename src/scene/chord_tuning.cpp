@@ -103,8 +103,10 @@ std::vector<TunedLength> tuned_lengths(const PreparedTuning& ready, const ChordT
     length.extension = extension(group, ready.chords, run);
     if (determinacy) {
       length.deviation = determinacy->deviation[at];
-      // Then it fits as well without a pull, at any greater length.
-      length.is_hardly_taut = !(length.extension > kClearlyTaut * length.deviation);
+      // Then it fits as well without a pull, at any greater length. Where nothing is known of the length,
+      // nothing is known of that either.
+      length.is_hardly_taut =
+          std::isfinite(length.deviation) && !(length.extension > kClearlyTaut * length.deviation);
       length.is_determined = length.deviation <= options.determined && !length.is_hardly_taut;
     }
     lengths.push_back(std::move(length));

@@ -72,7 +72,7 @@ struct TunedLength {
   bool is_slack = false;        // no chord of it carries a force, before the last change or after
   double deviation = kNaN;      // standard deviation of the mean length [mm]; NaN: not known
   double extension = 0;         // of its most extended line, beyond its rest length [mm]
-  bool is_hardly_taut = false;  // three deviations longer it might pull no more
+  bool is_hardly_taut = false;  // its deviation is known, and three of them longer it might pull no more
   // Its deviation is known and small enough, it is not hardly taut, and the noise explains the misfit.
   bool is_determined = false;
 };
