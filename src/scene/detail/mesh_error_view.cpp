@@ -30,6 +30,7 @@ ShapeView mesh_error_view(const Model& model, const Points& x, const TriangleMes
                        .unit = "N",
                        .place = ViewPlace::Line,
                        .values = {fields.line_force}};
+  add_outlines(measure(model, model.objective->unknowns(x), fields), view);
   return view;
 }
 
