@@ -12,24 +12,19 @@ import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
+from human_valve import imported_valve
+
 WITH_ALL_CHORDS_MM = 0.13
 
 
 def main() -> int:
     coapt, shared = sys.argv[1], pathlib.Path(sys.argv[2])
-    source = shared / "trivalve11-healthy" / "valve_coarse.json"
-    if not source.exists():
-        print(f"skipped: {source} is not there")
-        return SKIPPED
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        subprocess.run([coapt, "import", str(source), "--incompressible", "-o", str(folder)], check=True,
-                       stdout=subprocess.DEVNULL)
+        scene = imported_valve(coapt, shared, folder)
         valve = json.loads((folder / "valve.json").read_text())
         ends = {chord["to"]["leaflet"] for chord in valve["chords"] if "leaflet" in chord["to"]}
         cut = {"type": "chord_cut", "ends": sorted(ends - set(valve["free_edge"]))}
-        scene = folder / "scene.json"
         text = scene.read_text().replace('"terms":', f'"interventions": [{json.dumps(cut)}],\n  "terms":', 1)
         scene.write_text(text)
         run = subprocess.run([coapt, "solve", str(scene), "--output", str(folder / "out")], capture_output=True,

@@ -13,20 +13,15 @@ import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
+from human_valve import imported_valve
 
 
 def main() -> int:
     coapt, shared = sys.argv[1], pathlib.Path(sys.argv[2])
-    source = shared / "trivalve11-healthy" / "valve_coarse.json"
-    if not source.exists():
-        print(f"skipped: {source} is not there")
-        return SKIPPED
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        subprocess.run([coapt, "import", str(source), "--incompressible", "-o", str(folder)], check=True,
-                       stdout=subprocess.DEVNULL)
-        run = subprocess.run([coapt, "solve", str(folder / "scene.json"), "--output", str(folder / "out")],
+        scene = imported_valve(coapt, shared, folder)
+        run = subprocess.run([coapt, "solve", str(scene), "--output", str(folder / "out")],
                              capture_output=True, text=True)
         print(run.stdout, run.stderr)
         result = json.loads((folder / "out" / "result.json").read_text())

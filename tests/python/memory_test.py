@@ -46,7 +46,7 @@ def left_behind(solve, count: int) -> float:
         before = bytes_in_use()
         for k in range(count):
             solve(k)
-        return max(now - then for now, then in zip(bytes_in_use(), before)) / count
+        return max(last - first for last, first in zip(bytes_in_use(), before)) / count
     finally:
         tracemalloc.stop()
 

@@ -25,6 +25,23 @@ class BenchmarkTest : public BenchFixture {
     run_.folder = folder_.path() / "result";
     return run_benchmark(scene, solvers(), options, run_);
   }
+
+  // `lbfgs` and a method that moves nothing on the disc, without newton, which would go on from where they
+  // end.
+  Benchmark bench_idle_against(const std::string& reference) {
+    SolverTable table = solvers();
+    table.erase("newton");
+    Scene scene = disc_scene();
+    scene.solver.type = "lbfgs";
+    BenchOptions options;
+    options.methods = {"lbfgs", "idle"};
+    options.reference = reference;
+    options.tolerances = {1e-2, 1e-6};
+    options.levels = 0;
+    options.repeats = 1;
+    run_.folder = folder_.path() / "result";
+    return run_benchmark(scene, table, options, run_);
+  }
 };
 
 constexpr double kTolerances[] = {1e-2, 1e-4, 1e-7};
@@ -253,17 +270,7 @@ TEST_F(BenchmarkTest, AMethodThatStopsEarlyIsNeverRecommended) {
 
 // Without newton nobody goes on from where the idle method stands: its equilibrium stays unknown.
 TEST_F(BenchmarkTest, DrawsAStopWhoseEquilibriumIsNotKnown) {
-  SolverTable table = solvers();
-  table.erase("newton");
-  Scene scene = disc_scene();
-  scene.solver.type = "lbfgs";
-  BenchOptions options;
-  options.methods = {"lbfgs", "idle"};
-  options.tolerances = {1e-2, 1e-6};
-  options.levels = 0;
-  options.repeats = 1;
-  run_.folder = folder_.path() / "result";
-  const Benchmark found = run_benchmark(scene, table, options, run_);
+  const Benchmark found = bench_idle_against("lbfgs");
   ASSERT_EQ(found.runs.size(), 3u);
   const BenchRun& idle = found.runs.back();
   ASSERT_EQ(idle.status, Status::Stalled);
@@ -283,18 +290,7 @@ TEST_F(BenchmarkTest, DrawsAStopWhoseEquilibriumIsNotKnown) {
 
 // Nobody knows how far the reference itself is off: it stands at the upper edge, which is 14 px from the top.
 TEST_F(BenchmarkTest, DrawsAStopWithoutAnyErrorAtTheUpperEdge) {
-  SolverTable table = solvers();
-  table.erase("newton");
-  Scene scene = disc_scene();
-  scene.solver.type = "lbfgs";
-  BenchOptions options;
-  options.methods = {"lbfgs", "idle"};
-  options.reference = "idle";
-  options.tolerances = {1e-2, 1e-6};
-  options.levels = 0;
-  options.repeats = 1;
-  run_.folder = folder_.path() / "result";
-  const Benchmark found = run_benchmark(scene, table, options, run_);
+  const Benchmark found = bench_idle_against("idle");
   ASSERT_EQ(found.runs.size(), 3u);
   for (const BenchRun& timed : found.runs) EXPECT_FALSE(timed.errors.total);
   EXPECT_TRUE(found.runs[1].errors.algebraic && found.runs[2].errors.algebraic);
