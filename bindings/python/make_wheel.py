@@ -3,15 +3,20 @@
     make_wheel.py BUILD/python LICENSE OUTPUT_FOLDER
 
 Prints the path of the wheel. It fits the Python that runs this script and this machine, as the compiled module does;
-the same files give the same bytes.
+the same files give the same bytes on machines with the same packages: METADATA names those whose libraries it loads.
 """
 import base64
 import hashlib
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import sysconfig
+import tempfile
 import zipfile
+
+GIVEN = {"libc6", "libgcc-s1", "libstdc++6"}  # every C++ program needs them
 
 
 def tag() -> str:
@@ -25,6 +30,22 @@ def record_line(name: str, content: bytes) -> str:
     return f"{name},sha256={digest},{len(content)}"
 
 
+def external_needs(module: pathlib.Path) -> list[str]:
+    """The Debian packages of the libraries that the module links, as python3-coapt gets them; none without dpkg-dev."""
+    if not shutil.which("dpkg-shlibdeps"):
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        control = pathlib.Path(folder, "debian/control")  # it works in a source package alone, an empty one will do
+        control.parent.mkdir()
+        control.touch()
+        done = subprocess.run(["dpkg-shlibdeps", "-O", "--ignore-missing-info", f"-e{module.resolve()}"], cwd=folder,
+                              capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(done.stderr)
+    depends = done.stdout.strip().removeprefix("shlibs:Depends=")
+    return sorted({re.split(r"[ (|]", part.strip())[0] for part in depends.split(",")} - GIVEN - {""})
+
+
 def contents(tree: pathlib.Path, licence: pathlib.Path) -> tuple[str, dict[str, bytes]]:
     """Name of the wheel without extension, and its files by path."""
     metadata = (tree / "METADATA").read_bytes()
@@ -35,7 +56,8 @@ def contents(tree: pathlib.Path, licence: pathlib.Path) -> tuple[str, dict[str, 
         raise SystemExit(f"{tree / 'coapt'}: holds {len(modules)} compiled modules; expected one, build it first")
     sources = [path for path in (tree / "coapt").iterdir() if path.suffix in (".py", ".pyi") or path.name == "py.typed"]
     files = {f"coapt/{path.name}": path.read_bytes() for path in sorted(sources) + modules}
-    files[f"{info}/METADATA"] = metadata
+    needs = "".join(f"Requires-External: {package}\n" for package in external_needs(modules[0]))
+    files[f"{info}/METADATA"] = metadata + needs.encode()
     files[f"{info}/LICENSE"] = licence.read_bytes()
     files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: coapt {version}\nRoot-Is-Purelib: false\n"
                               f"Tag: {tag()}\n").encode()
