@@ -4,7 +4,9 @@ Usage: resume_test.py COAPT_BINARY [unittest arguments]
 """
 import csv
 import json
+import os
 import random
+import resource
 import signal
 import subprocess
 import sys
@@ -105,6 +107,62 @@ class ResumeTest(CommandCase):
         self.assertGreater(cuts, 1)
         self.assertGreater(resumed, 0)
         self.assertFalse(self.kept.exists(), "removed when the run is through")
+
+    def killed_beyond(self, limit, scene, *options):
+        """The exit code of a solve that the kernel kills in the write that makes any file longer than this, and the files
+        that it was at, by the names that they were to have."""
+        run = subprocess.run([COAPT, "solve", str(scene), "-o", str(self.folder / "cut"), *map(str, options)],
+                             capture_output=True, text=True, timeout=100,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        parts = list(self.folder.rglob("*.part-*"))
+        for part in parts:
+            self.assertLessEqual(part.stat().st_size, limit)
+            part.unlink()
+        return run.returncode, {part.name.split(".part-")[0] for part in parts}
+
+    def test_killed_while_it_writes_a_file_it_leaves_the_earlier_one_whole(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        self.wall_seconds(scene)
+        sizes = {path.stat().st_size for path in (self.folder / "result").iterdir()}
+        self.solve(scene, "--tolerance", "1e-2", name="cut")
+        names = {path.name for path in (self.folder / "cut").iterdir()}
+        struck = set()
+        for limit in sorted({1} | {size // 2 for size in sizes} | {size - 1 for size in sizes}):
+            with self.subTest(limit=limit):
+                earlier = {name: (self.folder / "cut" / name).read_bytes() for name in names}
+                code, files = self.killed_beyond(limit, scene)
+                self.assertEqual((code, len(files)), (-signal.SIGXFSZ, 1))
+                self.assert_whole(self.folder / "cut")
+                for name in files:
+                    self.assertEqual((self.folder / "cut" / name).read_bytes(), earlier[name], name)
+                struck |= files
+        self.assertEqual(struck, {"closed.vtp", "report.html"}, "those that are longer than all before them")
+        code, _ = self.killed_beyond(1000, scene, "--checkpoint", self.kept, "--checkpoint-every", 1e-6)
+        self.assertEqual(code, -signal.SIGXFSZ)
+        self.assertLess(self.kept.stat().st_size, 1000, "an earlier checkpoint, whole")
+        self.wall_seconds(scene, "--resume", self.kept)
+
+    def killed_among_files(self, count, scene):
+        """The exit code of a solve that is killed as soon as so many of its files have begun to be written."""
+        process = subprocess.Popen([COAPT, "solve", str(scene), "-o", str(self.folder / "cut")],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        seen = set()
+        while len(seen) < count and process.poll() is None:
+            seen |= {entry.name for entry in os.scandir(self.folder / "cut") if ".part-" in entry.name}
+        process.kill()
+        return process.wait()
+
+    def test_killed_between_two_files_each_is_whole(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        self.solve(scene, "--tolerance", "1e-2", name="cut")
+        killed = 0
+        for count in [1, 2, 3, 4] * 3:
+            killed += self.killed_among_files(count, scene) == -signal.SIGKILL
+            self.assert_whole(self.folder / "cut")
+            for part in self.folder.rglob("*.part-*"):
+                part.unlink()
+        self.assertGreater(killed, 0)
 
     def cut_by_time(self, scene, *options):
         """Solves the whole, then a part of it to a checkpoint. False where the solver is not in this build."""
