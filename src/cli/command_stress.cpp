@@ -10,8 +10,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <fcntl.h>
 #include <memory>
+#include <spawn.h>
+#include <stdexcept>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace coapt::cli {
 namespace {
@@ -66,6 +73,25 @@ std::filesystem::path folder_of(const StressArguments& arguments, const std::opt
   return scene ? result_folder(*scene) : std::filesystem::path("stress");
 }
 
+// This very command, in a process of its own.
+void solve_apart(const std::filesystem::path& scene, const std::filesystem::path& folder, double seconds) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string(),
+                    limit = std::to_string(seconds);
+  const char* words[] = {program.c_str(), "solve",         scene.c_str(), "-o",
+                         folder.c_str(),  "--max-seconds", limit.c_str(), nullptr};
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_WRONLY, 0);
+  pid_t process = 0;
+  const int error =
+      posix_spawn(&process, program.c_str(), &quiet, nullptr, const_cast<char* const*>(words), environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  if (error != 0) throw std::runtime_error(std::string("no process can be started: ") + std::strerror(error));
+  while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
 void stress(const StressArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   std::optional<Scene> scene;
@@ -79,6 +105,7 @@ void stress(const StressArguments& arguments, int& exit_code) {
   options.factorisations = all_factorisations();
   options.judge = intersection_judge();
   options.is_cancelled = is_interrupted;
+  options.solve_apart = solve_apart;
   bool has_header = false;
   options.report = [&](const StressResult& result) {
     if (arguments.prints_json) return;

@@ -2,8 +2,7 @@
 
 #include "mesh/triangle_mesh.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/bench_pair.hpp"
-#include "scene/detail/mesh_error_view.hpp"
+#include "scene/detail/bench_shown.hpp"
 #include "scene/detail/method_list.hpp"
 #include "scene/detail/unit_cost.hpp"
 #include "scene/refining.hpp"
@@ -83,15 +82,13 @@ void estimate_meshes(const std::list<Groundwork>& grounds, const std::vector<Equ
   }
 }
 
-// The scene's own mesh beside the finest that is known.
-std::optional<ShapeView> mesh_view(const Scene& scene, const std::list<Groundwork>& grounds,
-                                   const std::vector<Equilibrium>& equilibria, const Benchmark& found) {
-  if (!found.meshes.front().error_mm || !has_shape_view()) return std::nullopt;
+// The reference equilibrium on the finest mesh that it is known on, none where the scene's own is the finest.
+std::optional<TriangleMesh> finest_shape(const std::list<Groundwork>& grounds,
+                                         const std::vector<Equilibrium>& equilibria, const Benchmark& found) {
   size_t last = 0;
   while (last + 1 < found.meshes.size() && found.meshes[last + 1].error_mm) ++last;
-  const Model model = build(scene, grounds.front());
-  const Model& finest = std::next(grounds.begin(), static_cast<std::ptrdiff_t>(last))->model;
-  return mesh_error_view(model, equilibria.front().x, surface_at(finest, equilibria[last].x));
+  if (last == 0) return std::nullopt;
+  return surface_at(std::next(grounds.begin(), static_cast<std::ptrdiff_t>(last))->model, equilibria[last].x);
 }
 
 // What all errors of a run come to; needs the estimates of the meshes.
@@ -174,7 +171,10 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
   }
   estimate_meshes(grounds, equilibria, found);
   add_totals(found);
-  if (run.writes) found.mesh_view = mesh_view(scene, grounds, equilibria, found);
+  if (run.writes && !found.is_cancelled) {
+    const std::optional<TriangleMesh> finest = finest_shape(grounds, equilibria, found);
+    found.shown = bench_shown(course, grounds.front(), finest ? &*finest : nullptr, found);
+  }
   return found;
 }
 

@@ -14,7 +14,7 @@
 
 #include "scene/comparison.hpp"
 #include "scene/discretisation.hpp"
-#include "scene/shape_view.hpp"
+#include "scene/solve_page.hpp"
 
 #include <functional>
 #include <map>
@@ -102,9 +102,9 @@ struct Benchmark {
   std::vector<BenchRun> runs;
   std::vector<BenchEnd> ends;
   double assumed_order = 1;  // of what is beyond the last mesh
-  // Where on the scene's own mesh its error is, for the page; empty where that is not known, or nothing is
-  // written.
-  std::optional<ShapeView> mesh_view = {};
+  // The reference method on the scene's own mesh, solved once more beside the clock for the page: its way,
+  // where on the mesh its error is (where that is known), and its account. Empty where nothing is written.
+  std::optional<ShownSolve> shown = {};
   bool is_cancelled = false;
   std::filesystem::path folder;  // empty: nothing was written
 

@@ -313,13 +313,15 @@ std::string benchmark_page(const Benchmark& bench) {
   page.tone = bench.is_cancelled ? Tone::Caution : Tone::Plain;
   page.sections.push_back(recommendation_section(bench));
   page.sections.push_back(plots_section(bench));
+  if (bench.shown) page.sections.push_back(shape_section("Shape", *bench.shown));
   page.sections.push_back({"Time to an accuracy", {times_table(bench)}});
   if (PageTable grown = growth_table(bench); !grown.rows.empty())
     page.sections.back().blocks.emplace_back(std::move(grown));
   page.sections.push_back({"What the mesh leaves", {meshes_table(bench)}});
-  if (bench.mesh_view) page.sections.back().blocks.emplace_back(shape_view_html(*bench.mesh_view));
   page.sections.push_back({"Methods", {ends_table(bench)}});
   page.sections.push_back({"Runs", {errors_table(bench), work_table(bench), phases_table(bench)}});
+  if (bench.shown)
+    page.sections.insert(page.sections.end(), bench.shown->account.begin(), bench.shown->account.end());
   return report_page(page);
 }
 

@@ -1,5 +1,7 @@
 #include "scene/compared_view.hpp"
 
+#include "scene/solve_page.hpp"
+
 #include <algorithm>
 
 namespace coapt {
@@ -10,6 +12,14 @@ Eigen::Index own_nodes(const Model& model) {
   int last = model.mesh.vertex_count() - 1;
   for (const Line& line : model.lines) last = std::max({last, line.a, line.b});
   return last + 1;
+}
+
+// To one of `count` shapes that share the page.
+std::vector<RecordedShape> short_way(const ComparedShape& shape, size_t count) {
+  const Model& model = *shape.model;
+  const Report& report = *shape.report;
+  if (report.way.empty()) return {{{}, model.X}};
+  return thinned(report.way, report.fields.x, std::max<size_t>(1, page_shapes(model) / count));
 }
 
 // Puts the fields of a state, the last so far, to those of the same title; others have no values in it.
@@ -63,13 +73,23 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
     if (is_like_base(*shape.model) && !has_same_lines(*shape.model, surface)) view.line_force.reset();
   for (const ComparedShape& shape : shapes) {
     const Model& model = *shape.model;
-    const Fields& fields = shape.report->fields;
     if (!is_like_base(model)) continue;
-    const Points& x = shape.is_at_rest ? model.X : fields.x;
-    view.states.push_back({shape.label, x.leftCols(nodes).colwise() + (model.origin - surface.origin)});
-    add_fields(shape.is_at_rest ? std::vector<ViewField>{} : view_fields(model, fields), view.states.size(),
-               view.fields);
-    if (view.line_force) view.line_force->values.push_back(shape.is_at_rest ? Vector() : fields.line_force);
+    std::vector<ViewState> states = {result_state(shape.label, *shape.report)};
+    if (shape.has_way) {
+      states = view_states(*shape.report, short_way(shape, shapes.size()));
+      states.back().label = shape.label + ", residual " + page_number(shape.report->result.residual, 2);
+      view.ways.push_back({shape.label, states.size()});
+    }
+    const Vec3 shift = model.origin - surface.origin;
+    for (ViewState& state : states) {
+      state.x = state.x.leftCols(nodes).colwise() + shift;
+      for (ViewOutline& outline : state.outlines) outline.points.colwise() += shift;
+      view.states.push_back(std::move(state));
+    }
+    add_fields(view_fields(model, shape.report->fields), view.states.size(), view.fields);
+    if (!view.line_force) continue;
+    view.line_force->values.resize(view.states.size() - 1);
+    view.line_force->values.push_back(shape.report->fields.line_force);
   }
   return view;
 }

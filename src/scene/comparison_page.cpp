@@ -1,6 +1,7 @@
 // report.html of a comparison.
 #include "scene/compared_view.hpp"
 #include "scene/comparison_report.hpp"
+#include "scene/solve_page.hpp"
 #include "scene/suggestion.hpp"
 
 #include <algorithm>
@@ -139,31 +140,46 @@ PageList warnings(const Comparison& comparison) {
   return list;
 }
 
-// The shape at rest, then that of every method, the reference's last: there its outlines are drawn. None
-// where nothing was solved.
+// The way of every method to its shape, that of the reference last: it is shown first. None where nothing was
+// solved.
 std::optional<ShapeView> shapes(const Comparison& comparison) {
   std::vector<ComparedShape> all;
   for (const ComparedMethod& method : comparison.methods)
     if (method.run)
       all.push_back({method.name + ": " + std::string(verdict_name(method.verdict)), &method.run->model,
-                     &method.run->report});
+                     &method.run->report, true});
   if (all.empty()) return std::nullopt;
   const std::optional<RunReport>& reference = comparison.reference().run;
   if (reference) std::rotate(all.begin(), all.begin() + 1, all.end());
-  ComparedShape open = reference ? all.back() : all.front();
-  const bool is_valve = annulus_of(*open.model) != nullptr;
-  open.label = is_valve ? "open" : "at rest";
-  open.is_at_rest = true;
-  all.insert(all.begin(), open);
+  const Model& base = *all.back().model;
   std::optional<ShapeView> view =
-      compared_view(all, 0, "comparison", is_valve ? "Open, then each method" : "At rest, then each method");
+      compared_view(all, all.size() - 1, "comparison", annulus_of(base) ? "Open ↔ closed" : "Start ↔ result");
   const auto is_distance = [](const ViewField& field) { return field.title.starts_with("Distance"); };
   std::stable_partition(view->fields.begin(), view->fields.end(), is_distance);
-  if (!reference) return view;
-  add_outlines(reference->report.metrics, *view);
   for (ViewField& field : view->fields)  // its distance to itself, so that the view does not open in grey
-    if (field.title == kMethodDistance) field.values.back().setZero(reference->model.mesh.vertex_count());
+    if (reference && field.title == kMethodDistance) field.values.back().setZero(base.mesh.vertex_count());
   return view;
+}
+
+// How each method went, and what was solved: the scene, by which version, and where every method ended.
+void add_accounts(const Comparison& comparison, Page& page) {
+  std::vector<NamedReport> reports;
+  PageTable ends{.caption = "Certificates", .columns = {{"method", true}, {"certificate", true}}};
+  for (const ComparedMethod& method : comparison.methods) {
+    if (!method.run) continue;
+    const Report& report = method.run->report;
+    ends.rows.push_back({{method.name}, {summary(report.result.certificate)}});
+    if (!report.result.trace.empty()) reports.push_back({method.name, &report});
+  }
+  if (!reports.empty())
+    page.sections.push_back({"Convergence", {residual_plot(reports, false), residual_plot(reports, true)}});
+  if (ends.rows.empty()) return;
+  const auto solved = std::find_if(comparison.methods.begin(), comparison.methods.end(),
+                                   [](const ComparedMethod& method) { return method.run.has_value(); });
+  PageSection account = solve_account(solved->run->model, solved->run->report).back();
+  account.title += ", by " + solved->name;
+  account.blocks.emplace_back(std::move(ends));
+  page.sections.push_back(std::move(account));
 }
 
 }  // namespace
@@ -179,6 +195,7 @@ std::string comparison_page(const Comparison& comparison) {
     page.sections.push_back({"Closed shapes", {shape_view_html(*view)}});
   page.sections.push_back({"Figures", {figure_table(comparison)}});
   page.sections.push_back({"Error and run time", {work_plot(comparison)}});
+  add_accounts(comparison, page);
   page.footer = "Residual wanted: " + page_number(comparison.tolerance) +
                 (comparison.is_cancelled ? "; cancelled before the last method." : ".");
   return report_page(page);

@@ -48,14 +48,23 @@ OrderedJson field_json(const ViewField& field) {
   return json;
 }
 
-OrderedJson view_json(const ShapeView& view) {
-  OrderedJson states = OrderedJson::array(), fields = OrderedJson::array(), outlines = OrderedJson::array();
-  for (const ViewState& state : view.states)
-    states.push_back({{"label", state.label}, {"nodes", floats(state.x)}});
-  for (const ViewField& field : view.fields) fields.push_back(field_json(field));
-  for (const ViewOutline& outline : view.outlines)
+OrderedJson state_json(const ViewState& state) {
+  OrderedJson outlines = OrderedJson::array();
+  for (const ViewOutline& outline : state.outlines)
     outlines.push_back(
         {{"kind", outline.is_orifice ? "orifice" : "coaptation"}, {"points", floats(outline.points)}});
+  return {{"label", state.label},
+          {"nodes", floats(state.x)},
+          {"carried", state.is_on_the_way},
+          {"outlines", outlines},
+          {"orifice_text", state.orifice_text}};
+}
+
+OrderedJson view_json(const ShapeView& view) {
+  OrderedJson states = OrderedJson::array(), ways = OrderedJson::array(), fields = OrderedJson::array();
+  for (const ViewState& state : view.states) states.push_back(state_json(state));
+  for (const ViewWay& way : view.ways) ways.push_back({{"label", way.label}, {"states", way.state_count}});
+  for (const ViewField& field : view.fields) fields.push_back(field_json(field));
   return {{"name", view.name},
           {"origin", numbers(view.origin)},
           {"frame",
@@ -66,10 +75,9 @@ OrderedJson view_json(const ShapeView& view) {
           {"lines", integers(view.lines)},
           {"obstacles", integers(view.obstacles)},
           {"states", states},
+          {"ways", ways},
           {"fields", fields},
-          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)},
-          {"outlines", outlines},
-          {"orifice_text", view.orifice_text}};
+          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)}};
 }
 
 void replace(std::string& text, std::string_view mark, std::string_view by) {

@@ -11,9 +11,23 @@
 
 namespace coapt {
 
+struct ViewOutline {
+  bool is_orifice = false;  // otherwise a piece of the coaptation line
+  Points points;            // 3 x count, relative to the view's origin [mm]; an orifice is closed
+};
+
 struct ViewState {
-  std::string label;  // "iterate 12, residual 3e-4"
-  Points x;           // 3 x node_count, relative to the view's origin [mm]
+  std::string label;           // "iterate 12, residual 3e-4"
+  Points x;                    // 3 x node_count, relative to the view's origin [mm]
+  bool is_on_the_way = false;  // no result: coloured by the values that its way ends with
+  std::vector<ViewOutline> outlines = {};
+  std::string orifice_text = {};  // what its orifice outline is called, with its area
+};
+
+// Some states one after the other that belong together, as those of one method.
+struct ViewWay {
+  std::string label;
+  size_t state_count = 0;  // at least one; the last is a result
 };
 
 enum class ViewPlace { Vertex, Triangle, Line };
@@ -29,11 +43,6 @@ struct ViewField {
   std::string none = {};                     // said in place of a missing value
 };
 
-struct ViewOutline {
-  bool is_orifice = false;  // otherwise a piece of the coaptation line
-  Points points;            // 3 x count, relative to the view's origin [mm]; an orifice is closed
-};
-
 struct ShapeView {
   std::string name;            // of the picture's file
   Vec3 origin = Vec3::Zero();  // added to positions that are told [mm]
@@ -45,10 +54,11 @@ struct ShapeView {
   bool is_valve = false;                  // above is the atrium
   std::string slider = "Start ↔ result";  // what leads from one state to the next
   std::vector<ViewState> states = {};     // at least one, of as many nodes each; the last is the result
-  std::vector<ViewField> fields = {};     // of vertices and triangles; the first is shown
+  // What the slider leads through, one at a time: together all states in their order. The last is shown
+  // first. Empty: one way of all states.
+  std::vector<ViewWay> ways = {};
+  std::vector<ViewField> fields = {};  // of vertices and triangles; the first is shown
   std::optional<ViewField> line_force = {};
-  std::vector<ViewOutline> outlines = {};  // of the last state
-  std::string orifice_text = {};           // what the orifice outline is called, with its area
 };
 
 // Whether this build holds what draws shapes.

@@ -46,8 +46,15 @@ PageMarkup tiles(const Report& report) {
   return {"<dl class=\"tiles\">\n" + html + tile("residual", report.result.residual, "") + "</dl>\n"};
 }
 
+PageList warning_list(const Report& report) {
+  PageList list;
+  for (const std::string& warning : report.warnings)
+    list.items.push_back({"Warning: " + warning, Tone::Caution});
+  return list;
+}
+
 PageTable metric_table(const Report& report) {
-  PageTable table{.caption = "All figures of the result, as in result.json and metrics.csv",
+  PageTable table{.caption = "All figures of the result",
                   .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
   for (const MetricRow& row : metric_rows(report.metrics))
     if (row.value)
@@ -110,27 +117,11 @@ PageSection figures(const Report& report) {
   return section;
 }
 
-PagePlot residual_plot(const Report& report, bool against_time) {
-  PageSeries series{.name = report.solver};
-  const std::vector<Iteration>& trace = report.result.trace;
-  for (size_t k = 0; k < trace.size(); ++k)
-    series.points.push_back({.x = against_time ? trace[k].seconds : trace[k].iteration,
-                             .y = trace[k].residual,
-                             .label = "iterate " + std::to_string(trace[k].iteration),
-                             .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
-  return {
-      .title = against_time ? "Residual against wall time" : "Residual against iterates",
-      .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
-      .y = {"residual", Scale::Logarithmic},
-      .series = {series},
-      .levels = {{report.tolerance, "tolerance"}},
-      .note = "Residual: the largest out-of-balance nodal force over the largest applied or reaction force."};
-}
-
 PageSection convergence(const Report& report) {
   PageSection section{"Convergence", {}};
   if (report.result.trace.empty()) return {"Convergence", {PageText{"No iterate was accepted."}}};
-  section.blocks = {residual_plot(report, false), residual_plot(report, true)};
+  const std::vector<NamedReport> named = {{report.solver, &report}};
+  section.blocks = {residual_plot(named, false), residual_plot(named, true)};
   const auto& trace = report.result.trace;
   if (trace.front().round != trace.back().round)
     section.blocks.emplace_back(
@@ -219,6 +210,30 @@ size_t page_shapes(const Model& model) {
   return std::clamp<size_t>(kShapeBytes / bytes, 2, kMostShapes);
 }
 
+PagePlot residual_plot(const std::vector<NamedReport>& reports, bool against_time) {
+  PagePlot plot{
+      .title = against_time ? "Residual against wall time" : "Residual against iterates",
+      .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
+      .y = {"residual", Scale::Logarithmic},
+      .note = "Residual: the largest out-of-balance nodal force over the largest applied or reaction force."};
+  for (const NamedReport& each : reports) {
+    PageSeries& series = plot.series.emplace_back();
+    series.name = each.name;
+    const std::vector<Iteration>& trace = each.report->result.trace;
+    for (size_t k = 0; k < trace.size(); ++k)
+      series.points.push_back({.x = against_time ? trace[k].seconds : trace[k].iteration,
+                               .y = trace[k].residual,
+                               .label = "iterate " + std::to_string(trace[k].iteration),
+                               .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
+  }
+  plot.levels = {{reports.front().report->tolerance, "tolerance"}};
+  return plot;
+}
+
+std::vector<PageSection> solve_account(const Model& model, const Report& report) {
+  return {figures(report), convergence(report), account(model, report)};
+}
+
 std::string solve_page(const Model& model, const Report& report) {
   const Result& result = report.result;
   Page page;
@@ -226,15 +241,25 @@ std::string solve_page(const Model& model, const Report& report) {
   page.lead = result.message;
   page.tone = result.status == Status::Converged ? Tone::Good : Tone::Bad;
   PageSection shape{"Shape", {tiles(report)}};
-  if (!report.warnings.empty()) {
-    PageList list;
-    for (const std::string& warning : report.warnings)
-      list.items.push_back({"Warning: " + warning, Tone::Caution});
-    shape.blocks.emplace_back(list);
-  }
+  if (PageList warnings = warning_list(report); !warnings.items.empty())
+    shape.blocks.emplace_back(std::move(warnings));
   shape.blocks.emplace_back(shape_view_html(solved_view(model, report)));
-  page.sections = {shape, figures(report), convergence(report), account(model, report)};
+  page.sections = solve_account(model, report);
+  page.sections.insert(page.sections.begin(), std::move(shape));
   return report_page(page);
+}
+
+ShownSolve shown_solve(const std::string& what, const Model& model, const Report& report) {
+  ShownSolve shown{what, warning_list(report), solved_view(model, report), solve_account(model, report)};
+  for (PageSection& section : shown.account) section.title += " of the shape above";
+  return shown;
+}
+
+PageSection shape_section(const std::string& title, const ShownSolve& shown) {
+  PageSection section{title, {PageText{shown.what}}};
+  if (!shown.warnings.items.empty()) section.blocks.emplace_back(shown.warnings);
+  section.blocks.emplace_back(shape_view_html(shown.view));
+  return section;
 }
 
 }  // namespace coapt

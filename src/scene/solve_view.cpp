@@ -134,30 +134,37 @@ std::vector<ViewField> view_fields(const Model& model, const Fields& fields) {
   return all;
 }
 
-void add_outlines(const Metrics& metrics, ShapeView& view) {
-  if (metrics.closure) {
-    for (const Seam& seam : metrics.closure->line) view.outlines.push_back({false, seam.points});
-    for (const Orifice& orifice : metrics.closure->orifices)
-      view.outlines.push_back({true, orifice.outline.corners});
+ViewState result_state(const std::string& label, const Report& report) {
+  ViewState state{.label = label, .x = report.fields.x};
+  if (const auto& closure = report.metrics.closure) {
+    for (const Seam& seam : closure->line) state.outlines.push_back({false, seam.points});
+    for (const Orifice& orifice : closure->orifices)
+      state.outlines.push_back({true, orifice.outline.corners});
   }
-  if (metrics.orifice_area_mm2)
-    view.orifice_text = "orifice outline, " + page_number(*metrics.orifice_area_mm2) + " mm²";
+  if (const auto& area = report.metrics.orifice_area_mm2)
+    state.orifice_text = "orifice outline, " + page_number(*area) + " mm²";
+  return state;
+}
+
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& way) {
+  std::vector<ViewState> states;
+  for (const RecordedShape& shape : way)
+    states.push_back({.label = label(shape.iteration, states.empty()), .x = shape.x, .is_on_the_way = true});
+  states.push_back(result_state(label(report.result), report));
+  return states;
 }
 
 ShapeView solved_view(const Model& model, const Report& report) {
   ShapeView view = bare_view(model, report.fields);
   view.name = "coapt";
   if (view.is_valve) view.slider = "Open ↔ closed";
-  for (const RecordedShape& shape : report.way)
-    view.states.push_back({label(shape.iteration, &shape == &report.way.front()), shape.x});
-  view.states.push_back({label(report.result), report.fields.x});
+  view.states = view_states(report, report.way);
   view.fields = view_fields(model, report.fields);
   if (!model.lines.empty())
     view.line_force = {.title = "Force in chords and cables",
                        .unit = "N",
                        .place = ViewPlace::Line,
                        .values = {report.fields.line_force}};
-  add_outlines(report.metrics, view);
   return view;
 }
 

@@ -19,10 +19,14 @@ ShapeView bare_view(const Model& model, const Fields& fields);
 // regimes, leaflets; those that the scene has.
 std::vector<ViewField> view_fields(const Model& model, const Fields& fields);
 
-// The coaptation line, and the orifice outlines with their area, of the view's last state.
-void add_outlines(const Metrics& metrics, ShapeView& view);
+// From the start by the recorded iterates to the result, with its outlines and its coaptation line. `way`
+// holds positions relative to the model's origin, as report.way.
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& way);
 
-// From the start by the recorded iterates to the result, with its fields, outlines and coaptation line.
+// One state, with its outlines and coaptation line.
+ViewState result_state(const std::string& label, const Report& report);
+
+// From the start by the recorded iterates to the result, with its fields.
 ShapeView solved_view(const Model& model, const Report& report);
 
 }  // namespace coapt

@@ -89,6 +89,36 @@ async function assertPlotsHoldTheirTexts(page) {
     }).map(text => text.textContent)), [], "texts that are cut off");
 }
 
+// Each way leads from the start through iterates, each another shape, to a result.
+async function assertWays(page, title) {
+  const choice = page.getByLabel("Way of"), label = page.locator("#state-label");
+  const ways = await choice.locator("option").allTextContents();
+  assert.equal(await page.locator("#ways").isVisible(), ways.length > 1);
+  assert.equal(ways.length, title.startsWith("Comparison") ? 2 : 1);
+  await pick(page, await farthest(page));
+  for (let k = 0; k < ways.length; ++k) {
+    if (ways.length > 1) await choice.selectOption(String(k));
+    const last = Number(await page.locator("#state").getAttribute("max")), seen = new Set();
+    assert.ok(last >= 3, title + ", states: " + last);
+    for (let state = 0; state <= last; ++state) {
+      await page.locator("#state").fill(String(state));
+      assert.match(await label.textContent(), state === 0 ? /^start, as given/ : state < last ? /^iterate \d+, residual/ : ways[k] ? /residual/ : /^result: converged/);
+      seen.add(await shownValue(page, "Position"));
+    }
+    assert.equal(seen.size, last + 1, title + ": every stop is another shape");
+    if (ways[k]) assert.ok((await label.textContent()).startsWith(ways[k]));
+  }
+}
+
+// The node that moves farthest.
+const farthest = page => page.evaluate(() => {
+  const data = JSON.parse(document.getElementById("shape-data").textContent);
+  const read = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
+  const from = read(data.states[0].nodes), to = read(data.states.at(-1).nodes);
+  const way = Array.from({ length: from.length / 3 }, (_, n) => Math.hypot(...[0, 1, 2].map(c => to[3 * n + c] - from[3 * n + c])));
+  return way.indexOf(Math.max(...way));
+});
+
 const tests = {
   async "the slider leads through real iterates to the shape of closed.vtp"({ page, vtp }) {
     const slider = page.getByRole("slider", { name: "Open ↔ closed" });
@@ -305,12 +335,9 @@ await run("pages of compare, bench and stress work as that of solve does, and fi
     assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
     assert.ok(await page.getByRole("table").count() > 0);
     await assertPlotsHoldTheirTexts(page);
-    if (await page.locator("#viewer").count() > 0) {
-      await pick(page, 3);
-      const before = await page.locator("#state-label").textContent();
-      await page.locator("#state").fill("0");
-      assert.notEqual(await page.locator("#state-label").textContent(), before, "the slider leads to another shape");
-    }
+    if (await page.locator("#viewer").count() > 0) await assertWays(page, title);
+    for (const part of [/version of coapt/, /certificate/i, /^Residual against iterates/])
+      assert.ok(await page.getByText(part).count() + await page.getByRole("img", { name: part }).count() > 0, title + ": " + part);
     await page.emulateMedia({ media: "print" });
     await page.setViewportSize({ width: 718, height: 1000 });  // A4 without its margins, 96 to an inch
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), title + " is wider than paper");

@@ -7,6 +7,7 @@
 #include "scene/mass_spring_scene.hpp"
 #include "scene/mesh_study.hpp"
 #include "scene/report_page.hpp"
+#include "scene/shown_way.hpp"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -437,14 +438,17 @@ TEST_F(BenchmarkTest, TellsTheSameInJsonRowsAndPage) {
     EXPECT_NE(page.find(">" + page_number(mesh.residual.value(), 3) + "<"), std::string::npos);
 
   // Where on the mesh its error is: what the figures of the mesh say of the same two surfaces.
-  ASSERT_EQ(found.mesh_view.has_value(), has_shape_view());
-  if (!found.mesh_view) return;
-  const ViewField& distance = found.mesh_view->fields.front();
+  ASSERT_TRUE(found.shown.has_value());
+  const ViewField& distance = found.shown->view.fields.front();
   EXPECT_EQ(distance.title, "Distance to the equilibrium on " + mesh_text(found.meshes.back()));
   ASSERT_EQ(distance.values.at(0).size(), found.meshes.front().vertices);
   EXPECT_GT(distance.values[0].maxCoeff(), 0);
   EXPECT_LE(distance.values[0].maxCoeff(), *found.meshes.front().error_mm * 2);
+  for (const char* part : {"All figures of the result", "certificate", "Residual against iterates"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  if (!has_shape_view()) return;
   EXPECT_NE(page.find("id=\"shape-data\""), std::string::npos);
+  expect_a_way(found.shown->view);
 }
 
 }  // namespace

@@ -364,8 +364,8 @@ TEST_F(ComparisonTest, TellsItOnAPageThatNeedsNothingElse) {
     EXPECT_EQ(outside.find(other), std::string::npos) << other;
   EXPECT_EQ(page.find("<b>"), std::string::npos) << "a message is no markup";
   EXPECT_NE(page.find("&lt;b&gt;"), std::string::npos);
-  for (const char* word :
-       {"newton", "idle", "broken", "not converged", "Distance to newton against run time"})
+  for (const char* word : {"newton", "idle", "broken", "not converged", "Distance to newton against run time",
+                           "Certificates", "Residual against wall time", "version of coapt"})
     EXPECT_NE(page.find(word), std::string::npos) << word;
 }
 
@@ -386,38 +386,61 @@ std::string floats(const Eigen::MatrixXd& numbers) {
 // As the view has them, which adds the way between two origins: here nothing, but -0 becomes 0.
 std::string nodes(const Points& x) { return floats(x.array() + 0.0); }
 
-std::vector<std::string> labels(const nlohmann::json& shapes) {
-  std::vector<std::string> all;
-  for (const nlohmann::json& state : shapes.at("states")) all.push_back(state.at("label"));
+// The numbers of the states that each way ends with.
+std::vector<size_t> ends(const nlohmann::json& shapes) {
+  std::vector<size_t> all;
+  size_t count = 0;
+  for (const nlohmann::json& way : shapes.at("ways"))
+    all.push_back((count += way.at("states").get<size_t>()) - 1);
   return all;
 }
 
-TEST_F(ComparisonTest, ShowsEveryShapeOnOneScale) {
+std::vector<std::string> way_labels(const nlohmann::json& shapes) {
+  std::vector<std::string> all;
+  for (const nlohmann::json& way : shapes.at("ways")) all.push_back(way.at("label"));
+  return all;
+}
+
+TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
   const Comparison found = compare(disc_scene(), {"newton", "idle", "broken", "lbfgs"});
   const nlohmann::json json = shape_data(comparison_page(found));
-  EXPECT_EQ(labels(json), (std::vector<std::string>{"at rest", "idle: not converged",
-                                                    "lbfgs: same equilibrium", "newton: reference"}));
+  EXPECT_EQ(way_labels(json), (std::vector<std::string>{"idle: not converged", "lbfgs: same equilibrium",
+                                                        "newton: reference"}));
+  const std::vector<size_t> last = ends(json);
+  ASSERT_EQ(last.back() + 1, json.at("states").size());
+  EXPECT_EQ(last[0], 1U);  // it stays where it begins
+  EXPECT_GT(last[1], 4U);
+  EXPECT_GT(last[2], last[1] + 3);
   const Model& model = found.reference().run->model;
   // Base64 of 4 bytes a number.
   EXPECT_EQ(json.at("triangles").get<std::string>().size(),
             static_cast<size_t>((4 * model.mesh.triangles.size() + 2) / 3 * 4));
-  EXPECT_EQ(json.at("states").at(0).at("nodes"), nodes(model.X));
-  EXPECT_EQ(json.at("states").at(2).at("nodes"), nodes(found.methods[3].run->report.fields.x));
-  EXPECT_EQ(json.at("states").at(3).at("nodes"), nodes(found.reference().run->report.fields.x));
+  for (const size_t start : {size_t{0}, last[0] + 1, last[1] + 1}) {
+    EXPECT_EQ(json.at("states").at(start).at("nodes"), nodes(model.X));
+    EXPECT_EQ(json.at("states").at(start).at("label"), "start, as given");
+    EXPECT_EQ(json.at("states").at(start).at("carried"), true);
+  }
+  // Iterates of newton, each of the run itself: the shapes that its own page leads through.
+  const Report& newton = found.reference().run->report;
+  for (size_t k = last[1] + 1; k < last[2]; ++k)
+    EXPECT_TRUE(std::any_of(newton.way.begin(), newton.way.end(), [&](const RecordedShape& shape) {
+      return json.at("states").at(k).at("nodes") == nodes(shape.x);
+    })) << k;
+  EXPECT_EQ(json.at("states").at(last[1]).at("nodes"), nodes(found.methods[3].run->report.fields.x));
+  EXPECT_EQ(json.at("states").at(last[2]).at("nodes"), nodes(newton.fields.x));
   const nlohmann::json& distance = json.at("fields").at(0);
   EXPECT_EQ(distance.at("title"), "Distance to the reference method");
-  ASSERT_EQ(distance.at("values").size(), 4U);
+  ASSERT_EQ(distance.at("values").size(), json.at("states").size());
   EXPECT_TRUE(distance.at("values").at(0).is_null());
-  EXPECT_EQ(distance.at("values").at(1), floats(found.methods[1].run->report.fields.method_distance));
-  EXPECT_EQ(distance.at("values").at(3), floats(Vector::Zero(model.mesh.vertex_count())));
-  for (const nlohmann::json& field : json.at("fields")) EXPECT_TRUE(field.at("values").at(0).is_null());
-  EXPECT_TRUE(json.at("outlines").empty());
+  EXPECT_EQ(distance.at("values").at(last[0]), floats(found.methods[1].run->report.fields.method_distance));
+  EXPECT_EQ(distance.at("values").at(last[2]), floats(Vector::Zero(model.mesh.vertex_count())));
+  EXPECT_TRUE(json.at("states").at(last[2]).at("outlines").empty());
 }
 
-// The open valve, the methods, the reference last: with its orifice, as the view draws outlines of the last
-// shape. The obstacle is there too, far below, and nothing keeps the valve off it.
-TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfTheReference) {
+// Each method's way from the open valve to its orifice, the reference last. The obstacle is there too, far
+// below, and nothing keeps the valve off it.
+TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfEachMethod) {
   if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
   write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
   folder_.write("floor.obj", "v -90 -90 -80\nv 90 -90 -80\nv 0 90 -80\nf 1 2 3\n");
@@ -427,25 +450,30 @@ TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfTheReference) {
       compare(load_scene(folder_.write("standing.json", text.dump())), {"newton", "idle"});
   const std::string page = comparison_page(found);
   const nlohmann::json json = shape_data(page);
-  EXPECT_EQ(labels(json), (std::vector<std::string>{"open", "idle: not converged", "newton: reference"}));
+  EXPECT_EQ(way_labels(json), (std::vector<std::string>{"idle: not converged", "newton: reference"}));
+  const std::vector<size_t> last = ends(json);
   const Model& model = found.reference().run->model;
   EXPECT_EQ(json.at("states").at(0).at("nodes"), nodes(model.X));
-  const std::uint32_t last = static_cast<std::uint32_t>(model.X.cols()),
-                      corners[] = {last - 3, last - 2, last - 1};
+  const std::uint32_t corner = static_cast<std::uint32_t>(model.X.cols()),
+                      corners[] = {corner - 3, corner - 2, corner - 1};
   EXPECT_EQ(json.at("obstacles"), base64(std::span<const std::uint32_t>(corners)));
   ASSERT_TRUE(json.at("line_force").at("values").at(0).is_null());
-  EXPECT_EQ(json.at("line_force").at("values").at(2),
+  EXPECT_EQ(json.at("line_force").at("values").at(last[1]),
             floats(found.reference().run->report.fields.line_force));
 
   const Metrics& metrics = found.reference().run->report.metrics;
-  ASSERT_FALSE(metrics.closure.value().orifices.empty());
-  std::vector<std::string> outlines, wanted;
-  for (const nlohmann::json& outline : json.at("outlines"))
-    if (outline.at("kind") == "orifice") outlines.push_back(outline.at("points"));
-  for (const Orifice& orifice : metrics.closure->orifices) wanted.push_back(floats(orifice.outline.corners));
-  EXPECT_EQ(outlines, wanted);
-  EXPECT_EQ(json.at("orifice_text"),
-            "orifice outline, " + page_number(metrics.orifice_area_mm2.value()) + " mm²");
+  for (size_t k = 0; k < 2; ++k) {
+    const Metrics& own = found.methods[1 - k].run->report.metrics;
+    ASSERT_FALSE(own.closure.value().orifices.empty());
+    const nlohmann::json& state = json.at("states").at(last[k]);
+    std::vector<std::string> outlines, wanted;
+    for (const nlohmann::json& outline : state.at("outlines"))
+      if (outline.at("kind") == "orifice") outlines.push_back(outline.at("points"));
+    for (const Orifice& orifice : own.closure->orifices) wanted.push_back(nodes(orifice.outline.corners));
+    EXPECT_EQ(outlines, wanted);
+    EXPECT_EQ(state.at("orifice_text"),
+              "orifice outline, " + page_number(own.orifice_area_mm2.value()) + " mm²");
+  }
 
   // Said once where every method says it, else with the names of those that do.
   const size_t warning = page.find("nothing keeps the membrane off them");

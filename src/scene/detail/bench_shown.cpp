@@ -1,37 +1,57 @@
-#include "scene/detail/mesh_error_view.hpp"
+#include "scene/detail/bench_shown.hpp"
 
 #include "scene/benchmark_summary.hpp"
-#include "scene/solve_view.hpp"
+#include "scene/build.hpp"
+#include "scene/detail/finish_run.hpp"
+#include "scene/detail/method_list.hpp"
 
 namespace coapt {
-
 namespace {
 
-std::string size_text(int triangles) { return mesh_text({.triangles = triangles}); }
+double tightest_reached(const Benchmark& found) {
+  double tolerance = found.tolerances.front();
+  for (const BenchRun& run : found.runs)
+    if (run.method == 0 && run.mesh == 0 && run.status == Status::Converged) tolerance = run.tolerance;
+  return tolerance;
+}
+
+ViewField mesh_error(const Model& model, const Points& x, const TriangleMesh& finer) {
+  Vector distance;
+  reference_distance(surface_at(model, x), finer, distance);
+  return {.title = "Distance to the equilibrium on " + mesh_text({.triangles = finer.triangle_count()}),
+          .unit = "mm",
+          .values = {distance}};
+}
 
 }  // namespace
 
-ShapeView mesh_error_view(const Model& model, const Points& x, const TriangleMesh& finer) {
-  const Fields fields = compute_fields(model, x);
-  Vector distance;
-  reference_distance(surface_at(model, x), finer, distance);
-  ShapeView view = bare_view(model, fields);
-  view.name = "mesh-error";
-  if (view.is_valve) view.slider = "Open ↔ closed";
-  view.states = {{"at rest", x - fields.displacement},
-                 {"equilibrium on " + size_text(model.mesh.triangle_count()), x}};
-  view.fields = view_fields(model, fields);
-  view.fields.insert(view.fields.begin(),
-                     {.title = "Distance to the equilibrium on " + size_text(finer.triangle_count()),
-                      .unit = "mm",
-                      .values = {distance}});
-  if (!model.lines.empty())
-    view.line_force = {.title = "Force in chords and cables",
-                       .unit = "N",
-                       .place = ViewPlace::Line,
-                       .values = {fields.line_force}};
-  add_outlines(measure(model, model.objective->unknowns(x), fields), view);
-  return view;
+std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
+                                      const TriangleMesh* finer, const Benchmark& found) {
+  const std::string& method = found.methods.front().name;
+  RunOptions options = course.run;
+  options.solver = solver_of(method);
+  options.tolerance = tightest_reached(found);
+  options.writes_page = true;
+  RunReport once;
+  try {
+    const Scene scene = scene_of(method, course.scene);
+    SolveSetup setup = solve_setup(scene, course.solvers, options);
+    once.model = build(scene, ground);
+    begin_report(scene, setup, once.model, options, once.report);
+    CascadeOutcome outcome = solve_recorded(scene, ground, once.model, setup, once.report);
+    options.writes = false;
+    finish_run(setup, std::move(outcome), options, once);
+  } catch (const std::exception&) {  // the end of the method says why
+    return std::nullopt;
+  }
+  ShownSolve shown = shown_solve(method + " on " + mesh_text(found.meshes.front()) + " to a residual of " +
+                                     page_number(*options.tolerance) +
+                                     ", solved once more beside the clock to keep its iterates.",
+                                 once.model, once.report);
+  shown.view.name = "benchmark";
+  if (finer != nullptr)
+    shown.view.fields.insert(shown.view.fields.begin(), mesh_error(once.model, once.report.fields.x, *finer));
+  return shown;
 }
 
 }  // namespace coapt

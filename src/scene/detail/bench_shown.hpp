@@ -1,14 +1,15 @@
-// Where on the sheet a benchmark found the error of the mesh. Private to this room.
+// What a benchmark lets people look at. Private to this room.
 #pragma once
 
-#include "scene/model.hpp"
-#include "scene/shape_view.hpp"
+#include "scene/detail/bench_pair.hpp"
 
 namespace coapt {
 
-// From the shape at rest to the equilibrium at x (3 x node_count, relative to the model's origin [mm]),
-// coloured by its distance to `finer`, the same equilibrium on the finest mesh that it is known on; then by
-// what else is known of the result, with its orifice and coaptation line.
-ShapeView mesh_error_view(const Model& model, const Points& x, const TriangleMesh& finer);
+// The reference method on `ground`, the scene's own nodes, to the tightest tolerance that it reached there:
+// the way through iterates to the shape, coloured first by its distance to `finer`, the equilibrium on the
+// finest mesh that it is known on, where that is not null. A solve of its own, so that keeping the way costs
+// no run that is timed any time. Nothing where the method cannot be run.
+std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
+                                      const TriangleMesh* finer, const Benchmark& found);
 
 }  // namespace coapt

@@ -1,16 +1,22 @@
 // What is drawn of the data: the sheet and what goes with it, placed and painted for what is shown.
 // shown: {state, field, node, triangle}, numbers from 0, -1 for none.
 
-const valuesIn = (field, state) => field.values[Math.min(state, field.values.length - 1)];
+// On the way they are those that it ends with.
+function valuesIn(data, field, state) {
+  const { carried, way } = data.states[state];
+  return field.values.length === 1 ? field.values[0] : field.values[carried ? way.last : state];
+}
+
 const nodeOf = (data, state, i) => data.states[state].nodes.subarray(3 * i, 3 * i + 3);
 
 function makeOutlines(data, kind, radius) {
   const group = new THREE.Group();
-  for (const outline of data.outlines.filter(each => each.kind === kind)) {
+  for (const state of data.states) for (const outline of state.outlines.filter(each => each.kind === kind)) {
     const points = outline.points, count = points.length / 3, isClosed = kind === "orifice";
     const point = k => points.subarray(3 * (k % count), 3 * (k % count) + 3);
     const tubes = makeTubes(isClosed ? count : count - 1, radius, new THREE.MeshBasicMaterial({
       vertexColors: THREE.VertexColors, depthTest: false, transparent: true }));
+    tubes.state = state;
     tubes.renderOrder = 1;  // seen through the sheet
     tubes.place(k => [point(k), point(k + 1)]);
     group.add(tubes);
@@ -38,20 +44,21 @@ function makeParts(data, stage, radius) {
 }
 
 function placeParts(parts, data, shown, wanted) {
-  const nodes = data.states[shown.state].nodes, isLast = shown.state === data.states.length - 1;
+  const state = data.states[shown.state], nodes = state.nodes;
   const at = i => nodeOf(data, shown.state, i);
   for (const name of ["sheet", "edges", "obstacles"]) parts[name].place(nodes);
   parts.chords.place(k => [at(data.lines[2 * k]), at(data.lines[2 * k + 1])]);
   for (const name of Object.keys(wanted)) parts[name].visible = wanted[name];
-  for (const name of ["orifice", "coaptation"]) parts[name].visible = wanted[name] && isLast;
+  for (const name of ["orifice", "coaptation"])
+    for (const tubes of parts[name].children) tubes.visible = tubes.state === state;
   parts.marker.visible = shown.node >= 0;
   if (shown.node >= 0) parts.marker.position.set(...at(shown.node));
 }
 
 function paintParts(parts, data, shown) {
-  const field = shown.field, values = field && valuesIn(field, shown.state), shades = field && colouring(field);
+  const field = shown.field, values = field && valuesIn(data, field, shown.state), shades = field && colouring(field);
   parts.sheet.paint((node, triangle) => shades ? shades.of(values ? values[field.at === "vertex" ? node : triangle] : NaN) : kNone);
-  const forces = data.line_force && valuesIn(data.line_force, shown.state);
+  const forces = data.line_force && valuesIn(data, data.line_force, shown.state);
   const forceShades = forces && colouring(data.line_force);
   parts.chords.paint(k => forces ? forceShades.of(forces[k]) : kNone);
   const isDark = matchMedia("(prefers-color-scheme: dark)").matches;

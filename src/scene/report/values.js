@@ -25,7 +25,7 @@ function addLegend(box, field) {
 // A quantity of triangles is told as the mean of those around the node, a category as that of the picked triangle.
 // Null where there is nothing to tell.
 function valueAt(data, field, shown) {
-  const values = valuesIn(field, shown.state);
+  const values = valuesIn(data, field, shown.state);
   if (!values || shown.node < 0) return null;
   if (field.at === "vertex") return shown.node < values.length ? values[shown.node] : null;
   if (field.categories) return shown.triangle >= 0 ? values[shown.triangle] : null;
@@ -49,7 +49,7 @@ function valuesAt(data, shown) {
     const value = valueAt(data, field, shown), isMean = field.at !== "vertex" && !field.categories;
     if (value !== null) rows.push([field.title + (isMean ? ", mean of the triangles around" : ""), worded(field, value)]);
   }
-  const forces = data.line_force && valuesIn(data.line_force, shown.state), most = rows.length + 6;
+  const forces = data.line_force && valuesIn(data, data.line_force, shown.state), most = rows.length + 6;
   for (let k = 0; forces && k < data.lines.length / 2 && rows.length < most; ++k)
     if (data.lines[2 * k] === shown.node || data.lines[2 * k + 1] === shown.node)
       rows.push(["Chord or cable " + k, withUnit(forces[k], data.line_force.unit, 5)]);

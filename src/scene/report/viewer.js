@@ -3,19 +3,27 @@
 function readData() {
   const data = JSON.parse(byId("shape-data").textContent), unpacked = values => values.map(each => each && floats(each));
   for (const name of ["triangles", "lines", "obstacles"]) data[name] = integers(data[name]);
-  for (const state of data.states) state.nodes = floats(state.nodes);
+  if (!data.ways.length) data.ways = [{ label: "", states: data.states.length }];
+  let first = 0;
+  for (const way of data.ways) {
+    Object.assign(way, { first, last: first + way.states - 1 });
+    for (const state of data.states.slice(first, first += way.states)) state.way = way;
+  }
+  for (const state of data.states) {
+    state.nodes = floats(state.nodes);
+    for (const outline of state.outlines) outline.points = floats(outline.points);
+  }
   for (const field of data.fields) field.values = unpacked(field.values);
   if (data.line_force) data.line_force = { ...data.line_force, values: unpacked(data.line_force.values), map: "force" };
-  for (const outline of data.outlines) outline.points = floats(outline.points);
   return data;
 }
 
 function makeViewer() {
-  const data = readData(), canvas = byId("canvas"), last = data.states.length - 1;
+  const data = readData(), canvas = byId("canvas");
   const shapes = data.states.map(state => state.nodes), bounds = boundsOf(shapes);
   const stage = makeStage(canvas, data.frame, bounds, shapes);
-  const viewer = { data, canvas, last, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {},
-                   shown: { state: last, field: data.fields[0], node: -1, triangle: -1 } };
+  const viewer = { data, canvas, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {},
+                   shown: { state: data.states.length - 1, field: data.fields[0], node: -1, triangle: -1 } };
 
   viewer.redraw = () => {
     placeParts(viewer.parts, data, viewer.shown, viewer.wanted);
@@ -28,7 +36,8 @@ function makeViewer() {
     box.textContent = "";
     if (shown.field) addLegend(box, shown.field);
     if (data.line_force && viewer.wanted.chords) addLegend(box, data.line_force);
-    byId("carried").hidden = shown.state === last || !shown.field || shown.field.values.length > 1;
+    byId("carried").hidden = !shown.field || !data.states[shown.state].carried;
+    byId("orifice-text").textContent = data.states[data.states[shown.state].way.last].orifice_text || "orifice outline";
     showValues(data, shown);
     const sentence = spoken(data, shown);
     if (byId("picked").textContent !== sentence) byId("picked").textContent = sentence;
@@ -42,11 +51,11 @@ function makeViewer() {
   return viewer;
 }
 
-function connectSlider({ data, last, shown, show }) {
-  const slider = byId("state"), play = byId("play");
-  let timer = 0;
+function connectSlider({ data, shown, show }) {
+  const slider = byId("state"), play = byId("play"), choice = byId("way");
+  let timer = 0, way = data.ways[data.ways.length - 1];
   const go = state => {
-    slider.value = state;
+    slider.value = state - way.first;
     slider.setAttribute("aria-valuetext", data.states[state].label);
     byId("state-label").textContent = data.states[state].label;
     show({ state });
@@ -56,19 +65,29 @@ function connectSlider({ data, last, shown, show }) {
     timer = 0;
     play.textContent = "Play";
   };
-  slider.max = last;
+  const take = next => {
+    stop();
+    const share = way.states > 1 ? (shown.state - way.first) / (way.states - 1) : 1;  // of the way: open stays open
+    way = next;
+    slider.max = way.states - 1;
+    byId("slider").hidden = way.states === 1;
+    go(way.first + Math.round(share * (way.states - 1)));
+  };
   slider.addEventListener("input", () => {
     stop();
-    go(Number(slider.value));
+    go(way.first + Number(slider.value));
   });
   play.addEventListener("click", () => {
     if (timer) return stop();
-    if (shown.state === last) go(0);
+    if (shown.state === way.last) go(way.first);
     play.textContent = "Stop";
-    timer = setInterval(() => shown.state === last ? stop() : go(shown.state + 1), 350);
+    timer = setInterval(() => shown.state === way.last ? stop() : go(shown.state + 1), 350);
   });
-  byId("slider").hidden = last === 0;
-  go(last);
+  data.ways.forEach((each, k) => choice.appendChild(element("option", each.label)).value = k);
+  choice.value = data.ways.length - 1;
+  choice.addEventListener("change", () => take(data.ways[choice.value]));
+  byId("ways").hidden = data.ways.length === 1;
+  take(way);
 }
 
 function connectColours({ data, show }) {
@@ -90,7 +109,6 @@ function connectSwitches({ data, parts, wanted, show }) {
     });
     apply();
   }
-  if (data.orifice_text) byId("orifice-text").textContent = data.orifice_text;
 }
 
 function connectCut({ stage, bounds }) {

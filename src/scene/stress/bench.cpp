@@ -1,6 +1,7 @@
 #include "scene/stress/bench.hpp"
 
 #include "scene/build.hpp"
+#include "scene/solve_page.hpp"
 #include "scene/solve_scene.hpp"
 
 #include <algorithm>
@@ -51,6 +52,8 @@ StressScene copy_of(const StressScene& subject) {
   to.networks = from.networks;
   to.prescribed = from.prescribed;
   to.defects = from.defects;
+  to.links = from.links;
+  to.patches = from.patches;
   return copy;
 }
 
@@ -79,7 +82,10 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
     solved.intersections = std::max(solved.intersections, intersection_count(model, x, options_.judge));
     ++solved.judged;
   };
+  std::optional<ShapeRecord> record;
+  if (how.keeps_way && has_shape_view()) record.emplace(model, page_shapes(model));
   setup.observer = [&](const Iteration& iteration, const Vector& q) {
+    if (record) record->see(iteration, q);
     // A coarser mesh of a cascade has other unknowns.
     if (how.judges_every_state && q.size() == model.objective->unknown_count())
       judge(model.objective->positions(q));
@@ -94,6 +100,7 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
     solved.result = solve_scene(subject.scene, subject.ground, model, setup).result;
   solved.wall_s = wall_seconds() - start;
   solved.x = model.objective->positions(solved.result.q);
+  if (record && solved.x.allFinite()) solved.way = record->shapes(solved.x);
   if (solved.x.allFinite() && model.mesh.triangle_count() > 0) judge(solved.x);
   return solved;
 }

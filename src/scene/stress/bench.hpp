@@ -29,6 +29,7 @@ struct StressSolve {
   const Points* start = nullptr;       // the supports are then where their motion ends
   Observer observer = {};              // besides that of the rows; may be empty
   RunRecorder* recorder = nullptr;     // keeps the run or takes it up; may be null. Not with a start
+  bool keeps_way = false;              // for a page
   bool judges_every_state = false;     // counts intersections at each accepted state, not at the last alone
   std::function<void(Model&)> edit = {};  // changes the model before the solve; may be empty
 };
@@ -36,11 +37,12 @@ struct StressSolve {
 struct Stressed {
   Model model;
   Result result;
-  Points x;                // the last state, relative to the model's origin [mm]
-  long intersections = 0;  // the most at any state that was judged
-  long judged = 0;         // states
-  double seconds = 0;      // time limit that held [s]
-  double wall_s = 0;       // of the solve
+  Points x;                             // the last state, relative to the model's origin [mm]
+  std::vector<RecordedShape> way = {};  // to x, where it is kept
+  long intersections = 0;               // the most at any state that was judged
+  long judged = 0;                      // states
+  double seconds = 0;                   // time limit that held [s]
+  double wall_s = 0;                    // of the solve
   bool promises_contact = false;
 };
 

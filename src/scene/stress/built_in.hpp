@@ -60,6 +60,7 @@ std::vector<StressRow> collision_query_rows();                       // S15
 std::vector<StressRow> bad_input_rows(const StressBench& bench);     // S20
 std::vector<StressRow> random_scene_rows(const StressBench& bench);  // S21
 std::vector<StressRow> large_scene_rows(const StressBench& bench);   // S24
+std::vector<StressRow> coincident_rows(const StressBench& bench);    // S13
 
 // The generated valve, 300 triangles, for the rows that are done to any scene. Written into the folder.
 StressScene built_in_valve(const std::filesystem::path& folder, bool has_contact);

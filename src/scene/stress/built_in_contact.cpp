@@ -1,5 +1,6 @@
 // S13, S14, S25, S26: sheets pressed on obstacles that are as awkward as can be. Judged at every accepted
 // state by exact predicates that share nothing with the barrier.
+#include "core/error.hpp"
 #include "energy/contact_facet.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "scene/stress/pressed.hpp"
@@ -63,6 +64,25 @@ std::vector<BuiltRow> degenerate_rows() {
           row("the same mesh below, edge on edge", "S13_edges", false, square(1, 200)),
           contact_row("S26", "cloth over twelve needles", false,
                       pressed_scene("S26_needles", 450, height, needles, 0.3, barrier_term(0.01)))};
+}
+
+std::vector<StressRow> coincident_rows(const StressBench& bench) {
+  const auto refused = [bench]() -> StressOutcome {
+    StressOutcome outcome{StressVerdict::Fail, 1, 0, "was not refused: no barrier is finite there"};
+    try {
+      bench.solve(written(bench.options().folder / "scenes",
+                          pressed_scene("S13_coincident", 200, 0, square(1, 200), 0.1, barrier_term(0.02))));
+    } catch (const InputError& error) {
+      const std::string said = error.what();
+      const bool names_pairs =
+          said.find("terms[3]") != std::string::npos && said.find("(0-200, ") != std::string::npos;
+      outcome = {names_pairs ? StressVerdict::Pass : StressVerdict::Fail, names_pairs ? 0 : 1, 0,
+                 "as it must be: " + said};
+    }
+    return outcome;
+  };
+  return {{"S13", "S13_coincident", "a sheet that lies in its obstacle, triangle on triangle",
+           "refusals that name no pairs of facets", "", true, refused}};
 }
 
 std::vector<BuiltRow> tunnelling_rows() {

@@ -1,6 +1,6 @@
 // S10 and S12: where there is no equilibrium, and where the path to one leads past a limit point.
 #include "mesh/generators/shapes.hpp"
-#include "scene/stress/built_in.hpp"
+#include "scene/stress/pressed.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -114,6 +114,23 @@ BuiltScene loose_scene(const std::string& name, const std::string& load) {
           .mesh = disc(10, 200)};
 }
 
+// Two sheets, of which only the one at the left is held; no node of the other one is near a held one.
+BuiltScene half_loose_scene() {
+  const TriangleMesh held = rectangle(10, 10, 100);
+  return {.name = "S10_component",
+          .text = R"({ // Of two sheets one is held, the other lies beside it. Lengths in mm.
+  "mesh": { "file": "mesh.obj" },
+  "boundary": [{ "nodes": { "plane": { "axis": "x" } }, "fix": true }, { "nodes": { "plane": { "axis": "x", "at": "10 mm" } }, "fix": true }],
+  "terms": [
+    { "type": "cst_tension_field", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },
+    { "type": "load_field", "direction": [0, 0, -1], "pressure": "1 kPa" }
+  ],
+  "solver": { "type": "newton", "tolerance": 1e-8, "max_iterations": 2000 }
+}
+)",
+          .mesh = both_meshes(held, shifted_mesh(held, {20, 0, 0}))};
+}
+
 // A shallow hinged arch, z = b sin(pi x/L), under the load q sin(pi x/L). In the theory of shallow arches it
 // stays a sine of height a with q = (pi/L)^4 (D (b - a) + E h a (b^2 - a^2)/4), which is greatest at
 // a = sqrt((b^2 - 4 D/(E h))/3). Beyond that load the arch snaps through to the other side.
@@ -177,6 +194,7 @@ std::vector<BuiltRow> lost_rows() {
                                R"({ "type": "load_field", "direction": [0, 0, -1], "pressure": "1 kPa" })")),
           lost_row("sheet that nothing holds, under pressure", false,
                    loose_scene("S10_pressure", R"({ "type": "load_pressure", "value": "1 kPa" })")),
+          lost_row("of two sheets one that nothing holds, under their weight", true, half_loose_scene()),
           arch_row()};
 }
 

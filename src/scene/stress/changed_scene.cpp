@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 namespace coapt {
 namespace {
@@ -88,6 +90,68 @@ bool renames_axes(const Eigen::Matrix3d& turn) {
   return (turn.array().abs() < 1e-15 || (turn.array().abs() - 1).abs() < 1e-15).all();
 }
 
+void turn_over(Triangles& triangles) { triangles.row(1).swap(triangles.row(2)); }
+
+// Where each of `count` goes, in an order that is the same on every machine.
+std::vector<int> shuffled(Eigen::Index count) {
+  std::mt19937 random(7);
+  std::vector<int> order(static_cast<size_t>(count));
+  std::iota(order.begin(), order.end(), 0);
+  for (size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
+  return order;
+}
+
+// values[k] goes to place order[k]; values may be empty.
+template <typename Value>
+std::vector<Value> reordered(const std::vector<Value>& values, const std::vector<int>& order) {
+  std::vector<Value> there = values;
+  for (size_t k = 0; k < values.size(); ++k) there[static_cast<size_t>(order[k])] = values[k];
+  return there;
+}
+
+template <typename Matrix>
+Matrix reordered_columns(const Matrix& columns, const std::vector<int>& order) {
+  Matrix there = columns;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) there.col(order[static_cast<size_t>(k)]) = columns.col(k);
+  return there;
+}
+
+void renumber_nodes(std::vector<int>& nodes, const std::vector<int>& number) {
+  for (int& node : nodes) node = number[static_cast<size_t>(node)];
+}
+
+NodeSelection renumbered_selection(const NodeSelection& selection, const StressScene& subject,
+                                   const std::vector<int>& number, const std::string& where) {
+  NodeSelection moved = by_number(selection, subject, where);
+  renumber_nodes(moved.indices, number);  // a set has none
+  return moved;
+}
+
+void renumber_term(TermSpec& term, const StressScene& subject, const std::vector<int>& number) {
+  Parameters& p = term.parameters;
+  for (const KeySpec& key : find_term_type(term.type)->spec.keys) {
+    if (!p.has(key.name)) continue;
+    if (key.kind == KeyKind::Nodes)
+      p.set(key.name, renumbered_selection(p.nodes(key.name), subject, number, p.where(key.name)));
+    if (key.kind != KeyKind::Line) continue;
+    LineThrough line = p.line(key.name);
+    if (line.nodes) line.nodes = renumbered_selection(*line.nodes, subject, number, p.where(key.name));
+    p.set(key.name, line);
+  }
+}
+
+void renumber_mesh(Groundwork& ground, const std::vector<int>& number) {
+  TriangleMesh& mesh = ground.model.mesh;
+  const std::vector<int> order = shuffled(mesh.triangles.cols());
+  for (int& corner : mesh.triangles.reshaped()) corner = number[static_cast<size_t>(corner)];
+  mesh.triangles = reordered_columns(mesh.triangles, order);
+  mesh.triangles = Triangles(mesh.triangles({1, 2, 0}, Eigen::all));
+  mesh.regions = reordered(mesh.regions, order);
+  mesh.vertices = ground.model.X.leftCols(mesh.vertex_count());
+  for (auto& [name, values] : ground.patches)
+    values = reordered_columns(Eigen::RowVectorXd(values.transpose()), order).transpose();
+}
+
 std::string file_of_numbers(const TermSpec& term) {
   for (const char* key : {"triangle_values", "vertex_values", "forces"})
     if (term.parameters.has(key))
@@ -134,6 +198,7 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
   model.origin = is_far ? centre : Vec3(Vec3::Zero());
   model.X.colwise() -= model.origin;
   model.mesh.vertices = model.X.leftCols(model.mesh.vertex_count());
+  if (frame.turn.determinant() < 0) turn_over(model.mesh.triangles);
   model.closed_reference.reset();
   for (auto& [node, path] : ground.prescribed.paths)
     for (Vec3& station : path)
@@ -143,6 +208,49 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
                                 : ground.prescribed.fixed;
   move_networks(ground, frame.length);
   return moved;
+}
+
+StressScene turned_over(const StressScene& subject) {
+  StressScene turned =
+      with_energy_scaled(subject, -1, [](const TermSpec& term) { return term.type == "load_pressure"; });
+  turn_over(turned.ground.model.mesh.triangles);
+  return turned;
+}
+
+std::string numbering_obstacle(const StressScene& subject) {
+  for (const TermSpec& term : subject.scene.terms)
+    if (const std::string obstacle = file_of_numbers(term); !obstacle.empty()) return obstacle;
+  if (subject.scene.fibres && subject.scene.fibres->file)
+    return "the scene reads fibre directions from a file, by the numbers of its triangles";
+  return "";
+}
+
+Renumbered renumbered(const StressScene& subject) {
+  Renumbered found{copy_of(subject), shuffled(subject.ground.model.mesh.vertex_count())};
+  Groundwork& ground = found.scene.ground;
+  Model& model = ground.model;
+  std::vector<int>& number = found.number;
+  while (std::ssize(number) < model.X.cols()) number.push_back(static_cast<int>(number.size()));
+  for (TermSpec& term : found.scene.scene.terms) renumber_term(term, subject, number);
+  if (found.scene.scene.fibres)
+    for (FibreEntry& entry : found.scene.scene.fibres->entries)
+      entry.nodes = renumbered_selection(entry.nodes, subject, number, entry.where);
+  model.X = reordered_columns(model.X, number);
+  renumber_mesh(ground, number);
+  for (auto& [name, nodes] : model.sets) renumber_nodes(nodes, number);
+  for (auto& [path, placed] : ground.networks)
+    for (Chord& chord : placed.network.chords)
+      for (ChordEnd* end : {&chord.from, &chord.to})
+        if (end->kind == ChordEnd::Kind::Leaflet) end->index = number[static_cast<size_t>(end->index)];
+  Prescribed& prescribed = ground.prescribed;
+  prescribed.fixed = reordered_columns(prescribed.fixed, number);
+  std::map<int, std::vector<Vec3>> paths;
+  for (const auto& [node, path] : prescribed.paths) paths[number[static_cast<size_t>(node)]] = path;
+  prescribed.paths = std::move(paths);
+  for (auto& [name, pairs] : ground.links)
+    for (std::array<int, 2>& pair : pairs)
+      for (int& node : pair) node = number[static_cast<size_t>(node)];
+  return found;
 }
 
 StressScene with_energy_scaled(const StressScene& subject, double factor,

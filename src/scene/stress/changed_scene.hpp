@@ -12,8 +12,10 @@ namespace coapt {
 // x' = length * turn * x + shift; stresses are multiplied by `stress`, and whatever has a dimension follows.
 struct StressFrame {
   double length = 1, stress = 1;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // a rotation
-  Vec3 shift = Vec3::Zero();                           // [mm]
+  // A rotation, or one with a mirror: triangles are then turned over, so that their normals point to what was
+  // the same side.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Vec3 shift = Vec3::Zero();  // [mm]
 
   Points back(const Points& x, const Vec3& origin_here, const Vec3& origin_there) const;
 };
@@ -25,6 +27,23 @@ std::string frame_obstacle(const StressScene& subject, const StressFrame& frame)
 // The scene in that frame. Nodes far from zero are brought back, as when a scene is read.
 // Pre: frame_obstacle() is empty.
 StressScene in_frame(const StressScene& subject, const StressFrame& frame);
+
+// The scene with its triangles turned over and pressures of the other sign: the same forces.
+StressScene turned_over(const StressScene& subject);
+
+// Why the scene cannot be renumbered as a whole: a file goes by the numbers that are there. Empty: it can.
+std::string numbering_obstacle(const StressScene& subject);
+
+// The scene with the vertices of its mesh and its triangles in another order, by chance but always the same,
+// and each triangle beginning with another corner.
+struct Renumbered {
+  StressScene scene;
+  std::vector<int> number;  // there of each node here
+
+  Points back(const Points& x) const { return x(Eigen::all, number); }
+};
+// Pre: numbering_obstacle() is empty.
+Renumbered renumbered(const StressScene& subject);
 
 // The scene with every number of some terms that has the dimension of mass in it (moduli, tensions,
 // pressures, forces) times `factor`: the energy of these terms times that factor.

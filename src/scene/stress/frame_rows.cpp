@@ -51,14 +51,28 @@ StressRow row(const SubjectPointer& subject, const char* id, const std::string& 
           }};
 }
 
+StressOutcome with_triangles_turned_over(StressSubject& subject) {
+  const Stressed solved = subject.bench.solve(turned_over(own_scene(subject)));
+  return same_shape_as_own(subject, solved, solved.x);
+}
+
+StressOutcome in_another_order(StressSubject& subject) {
+  if (const std::string obstacle = numbering_obstacle(own_scene(subject)); !obstacle.empty())
+    return {StressVerdict::NotApplicable, {}, {}, obstacle};
+  const Renumbered other = renumbered(own_scene(subject));
+  const Stressed solved = subject.bench.solve(other.scene);
+  return same_shape_as_own(subject, solved, other.back(solved.x));
+}
+
 }  // namespace
 
 std::vector<StressRow> frame_rows(const SubjectPointer& subject) {
   const Vec3 axis = Vec3(1, 2, 3).normalized();
-  StressFrame far, renamed, turned;
+  StressFrame far, renamed, turned, mirrored;
   far.shift = 1e7 * Vec3(1, -1, 0.5);
   renamed.turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // x becomes y, y z, z x
   turned.turn = Eigen::AngleAxisd(0.4 * std::numbers::pi, axis).toRotationMatrix();
+  mirrored.turn.diagonal() << -1, 1, 1;
   return {row(subject, "S1", "m and Pa", {.length = 1e-3, .stress = 1e6}, true),
           row(subject, "S1", "mm and kPa", {.length = 1, .stress = 1e3}, false),
           row(subject, "S1", "um and Pa", {.length = 1e3, .stress = 1e6}, false),
@@ -66,7 +80,12 @@ std::vector<StressRow> frame_rows(const SubjectPointer& subject) {
           row(subject, "S1", "lengths times 1e6", {.length = 1e6}, false),
           row(subject, "S2", "1e7 extents away", far, true),
           row(subject, "S7", "axes renamed", renamed, true),
-          row(subject, "S7", "turned by 72 degrees", turned, false)};
+          row(subject, "S7", "turned by 72 degrees", turned, false),
+          row(subject, "S7", "seen in a mirror", mirrored, false),
+          {"S7", subject->name, "triangles turned over, pressure of the other sign", kDistanceFromOwn, "",
+           true, [subject] { return with_triangles_turned_over(*subject); }},
+          {"S7", subject->name, "nodes and triangles in another order", kDistanceFromOwn, "", true,
+           [subject] { return in_another_order(*subject); }}};
 }
 
 }  // namespace coapt

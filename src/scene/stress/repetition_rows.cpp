@@ -1,11 +1,16 @@
-// S18, S19 and H3: the same run twice, on several threads, and by another method.
+// S18, S19 and H3: the same run twice, in another process, on several threads, and by another method.
+#include "mesh/formats/whole_file.hpp"
 #include "scene/build.hpp"
 #include "scene/stress/subject.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 namespace coapt {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char* kDiffering = "numbers that differ";
 
@@ -27,6 +32,56 @@ StressOutcome same_bits(StressSubject& subject) {
   if (is_out_of_time(own) || is_out_of_time(solved))
     return outcome_of(solved, StressVerdict::Stall, solved.result.message);
   return measured(solved, differing_numbers(solved, own), 0, "the two runs differ");
+}
+
+// What is not the same in two folders of results of one scene: positions and all fields in every bit, and
+// each of these figures.
+double differing_results(const fs::path& a, const fs::path& b) {
+  double different = formats::read_whole(a / "closed.vtp") != formats::read_whole(b / "closed.vtp");
+  const auto json_of = [](const fs::path& folder) {
+    return nlohmann::json::parse(formats::read_whole(folder / "result.json"));
+  };
+  const nlohmann::json one = json_of(a), other = json_of(b);
+  for (const char* key : {"status", "energy", "residual", "iterations", "metrics"})
+    different += one.at(key) != other.at(key);
+  return different;
+}
+
+// As `coapt solve` does it, here and there.
+StressOutcome same_bits_apart(StressSubject& subject) {
+  const StressOptions& options = subject.bench.options();
+  if (!options.solve_apart)
+    return {StressVerdict::NotApplicable,
+            {},
+            {},
+            "there is no command that could solve it in a process of its own"};
+  const Scene& scene = own_scene(subject).scene;
+  const fs::path folder = options.folder / "S18", here = folder / "here", there = folder / "there";
+  RunOptions run_options;
+  run_options.factorisations = options.factorisations;
+  run_options.judge = options.judge;
+  run_options.max_seconds = options.row_seconds;
+  run_options.folder = here;
+  run_options.writes_page = false;
+  run_options.observer = [&options](const Iteration&, const Vector&) {
+    return !options.is_cancelled || !options.is_cancelled();
+  };
+  const RunReport own = run(load_scene(scene.file), options.solvers, run_options);
+  options.solve_apart(scene.file, there, options.row_seconds);
+  const Result& result = own.report.result;
+  if (!fs::exists(there / "result.json"))
+    return {StressVerdict::Fail, {}, {}, "the process of its own left no result"};
+  const double different = differing_results(here, there);
+  fs::remove_all(folder);
+  StressOutcome outcome{
+      StressVerdict::Stall, {}, {}, result.message, std::string(status_name(result.status)), result.residual,
+      result.iterations};
+  if (result.status == Status::TimeLimit) return outcome;
+  outcome.figure = different;
+  outcome.limit = 0;
+  outcome.verdict = different == 0 ? StressVerdict::Pass : StressVerdict::Fail;
+  if (different != 0) outcome.message = "a process of its own finds something else";
+  return outcome;
 }
 
 // Elements of the largest term. ElementTerm shares out the elements of one batch after the other.
@@ -75,8 +130,11 @@ StressOutcome same_bits_on_threads(StressSubject& subject) {
 }  // namespace
 
 std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
-  std::vector<StressRow> rows = {{"S18", subject->name, "the same run again", kDiffering, "", true,
-                                  [subject] { return same_bits(*subject); }}};
+  std::vector<StressRow> rows = {
+      {"S18", subject->name, "the same run again", kDiffering, "", true,
+       [subject] { return same_bits(*subject); }},
+      {"S18", subject->name, "the same run in a process of its own", "results that differ", "", true,
+       [subject] { return same_bits_apart(*subject); }}};
   for (const std::string solver : {"newton", "lbfgs"}) {
     if (!subject->bench.has_solver(solver)) continue;
     rows.push_back({"H3", subject->name, "by " + solver, kDistanceFromOwn, "", true,

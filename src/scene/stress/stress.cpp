@@ -21,7 +21,7 @@ std::vector<StressRow> subject_rows(const SubjectPointer& subject) {
        {frame_rows, number_rows, start_rows, promise_rows, collision_rows, failure_rows, interrupt_rows,
         repetition_rows, thread_rows, input_rows, descent_rows, derivative_rows, size_rows})
     append(rows, family(subject));
-  for (StressRow& row : rows) row.view = [subject] { return own_view(*subject); };
+  for (StressRow& row : rows) row.shown = [subject] { return own_solve(*subject); };
   return rows;
 }
 
@@ -153,7 +153,7 @@ std::vector<StressRow> stress_rows(const StressOptions& options) {
        {load_rows, line_rows, sheet_rows, lost_rows, degenerate_rows, folded_rows, tunnelling_rows})
     for (const BuiltRow& row : family()) rows.push_back(row_of(bench, row));
   append(rows, collision_query_rows());
-  for (const auto& family : {bad_input_rows, random_scene_rows, large_scene_rows})
+  for (const auto& family : {bad_input_rows, random_scene_rows, large_scene_rows, coincident_rows})
     append(rows, family(bench));
   for (const bool has_contact : {false, true}) {
     const auto subject = std::make_shared<StressSubject>();
@@ -193,10 +193,8 @@ StressMatrix run_stress(const std::vector<StressRow>& rows, const StressOptions&
     if (options.report) options.report(matrix.results.back());
   }
   // The last that was solved: of the built-in scenes the valve with contact.
-  for (auto row = rows.rbegin(); row != rows.rend() && !matrix.view; ++row) {
-    if (row->view) matrix.view = row->view();
-    if (matrix.view) matrix.view_scene = row->scene;
-  }
+  for (auto row = rows.rbegin(); row != rows.rend() && !matrix.shown; ++row)
+    if (row->shown) matrix.shown = row->shown();
   return matrix;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scene/run.hpp"
-#include "scene/shape_view.hpp"
+#include "scene/solve_page.hpp"
 
 #include <functional>
 #include <optional>
@@ -44,7 +44,7 @@ struct StressRow {
   bool is_quick = false;
   std::function<StressOutcome()> run;
   // The scene's own solution to look at, where a row has asked for it; may be empty.
-  std::function<std::optional<ShapeView>()> view = {};
+  std::function<std::optional<ShownSolve>()> shown = {};
 };
 
 struct StressResult {
@@ -58,8 +58,7 @@ struct StressMatrix {
   double row_seconds = 0;               // time limit of each solve
   std::vector<StressResult> results;
   bool is_cancelled = false;
-  std::optional<ShapeView> view;  // a solution that rows were compared with
-  std::string view_scene;         // name of its scene in the table
+  std::optional<ShownSolve> shown;  // a solution that rows were compared with
 
   int count(StressVerdict verdict) const;
   bool has_failed() const { return count(StressVerdict::Fail) > 0; }
@@ -74,6 +73,10 @@ struct StressOptions {
   SolverTable solvers = built_in_solvers();  // "newton" and "lbfgs" are used where they are there
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
   IntersectionJudge judge;
+  // Solves the scene file in a process of its own and writes the results into the folder, within so many
+  // seconds; empty: the row that needs it means nothing.
+  std::function<void(const std::filesystem::path& scene, const std::filesystem::path& folder, double seconds)>
+      solve_apart;
   std::function<bool()> is_cancelled;               // asked at each iterate; may be empty
   std::function<void(const StressResult&)> report;  // called after each row; may be empty
 };

@@ -103,12 +103,6 @@ PageSection reading_section() {
                  {"n/a: the row means nothing for this scene, or the scene is refused with the reason."}}}}};
 }
 
-PageSection shape_section(const StressMatrix& matrix) {
-  return {
-      "The scene's own solution",
-      {PageText{matrix.view_scene + ": what the rows are compared with."}, shape_view_html(*matrix.view)}};
-}
-
 }  // namespace
 
 std::string stress_json(const StressMatrix& matrix) { return json_text(matrix_json(matrix), 2) + "\n"; }
@@ -162,7 +156,7 @@ std::string stress_page(const StressMatrix& matrix) {
     page.sections.push_back({"Failures", {std::move(failed)}});
   }
   page.sections.push_back(reading_section());
-  if (matrix.view) page.sections.push_back(shape_section(matrix));
+  if (matrix.shown) page.sections.push_back(shape_section("The scene's own solution", *matrix.shown));
   PageSection all{"The matrix", {}};
   for (size_t k = 0; k < matrix.results.size();) {
     const std::string& id = matrix.results[k].row.id;
@@ -172,6 +166,8 @@ std::string stress_page(const StressMatrix& matrix) {
       rows.push_back(page_row(matrix.results[k]));
   }
   page.sections.push_back(std::move(all));
+  if (matrix.shown)
+    page.sections.insert(page.sections.end(), matrix.shown->account.begin(), matrix.shown->account.end());
   page.footer = "Time limit of each solve: " + page_number(matrix.row_seconds) + " s.";
   return report_page(page);
 }

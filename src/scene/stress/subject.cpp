@@ -1,7 +1,5 @@
 #include "scene/stress/subject.hpp"
 
-#include "scene/solve_view.hpp"
-
 #include <algorithm>
 
 namespace coapt {
@@ -48,7 +46,7 @@ const StressScene& own_scene(StressSubject& subject) {
 }
 
 Stressed& own_solution(StressSubject& subject) {
-  if (!subject.solution) subject.solution = subject.bench.solve(own_scene(subject));
+  if (!subject.solution) subject.solution = subject.bench.solve(own_scene(subject), {.keeps_way = true});
   return *subject.solution;
 }
 
@@ -60,17 +58,24 @@ std::optional<StressOutcome> no_yardstick(StressSubject& subject) {
   return outcome;
 }
 
-std::optional<ShapeView> own_view(const StressSubject& subject) {
-  if (!has_shape_view() || !subject.solution || !subject.solution->x.allFinite()) return std::nullopt;
+std::optional<ShownSolve> own_solve(const StressSubject& subject) {
+  if (!subject.solution || !subject.solution->x.allFinite()) return std::nullopt;
   const Stressed& own = *subject.solution;
+  const Scene& scene = subject.scene->scene;
   Report report;
+  report.scene_file = subject.name;
+  report.solver = scene.solver.type;
+  report.tolerance = scene.solver.tolerance;
+  report.pressure_route = pressure_route(own.model, own.result);
   report.result = own.result;
   report.fields = compute_fields(own.model, own.x);
   report.metrics = measure(own.model, own.result.q, report.fields, subject.bench.options().judge);
-  report.way = {{{}, own.model.X}};
-  ShapeView view = solved_view(own.model, report);
-  view.name = "stress";
-  return view;
+  report.warnings = own.model.warnings;
+  report.way = own.way;
+  if (report.way.empty()) report.way = {{{}, own.model.X}};
+  ShownSolve shown = shown_solve(subject.name + ": what the rows are compared with.", own.model, report);
+  shown.view.name = "stress";
+  return shown;
 }
 
 StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x,

@@ -28,9 +28,8 @@ Stressed& own_solution(StressSubject& subject);
 
 double extent_of(StressSubject& subject);  // diagonal of the box around all nodes at rest [mm]
 
-// The own solution to look at, from rest to the end; nothing where no row has asked for it, or this build
-// draws no shapes.
-std::optional<ShapeView> own_view(const StressSubject& subject);
+// The own solution to look at; nothing where no row has asked for it.
+std::optional<ShownSolve> own_solve(const StressSubject& subject);
 
 // Judges a solve that must end in the scene's own shape. x: its shape in the frame of the scene, relative to
 // the origin there [mm]; energy_unit: what an energy there is in the solve. Figure: the largest distance of a
