@@ -107,16 +107,17 @@ py::array response(Followed& self, const Numbers& change) {
 }
 
 py::array pull_back(Followed& self, const Numbers& weights) {
-  const Points columns = points_in(weights);
+  const auto columns = points_in(weights);
   return vector_array(self.at_work([&] { return self.equilibrium().pull_back(columns); }));
 }
 
 py::list switches(Followed& self, const Numbers& change) {
   const Vector along = vector_in(change);
-  py::list list;
-  for (const Switch& each : self.at_work([&] { return self.equilibrium().switches(along); }))
-    list.append(py::make_tuple(each.term, each.element, each.before, each.after));
-  return list;
+  return switch_list(self.at_work([&] { return self.equilibrium().switches(along); }));
+}
+
+py::list kinks(Followed& self) {
+  return switch_list(self.at_work([&]() -> std::vector<Switch> { return self.equilibrium().kinks(); }));
 }
 
 }  // namespace
@@ -131,6 +132,7 @@ void define_derivatives(py::class_<Followed, std::shared_ptr<Followed>>& type) {
       .def("metric_covariance", &metric_covariance, metrics, py::arg("covariance"))
       .def("response", &response, change)
       .def("pull_back", &pull_back, py::arg("weights"))
+      .def("kinks", &kinks)
       .def("switches", &switches, change);
 }
 

@@ -81,6 +81,7 @@ py::dict settle(Followed& followed) {
   dict["travel"] = settling.travel;
   dict["jump"] = settling.jump;
   dict["lost_branch"] = lost_branch_of(settling);
+  dict["switched"] = switch_list(settling.switched);
   return dict;
 }
 
@@ -143,6 +144,13 @@ py::array faces_of(const py::object& self) {
 }
 
 }  // namespace
+
+py::list switch_list(const std::vector<Switch>& switches) {
+  py::list list;
+  for (const Switch& each : switches)
+    list.append(py::make_tuple(each.term, each.element, each.before, each.after, each.is_kink));
+  return list;
+}
 
 void Followed::add(const std::vector<std::string>& names) {
   require_idle();

@@ -77,4 +77,7 @@ struct FigureOfMerit {
 void define_derivatives(py::class_<Followed, std::shared_ptr<Followed>>& type);
 void define_metrics(py::module_& module);
 
+// (term, element, before, after, is_kink) of each.
+py::list switch_list(const std::vector<Switch>& switches);
+
 }  // namespace coapt::python

@@ -6,30 +6,26 @@
 namespace coapt::python {
 namespace {
 
-Input input_of(std::optional<std::string> text, std::string file, const std::optional<Numbers>& vertices,
-               const std::optional<Corners>& triangles, std::vector<int> regions,
-               std::vector<std::string> region_names, const std::optional<Numbers>& start, py::list terms) {
-  Input input{std::move(text), std::move(file), {}, {}, std::move(terms)};
-  if (vertices && triangles)
-    input.mesh = TriangleMesh{points_in(*vertices), triangles_in(*triangles), std::move(regions),
-                              std::move(region_names)};
-  if (start) input.start = points_in(*start);
-  return input;
+Input input_of(std::optional<std::string> text, std::string file, std::optional<Numbers> vertices,
+               std::optional<Corners> triangles, std::vector<int> regions,
+               std::vector<std::string> region_names, std::optional<Numbers> start, py::list terms) {
+  return {std::move(text),    std::move(file),         std::move(vertices), std::move(triangles),
+          std::move(regions), std::move(region_names), std::move(start),    std::move(terms)};
 }
 
 }  // namespace
 
 Scene Input::scene() const {
   if (!text) return load_scene(file);
-  return mesh ? parse_scene_around_mesh(*text, file) : parse_scene(*text, file);
+  return vertices ? parse_scene_around_mesh(*text, file) : parse_scene(*text, file);
 }
 
 Given Input::given(Failure& failure) const {
   Given given;
-  given.mesh = mesh;
+  if (vertices) given.mesh = {points_in(*vertices), triangles_in(*triangles), regions, region_names};
   given.terms = terms_of(terms, failure);
   given.has_hessians = all_have_hessians(terms);
-  given.start = start;
+  if (start) given.start.emplace(points_in(*start));
   return given;
 }
 

@@ -2,6 +2,8 @@
 
 #include "core/timing.hpp"
 
+#include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace coapt::python {
@@ -41,20 +43,18 @@ py::array flags(const py::object& self, const std::vector<char>& values) {
 
 const Solution& in(const py::object& self) { return self.cast<const Solution&>(); }
 
+// The first two members of each line.
 py::array lines(const py::object& self) {
+  static_assert(std::is_standard_layout_v<Line> && offsetof(Line, a) == 0 &&
+                offsetof(Line, b) == sizeof(int));
   const std::vector<Line>& all = in(self).run.model.lines;
-  py::array_t<int> ends({all.size(), size_t{2}});
-  for (size_t k = 0; k < all.size(); ++k) {
-    ends.mutable_at(k, 0) = all[k].a;
-    ends.mutable_at(k, 1) = all[k].b;
-  }
-  return ends;
+  const int* first = all.empty() ? nullptr : &all.front().a;
+  return py::array_t<int>({all.size(), size_t{2}}, {sizeof(Line), sizeof(int)}, first, self);
 }
 
-py::array regimes(const Fields& fields) {
-  py::array_t<int> codes(fields.regime.size());
-  for (size_t k = 0; k < fields.regime.size(); ++k) codes.mutable_at(k) = static_cast<int>(fields.regime[k]);
-  return codes;
+py::array regimes(const py::object& self, const std::vector<MembraneRegime>& values) {
+  static_assert(std::is_same_v<std::underlying_type_t<MembraneRegime>, int>);
+  return py::array(py::dtype::of<int>(), {values.size()}, values.data(), self);
 }
 
 // Those that the scene has.
@@ -64,7 +64,7 @@ py::dict fields(const py::object& self) {
   all["displacement"] = rows<double>(self, found.displacement);
   if (found.principal_strain.cols() > 0) all["principal_strain"] = rows<double>(self, found.principal_strain);
   if (found.principal_stress.cols() > 0) all["principal_stress"] = rows<double>(self, found.principal_stress);
-  if (!found.regime.empty()) all["regime"] = regimes(found);
+  if (!found.regime.empty()) all["regime"] = regimes(self, found.regime);
   if (found.gap.size() > 0) {
     all["gap"] = numbers(self, found.gap);
     all["is_contact"] = flags(self, found.is_contact);

@@ -32,6 +32,8 @@ std::unique_ptr<EnergyTerm> make_contact_facet(std::string name, const Points&, 
                    "libnanoflann-dev and configure again with -DCOAPT_WITH_NANOFLANN=ON");
 }
 
+std::vector<FacetContact> facet_contacts(const EnergyTerm&, const Points&) { return {}; }
+
 #else
 
 namespace {
@@ -159,6 +161,20 @@ class ContactFacet final : public EnergyTerm {
     return energy;
   }
 
+  std::vector<FacetContact> contacts(const Points& x) const {
+    std::vector<FacetContact> found;
+    for (const auto& [j, k] : pairs_) {
+      const auto corners = [&](int t) { return Eigen::Matrix3d(x(Eigen::all, triangles_.col(t))); };
+      const Eigen::Matrix3d on_j = corners(j), on_k = corners(k);
+      FacetContact contact{j, k, 0, options_.exponent > 2};
+      for (const QuadraturePoint& p : rule_)
+        for (const QuadraturePoint& q : rule_)
+          contact.point_pairs += (on_j * p.barycentric - on_k * q.barycentric).norm() < options_.range;
+      if (contact.point_pairs > 0) found.push_back(contact);
+    }
+    return found;
+  }
+
  private:
   struct Pair {
     int j, k;
@@ -282,6 +298,11 @@ class ContactFacet final : public EnergyTerm {
 };
 
 }  // namespace
+
+std::vector<FacetContact> facet_contacts(const EnergyTerm& term, const Points& x) {
+  const auto* contact = dynamic_cast<const ContactFacet*>(&term);
+  return contact == nullptr ? std::vector<FacetContact>{} : contact->contacts(x);
+}
 
 std::unique_ptr<EnergyTerm> make_contact_facet(std::string name, const Points& X, const Triangles& triangles,
                                                const ContactFacetOptions& options) {

@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace coapt {
 
@@ -34,5 +35,16 @@ double contact_facet_strength(double pressure, double range, int exponent, doubl
 // InputError. Throws InputError when an option is out of range, naming it.
 std::unique_ptr<EnergyTerm> make_contact_facet(std::string name, const Points& X, const Triangles& triangles,
                                                const ContactFacetOptions& options);
+
+// Two facets of which some quadrature points are within range of each other.
+struct FacetContact {
+  int first = 0, second = 0;  // numbers of the facets, ascending
+  int point_pairs = 0;        // within range
+  bool is_smooth = true;      // the repulsion begins with two continuous derivatives: from exponent 3 on
+};
+
+// All of them at x (3 x node_count), in ascending order; none for a term that make_contact_facet() has not
+// made. Pre: the term was prepared for positions near x.
+std::vector<FacetContact> facet_contacts(const EnergyTerm& term, const Points& x);
 
 }  // namespace coapt

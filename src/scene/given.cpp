@@ -7,7 +7,7 @@
 
 namespace coapt {
 
-Points relative_start(const Points& start, const Model& model) {
+Points relative_start(const Eigen::Map<const Points>& start, const Model& model) {
   if (start.cols() != model.X.cols())
     throw InputError("start: has " + std::to_string(start.cols()) + " nodes; the scene has " +
                      std::to_string(model.X.cols()));

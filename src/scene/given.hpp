@@ -21,9 +21,10 @@ using GivenTerms = std::function<std::vector<std::unique_ptr<EnergyTerm>>(const 
 struct Given {
   std::optional<TriangleMesh> mesh = {};  // [mm]; empty: the scene's file
   GivenTerms terms = {};
-  bool has_hessians = true;          // of all given terms; otherwise the result gets no certificate
-  std::optional<Points> start = {};  // 3 x node_count, in the coordinates of the input [mm]; the supports
-                                     // stand where their motion ends. Empty: the scene's own start.
+  bool has_hessians = true;  // of all given terms; otherwise the result gets no certificate
+  // 3 x node_count, in the coordinates of the input [mm]; the supports stand where their motion ends. Looked
+  // at where it is. Empty: the scene's own start.
+  std::optional<Eigen::Map<const Points>> start = {};
   std::function<Observer(const Model& model)> observer =
       {};  // asked for once, instead of RunOptions::observer
 };

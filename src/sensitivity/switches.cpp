@@ -1,6 +1,7 @@
 #include "sensitivity/switches.hpp"
 
 #include "energy/contact_barrier.hpp"
+#include "energy/contact_facet.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/kernels/cable_law.hpp"
 #include "energy/kernels/cst_fibrous.hpp"
@@ -10,7 +11,9 @@
 #include "energy/kernels/tether_cubic.hpp"
 #include "sensitivity/detail/element_visit.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <tuple>
 
 namespace coapt {
 namespace {
@@ -25,6 +28,13 @@ double onset(const TetherCubic::Rest&) { return 0; }
 template <typename Rest>
 double onset(const Rest& rest) {
   return rest.smoothing * rest.length;
+}
+
+// Lines whose stiffness is continuous where their tension begins.
+bool begins_softly(const TetherCubic::Rest&) { return true; }
+template <typename Rest>
+bool begins_softly(const Rest& rest) {
+  return onset(rest) > 0;
 }
 
 // Lines whose law does not change: springs both ways, constant forces.
@@ -43,13 +53,13 @@ bool relaxes(const Rest& rest) {
 bool relaxes(const CstTensionField::Rest&) { return true; }
 
 template <typename Rest>
-std::string line_state(const Rest& rest, const Eigen::Vector<double, 6>& x) {
+std::string_view line_state(const Rest& rest, const Eigen::Vector<double, 6>& x) {
   const double elongation = (x.tail<3>() - x.head<3>()).norm() - rest.length;
   if (elongation <= 0) return "slack";
   return elongation < onset(rest) ? "rounded" : "taut";
 }
 
-std::string regime_name(MembraneRegime regime) {
+std::string_view regime_name(MembraneRegime regime) {
   switch (regime) {
     case MembraneRegime::Slack:
       return "slack";
@@ -61,7 +71,7 @@ std::string regime_name(MembraneRegime regime) {
   return "";
 }
 
-std::string contact_kind(const BarrierContact& contact) {
+std::string_view contact_kind(const BarrierContact& contact) {
   const auto bits = [&](int mask) { return std::popcount(static_cast<unsigned>(contact.inside & mask)); };
   if (!contact.is_edge_edge) {
     const int corners = bits(0b1110);
@@ -71,41 +81,82 @@ std::string contact_kind(const BarrierContact& contact) {
   return ends == 4 ? "edge on edge" : ends == 3 ? "point on edge" : "point on point";
 }
 
+bool comes_before(const ElementState& a, const ElementState& b) {
+  return std::tie(a.term, a.element) < std::tie(b.term, b.element);
+}
+
 }  // namespace
 
 ElementStates element_states(const Objective& objective, const Points& x) {
   ElementStates found;
-  for (const auto& term : objective.terms()) {
-    const auto note = [&](size_t e, const std::string& state) {
-      found.states[{term->name(), {static_cast<int>(e), 0, 0, 0}}] = {state, 0};
+  for (size_t k = 0; k < objective.terms().size(); ++k) {
+    EnergyTerm& term = *objective.terms()[k];
+    const int number = static_cast<int>(k);
+    const auto note = [&](size_t e, std::string_view name, bool is_smooth) {
+      found.push_back({.term = number,
+                       .element = {static_cast<int>(e), 0, 0, 0},
+                       .name = name,
+                       .changes_smoothly = is_smooth});
     };
-    visit_element_term(Lines{}, *term, [&](const auto& lines) {
+    visit_element_term(Lines{}, term, [&](const auto& lines) {
       for (size_t e = 0; e < lines.rest().size(); ++e)
         if (!is_one_law(lines.rest()[e]))
-          note(e, line_state(lines.rest()[e], element_positions(lines, e, x)));
+          note(e, line_state(lines.rest()[e], element_positions(lines, e, x)),
+               begins_softly(lines.rest()[e]));
     });
-    visit_element_term(RelaxingMembranes{}, *term, [&]<typename Kernel>(const ElementTerm<Kernel>& membrane) {
+    visit_element_term(RelaxingMembranes{}, term, [&]<typename Kernel>(const ElementTerm<Kernel>& membrane) {
       for (size_t e = 0; e < membrane.rest().size(); ++e)
         if (relaxes(membrane.rest()[e]))
-          note(e, regime_name(Kernel::state(membrane.rest()[e], element_positions(membrane, e, x)).regime));
+          note(e, regime_name(Kernel::state(membrane.rest()[e], element_positions(membrane, e, x)).regime),
+               false);
     });
-    for (const BarrierContact& contact : barrier_contacts(*term, x))
-      found.states[{term->name(), contact.nodes}] = {contact_kind(contact), contact.inside};
+    for (const BarrierContact& contact : barrier_contacts(term, x))
+      found.push_back({number, contact.nodes, contact_kind(contact), contact.inside, false, true});
+    for (const FacetContact& contact : facet_contacts(term, x))
+      found.push_back({number,
+                       {contact.first, contact.second, 0, 0},
+                       "within range",
+                       contact.point_pairs,
+                       contact.is_smooth,
+                       contact.is_smooth});
+  }
+  std::sort(found.begin(), found.end(), comes_before);  // contacts come in the order of their list
+  return found;
+}
+
+std::vector<Switch> switches_between(const Objective& objective, const ElementStates& before,
+                                     const ElementStates& after) {
+  std::vector<Switch> found;
+  const auto add = [&](const ElementState& element, std::string_view was, std::string_view is,
+                       bool is_smooth) {
+    found.push_back({objective.terms()[static_cast<size_t>(element.term)]->name(), element.element[0],
+                     std::string(was), std::string(is), !is_smooth});
+  };
+  auto a = before.begin(), b = after.begin();
+  while (a != before.end() || b != after.end()) {
+    if (b == after.end() || (a != before.end() && comes_before(*a, *b))) {
+      add(*a, a->name, "apart", a->begins_smoothly);
+      ++a;
+    } else if (a == before.end() || comes_before(*b, *a)) {
+      add(*b, "apart", b->name, b->begins_smoothly);
+      ++b;
+    } else {
+      if (a->name != b->name || a->detail != b->detail) add(*a, a->name, b->name, a->changes_smoothly);
+      ++a;
+      ++b;
+    }
   }
   return found;
 }
 
-std::vector<Switch> switches_between(const ElementStates& before, const ElementStates& after) {
-  std::vector<Switch> found;
-  for (const auto& [key, state] : before.states) {
-    const auto other = after.states.find(key);
-    if (other == after.states.end())
-      found.push_back({key.term, key.element[0], state.name, "apart"});
-    else if (other->second.name != state.name || other->second.nodes != state.nodes)
-      found.push_back({key.term, key.element[0], state.name, other->second.name});
-  }
-  for (const auto& [key, state] : after.states)
-    if (!before.states.contains(key)) found.push_back({key.term, key.element[0], "apart", state.name});
+std::vector<Switch> kinks_at(const Objective& objective, const Points& x) {
+  constexpr double kBillionth = 1e-9;
+  if (x.cols() == 0) return {};
+  const Vec3 centre = x.rowwise().mean();
+  const Points growth = kBillionth * (x.colwise() - centre);
+  std::vector<Switch> found = switches_between(objective, element_states(objective, x - growth),
+                                               element_states(objective, x + growth));
+  std::erase_if(found, [](const Switch& each) { return !each.is_kink; });
   return found;
 }
 

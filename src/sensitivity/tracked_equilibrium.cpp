@@ -214,6 +214,11 @@ Settling TrackedEquilibrium::settle_at(const Vector& now) {
         "; the shape has changed to another branch of equilibria: when the change was undone, it "
         "came back " +
         number(report.lost_branch->distance) + " away from where it was";
+  if (report.status == Status::Converged) {
+    ElementStates states = element_states(objective_, positions());
+    if (states_) report.switched = switches_between(objective_, *states_, states);
+    states_ = std::move(states);
+  }
   report.seconds = wall_seconds() - start;
   return report;
 }
@@ -222,6 +227,7 @@ Settling TrackedEquilibrium::settle_at(const Vector& now) {
 Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted) {
   Settling report;
   is_settled_ = is_tangent_ready_ = false;
+  kinks_.reset();
   settled_value_ = value();
   if (!move_quickly(predicted, report)) {
     report.is_quick = false;
@@ -330,7 +336,7 @@ std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, co
   return std::nullopt;
 }
 
-Vector TrackedEquilibrium::pull_back(const Points& weights) {
+Vector TrackedEquilibrium::pull_back(const Eigen::Ref<const Points>& weights) {
   require_settled();
   ready_tangent();
   const Points x = positions(), none = Points::Zero(3, x.cols());
@@ -368,7 +374,14 @@ Derivatives TrackedEquilibrium::derivatives(const Metric& metric) {
   result.gradient = pull_back(by_x);
   result.gradient += partial(metric, x);
   result.residual = adjoint_residual_;
+  result.kinks = kinks();
   return result;
+}
+
+const std::vector<Switch>& TrackedEquilibrium::kinks() {
+  require_settled();
+  if (!kinks_) kinks_ = kinks_at(objective_, positions());
+  return *kinks_;
 }
 
 Points TrackedEquilibrium::response(const Vector& change) {
@@ -453,7 +466,7 @@ std::vector<Switch> TrackedEquilibrium::switches(const Vector& change) {
   };
   const ElementStates before = states_at(-1), after = states_at(1);
   assign(here);
-  return switches_between(before, after);
+  return switches_between(objective_, before, after);
 }
 
 }  // namespace coapt

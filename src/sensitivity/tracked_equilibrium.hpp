@@ -13,8 +13,9 @@
 //
 // Derivatives hold where the energy is twice differentiable at the equilibrium: not where a chord without
 // smoothing becomes taut, a membrane leaves a regime of its tension field, or the closest features of a
-// contact change. switches() says what is about to do so. The exact tangent is used, not symmetric under
-// pressure on free edges, contact included. Contact by a barrier keeps its stiffness and ranges.
+// contact change. settle() says what has done so, derivatives() what stands there, switches() what is about
+// to. The exact tangent is used, not symmetric under pressure on free edges, contact included. Contact by a
+// barrier keeps its stiffness and ranges.
 //
 // An object serves one thread, and has no state outside itself and its objective: several may run side by
 // side, each with an objective of its own, and give the same bits.
@@ -62,6 +63,9 @@ struct Settling {
   double travel = 0;     // greatest displacement of a node [length]
   double jump = 0;       // greatest distance of a node from the linear prediction [length]
   std::optional<LostBranch> lost_branch;
+  // What has another state than in the shape that was settled before: on the way between the two derivatives
+  // have a kink. Empty for the first shape, and for one that did not converge.
+  std::vector<Switch> switched;
   double seconds = 0;  // wall time, the check of the branch included
 };
 
@@ -69,6 +73,8 @@ struct Derivatives {
   double value = 0;
   Vector gradient;      // by every number
   double residual = 0;  // of the adjoint system, relative
+  // What stands at a kink (switches.hpp): of it the derivative holds on one side at best.
+  std::vector<Switch> kinks;
 };
 
 class TrackedEquilibrium {
@@ -108,7 +114,7 @@ class TrackedEquilibrium {
   // dx/d(numbers) change, 3 x node_count, and its transpose: the derivative of any function of the shape
   // whose derivative by x is `weights`.
   Points response(const Vector& change);
-  Vector pull_back(const Points& weights);
+  Vector pull_back(const Eigen::Ref<const Points>& weights);
 
   // One row for each metric, by as many linear systems as there are metrics or numbers, whichever are fewer.
   // Asks the observer before each, and throws InputError where it says no.
@@ -121,6 +127,9 @@ class TrackedEquilibrium {
   // First-order covariance of metrics from that of the numbers (covariance.hpp).
   Eigen::MatrixXd metric_covariance(const std::vector<const Metric*>& metrics,
                                     const Eigen::MatrixXd& covariance);
+
+  // What stands at a kink. Looked for once for each shape.
+  const std::vector<Switch>& kinks();
 
   // What switches between the shapes that the linear prediction gives for value() - change and + change:
   // derivatives along it have a kink there. A change as small as the accuracy of the numbers tells whether
@@ -158,7 +167,9 @@ class TrackedEquilibrium {
   std::vector<int> first_;
   int number_count_ = 0;
   Vector q_;
-  Vector settled_value_;  // numbers at the last settle()
+  Vector settled_value_;                      // numbers at the last settle()
+  std::optional<ElementStates> states_;       // of the shape settled last
+  std::optional<std::vector<Switch>> kinks_;  // of this shape, once they were looked for
   double adjoint_residual_ = 0;
   bool is_settled_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
   TangentSystem system_;

@@ -4,6 +4,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -157,6 +158,41 @@ def test_switches_name_what_is_about_to_change(eq):
     assert {"chords", "contact_barrier"} <= {each.term for each in found}
     assert all(each.before != each.after for each in found if each.term == "chords")
     assert eq.switches(1e-13 * change) == []
+
+
+def test_kinks_are_told_without_being_asked_for(eq):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        eq.value_and_grad(MeanSquare())  # rounded chords have none
+    assert eq.kinks() == []
+
+    scene = scene_file().with_name("sharp.json")
+    scene.write_text(scene_file().read_text().replace('"type": "cable",', '"type": "cable", "smoothing": 0,'))
+    sharp = coapt.Equilibrium(scene, ["chords.lengths"], tol=1e-9)
+    assert sharp.settle().success
+    ends, lengths = sharp.lines["chords"], sharp["chords.lengths"]
+    apart = np.linalg.norm(sharp.x[ends[:, 0]] - sharp.x[ends[:, 1]], axis=1)
+    is_slack = apart < 0.999 * lengths
+    # A slack chord at a branch point that taut ones hold: its length moves nothing as long as it is slack.
+    slack = next(k for k in np.flatnonzero(is_slack) if not any(
+        is_slack[other] for other in range(len(ends)) if other != k and ends[k, 0] in ends[other]))
+
+    def found(switches):
+        return [each[2:] for each in switches if each[:2] == ("chords", slack)]
+
+    assert found(sharp.kinks()) == []
+    lengths[slack] = apart[slack]
+    sharp["chords.lengths"] = lengths
+    assert sharp.settle().success
+    assert found(sharp.kinks()) == [("slack", "taut", True)]
+    with pytest.warns(coapt.KinkWarning, match="chords, element .*: stands between slack and taut"):
+        sharp.value_and_grad(metrics.strain_energy(sharp))
+
+    lengths[slack] = 0.97 * apart[slack]
+    sharp["chords.lengths"] = lengths
+    settling = sharp.settle()
+    assert settling.success and found(settling.switched)[0][1:] == ("taut", True)
+    assert found(sharp.kinks()) == []
 
 
 def test_several_threads_give_the_same_bits():

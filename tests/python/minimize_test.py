@@ -1,10 +1,13 @@
 """Meshes in memory: answers, shapes of results, callbacks and errors."""
+import os
 import pickle
+import sys
 
 import numpy as np
 import pytest
 
 import coapt
+from coapt import _core
 from meshes import ELASTIC, PRESSURE, disc, square
 
 TERMS = [ELASTIC, PRESSURE]
@@ -147,3 +150,32 @@ def test_bad_input_names_the_argument_and_what_was_expected(arguments, pieces):
         coapt.minimize(**{"V": V, "F": F, "terms": TERMS, "fixed": "boundary", **arguments})
     for piece in pieces:
         assert piece in str(caught.value)
+
+
+def resident_mb():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def test_arrays_go_in_without_a_copy():
+    V, F = np.ones((2_000_000, 3)), np.zeros((1_000_000, 3), np.int32)
+    F[:] = [0, 1, 2]
+    before, counts = resident_mb(), (sys.getrefcount(V), sys.getrefcount(F))
+    given = _core.Input(text="{}", file="scene", vertices=V, triangles=F, regions=[], region_names=[], start=V, terms=[])
+    assert (sys.getrefcount(V), sys.getrefcount(F)) == (counts[0] + 2, counts[1] + 1)  # they themselves are kept
+    assert resident_mb() - before < 5, "of 108 MB"
+    del given
+
+
+def test_arrays_come_out_without_a_copy():
+    membrane = {**ELASTIC, "type": "cst_tension_field"}
+    result = coapt.minimize(*disc(4), [membrane, PRESSURE, {"type": "cable", "edges": "boundary", "tension": "1 mN"}],
+                            fixed="boundary")
+    arrays = {"lines": result.lines, "faces": result.faces, "reactions": result.reactions, **result.fields}
+    assert {"regime", "line_force", "displacement"} <= arrays.keys()
+    for name, array in arrays.items():
+        assert array.base is not None and not array.flags.owndata, name
+    assert result.lines.shape == (24, 2) and (result.lines >= 0).all()
+    rim = np.hypot(*result.x[:, :2].T) > 9.999
+    assert rim[result.lines].all() and rim.sum() == 24 == len(np.unique(result.lines))
+    assert result.fields["regime"].dtype == np.int32 and set(np.unique(result.fields["regime"])) <= {0, 1, 2}

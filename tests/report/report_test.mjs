@@ -22,15 +22,19 @@ const executablePath = browsers.find(path => existsSync(path));
 if (!executablePath) skip("no Chromium; install the package chromium");
 const { chromium } = await import("playwright-core").catch(() => skip("no playwright-core; run npm ci in tests/report"));
 
+function finished(...words) {
+  try {
+    execFileSync(coapt, words, { stdio: "pipe" });
+  } catch (error) {
+    if (error.status !== 1) throw error;  // 1: not converged, the result is there
+  }
+}
+
 function solved(name, shape, ...options) {
   const folder = join(scratch, name);
   mkdirSync(folder, { recursive: true });
   execFileSync(coapt, ["generate", ...shape, "-o", folder]);
-  try {
-    execFileSync(coapt, ["solve", join(folder, "scene.json"), ...options], { stdio: "pipe" });
-  } catch (error) {
-    if (error.status !== 1) throw error;  // 1: not converged, the result is there
-  }
+  finished("solve", join(folder, "scene.json"), ...options);
   return join(folder, "result");
 }
 
@@ -42,7 +46,7 @@ const kPatience = 120000;  // ms: pictures are drawn by the processor, which oth
 // The page of another command on a scene.
 function written(file, scene, command, ...options) {
   const folder = join(scratch, command);
-  execFileSync(coapt, [command, scene, "-o", folder, ...options], { stdio: "pipe" });
+  finished(command, scene, "-o", folder, ...options);
   return join(folder, file);
 }
 
@@ -156,6 +160,18 @@ const tests = {
     const around = vtp.triangles.flatMap((corner, k) => corner === touching ? [Math.floor(k / 3)] : []);
     const strain = around.reduce((sum, t) => sum + vtp.cells.principal_strain_1[vtp.lineCount + t], 0) / around.length;
     near(await shownValue(page, "Greater principal strain"), strain, 4);
+  },
+
+  async "picking shows the extremes of result.json"({ page, vtp, folder }) {
+    const { metrics } = JSON.parse(readFileSync(join(folder, "result.json")));
+    const vertices = Math.max(...vtp.triangles) + 1;
+    const moved = Array.from({ length: vertices }, (_, n) => Math.hypot(...vtp.points.displacement.slice(3 * n, 3 * n + 3)));
+    await pick(page, moved.indexOf(Math.max(...moved)));
+    near(await shownValue(page, "Displacement"), metrics.max_displacement_mm, 5);
+    const force = vtp.cells.line_force_n.slice(0, vtp.lineCount);
+    await pick(page, vtp.lines[2 * force.indexOf(Math.max(...force))]);
+    const forces = await page.locator("#values tr", { has: page.locator("th", { hasText: "Chord or cable" }) }).locator("td").allTextContents();
+    near(String(Math.max(...forces.map(parseFloat))), metrics.max_chord_force_n, 5);
   },
 
   async "a click picks what lies there, and nothing beside it"({ page, vtp }) {
@@ -351,6 +367,10 @@ await run("10,000 triangles take less than 5 MB", async () => {
     const size = statSync(join(folder, "report.html")).size;
     assert.ok(size > 1e6 && size < 5e6, shape + ": " + size + " bytes");
   }
+  // Of every method there is.
+  const page = written("report.html", join(scratch, "large_mitral", "scene.json"), "compare", "--max-seconds", "1");
+  const size = statSync(page).size;
+  assert.ok(size > 2e6 && size < 5e6, "compare: " + size + " bytes");
 });
 await browser.close();
 process.exit(failures === 0 ? 0 : 1);

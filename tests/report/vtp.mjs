@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 
 const kinds = { Float64: [8, "getFloat64"], Int64: [8, "getBigInt64"], Int32: [4, "getInt32"] };
 
-// { points: {name: numbers}, cells: {...}, Points, lineCount }; arrays of several components stay flat.
+// { points: {name: numbers}, cells: {...}, Points, triangles, lines, lineCount }; arrays of several components stay flat.
 export function readVtp(path) {
   const bytes = readFileSync(path), begin = bytes.indexOf("<AppendedData"), first = bytes.indexOf("_", begin) + 1;
   const head = bytes.subarray(0, begin).toString();
@@ -20,5 +20,5 @@ export function readVtp(path) {
     return found;
   };
   return { points: arrays("PointData"), cells: arrays("CellData"), Points: arrays("Points").Points,
-           triangles: arrays("Polys").connectivity, lineCount: Number(/NumberOfLines="(\d+)"/.exec(head)[1]) };
+           triangles: arrays("Polys").connectivity, lines: arrays("Lines").connectivity, lineCount: Number(/NumberOfLines="(\d+)"/.exec(head)[1]) };
 }

@@ -1,4 +1,6 @@
 // Warm solves, kinks, lost branches, threads, and what is refused.
+#include "core/components.hpp"
+#include "energy/contact_facet.hpp"
 #include "energy/kernels/spring.hpp"
 #include "energy/load_dead.hpp"
 #include "sensitivity/covariance.hpp"
@@ -8,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 namespace coapt {
@@ -136,26 +139,41 @@ TEST(TrackedEquilibrium, ReportsTheBranchThatASnapLeaves) {
   EXPECT_LT(truss.equilibrium.positions()(2, 2), 0) << "the check leaves the shape where it was";
 }
 
-// A weight on two cables: the slack one becomes taut when it is shortened to the distance of its ends.
+// A weight on two cables, the second one slack as long as it is longer than its ends are apart.
+struct TwoCables {
+  static Points rest() {
+    Points x(3, 3);
+    x << 0, 0.5, 0, 0, 0, 0, 1, 1, 0;
+    return x;
+  }
+  static Points forces() {
+    Points f = Points::Zero(3, 3);
+    f(2, 2) = -0.01;
+    return f;
+  }
+
+  TwoCables() {
+    equilibrium.add(make_line_lengths("lengths", cables(), single_lines(cables()), LengthMeasure::Length));
+  }
+  EnergyTerm& cables() { return *objective.terms().back(); }  // loads stand first
+
+  Objective objective{
+      rest(), fixed_nodes(3, {0, 1}),
+      terms_of(cable_term((Segments(2, 2) << 0, 1, 2, 2).finished(), 1, Eigen::Vector2d(1, 1.3)),
+               std::make_unique<LoadDead>("load", "load_field", forces(), rest()))};
+  TrackedEquilibrium equilibrium{objective, objective.unknowns(rest()), {.tolerance = 1e-12}};
+};
+
+// The slack cable becomes taut when it is shortened to the distance of its ends.
 TEST(TrackedEquilibrium, ReportsAKink) {
-  const Points x = (Points(3, 3) << 0, 0.5, 0, 0, 0, 0, 1, 1, 0).finished();
-  Points forces = Points::Zero(3, 3);
-  forces(2, 2) = -0.01;
-  const Segments ends = (Segments(2, 2) << 0, 1, 2, 2).finished();
-  Objective objective(x, fixed_nodes(3, {0, 1}),
-                      terms_of(cable_term(ends, 1, Eigen::Vector2d(1, 1.3)),
-                               std::make_unique<LoadDead>("load", "load_field", forces, x)));
-  TrackedEquilibrium equilibrium(objective, objective.unknowns(x), {.tolerance = 1e-12});
-  EnergyTerm* cables = nullptr;
-  for (const auto& term : objective.terms())
-    if (term->type() == "cable") cables = term.get();
-  equilibrium.add(make_line_lengths("lengths", *cables, single_lines(*cables), LengthMeasure::Length));
+  TwoCables two;
+  TrackedEquilibrium& equilibrium = two.equilibrium;
   ASSERT_EQ(equilibrium.settle().status, Status::Converged);
   EXPECT_TRUE(equilibrium.switches(Eigen::Vector2d(0.01, 0)).empty());
   const double apart = (equilibrium.positions().col(2) - equilibrium.positions().col(1)).norm();
   const std::vector<Switch> found = equilibrium.switches(Eigen::Vector2d(1.4 * (1.3 - apart), 0));
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].term, cables->name());
+  EXPECT_EQ(found[0].term, two.cables().name());
   EXPECT_EQ(found[0].element, 1);
   EXPECT_EQ(found[0].before, "slack");
   EXPECT_EQ(found[0].after, "taut");
@@ -165,6 +183,75 @@ TEST(TrackedEquilibrium, ReportsAKink) {
   ASSERT_EQ(equilibrium.settle().status, Status::Converged);
   EXPECT_EQ(equilibrium.switches(Eigen::Vector2d(0, 1e-8)).size(), 1U);
   EXPECT_EQ(equilibrium.switches(Eigen::Vector2d(1e-8, 0)).size(), 1U);
+}
+
+// What is told without being asked for.
+TEST(TrackedEquilibrium, TellsOfKinksThatItPassesAndStandsAt) {
+  TwoCables two;
+  TrackedEquilibrium& equilibrium = two.equilibrium;
+  const UserMetric height("height", [](const Points& shape, Points* by_x) {
+    if (by_x != nullptr) (*by_x)(2, 2) = 1;
+    return shape(2, 2);
+  });
+  const auto settled = [&](double second) {
+    equilibrium.set(Eigen::Vector2d(1, second));
+    const Settling settling = equilibrium.settle();
+    EXPECT_EQ(settling.status, Status::Converged) << settling.message;
+    return settling.switched;
+  };
+  EXPECT_TRUE(settled(1.3).empty());
+  EXPECT_TRUE(settled(1.25).empty()) << "still slack";
+  EXPECT_TRUE(equilibrium.derivatives(height).kinks.empty());
+  const double apart = (equilibrium.positions().col(2) - equilibrium.positions().col(1)).norm();
+
+  const std::vector<Switch> passed = settled(0.95 * apart);
+  ASSERT_EQ(passed.size(), 1U);
+  EXPECT_EQ(passed[0].term, two.cables().name());
+  EXPECT_EQ(passed[0].element, 1);
+  EXPECT_EQ(passed[0].before, "slack");
+  EXPECT_EQ(passed[0].after, "taut");
+  EXPECT_TRUE(passed[0].is_kink);
+  EXPECT_TRUE(equilibrium.derivatives(height).kinks.empty());
+  ASSERT_EQ(settled(1.25).size(), 1U) << "and back";
+
+  settled(apart);  // just as long as its ends are apart
+  const std::vector<Switch> kinks = equilibrium.derivatives(height).kinks;
+  ASSERT_EQ(kinks.size(), 1U);
+  EXPECT_EQ(kinks[0].element, 1);
+  EXPECT_EQ(kinks[0].before, "slack");
+  EXPECT_EQ(kinks[0].after, "taut");
+  settled(0.999 * apart);
+  EXPECT_TRUE(equilibrium.kinks().empty()) << "of this shape";
+}
+
+// Two triangles above one another come within range of their repulsion.
+TEST(TrackedEquilibrium, FollowsTheRepulsionOfFacets) {
+  const double range = 0.1;
+  const auto at = [](double height) {
+    Points x(3, 6);
+    x << 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, height, height, height;
+    return x;
+  };
+  const Triangles facets = (Triangles(3, 2) << 0, 3, 1, 4, 2, 5).finished();
+  const std::vector<Component> parts = components();
+  if (std::ranges::none_of(parts, [](const Component& c) { return c.name == "nanoflann" && c.present; }))
+    GTEST_SKIP() << "skipped: built without nanoflann";
+  Objective objective(
+      at(0.15), fixed_nodes(6, {0, 1, 2}),
+      terms_of(make_contact_facet("contact", at(0.15), facets, {.range = range, .strength = 1})));
+  objective.true_residual(objective.unknowns(at(0.15)));  // lets it look for pairs
+  const ElementStates far = element_states(objective, at(0.11)), near = element_states(objective, at(0.09)),
+                      nearer = element_states(objective, at(0.05));
+  EXPECT_TRUE(far.empty());
+  ASSERT_EQ(near.size(), 1U);
+  EXPECT_EQ(near[0].detail, 3) << "each point and the one above it";
+  const std::vector<Switch> found = switches_between(objective, far, near);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].term, "contact");
+  EXPECT_EQ(found[0].before, "apart");
+  EXPECT_EQ(found[0].after, "within range");
+  EXPECT_FALSE(found[0].is_kink) << "its exponent is 3";
+  EXPECT_TRUE(switches_between(objective, near, nearer).empty());
 }
 
 TEST(TrackedEquilibrium, SaysWhichContactsAndMembranesSwitch) {

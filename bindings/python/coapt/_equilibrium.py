@@ -1,9 +1,10 @@
 """An equilibrium that is followed while parameters change: warm solves and exact sensitivities."""
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from ._result import Status
 from .metrics import Metric, MetricLike, as_metric
 
 Array = npt.NDArray[np.float64]
+Found = TypeVar("Found")
 _SHAPES = {"positions": (-1, 3), "rest": (-1, 3), "forces": (-1, 3)}
 
 
@@ -25,6 +27,19 @@ class LostBranch:
     jump: float  #: of the new shape from the linear prediction, likewise [mm]
     negative_before: int  #: negative eigenvalues of the symmetric part of the tangent
     negative_after: int
+
+
+class Switch(NamedTuple):
+    """An element whose law changes between two shapes."""
+    term: str
+    element: int  #: of the term; of a contact its first node or facet
+    before: str  #: "slack", "rounded", "taut", "wrinkled"; "apart", "point on face", ...; of facets "within range"
+    after: str
+    is_kink: bool = True  #: derivatives jump there; False: it is rounded, or a contact that begins smoothly
+
+
+class KinkWarning(RuntimeWarning):
+    """The shape stands where an element changes its law: its derivatives hold on one side at best."""
 
 
 @dataclass(frozen=True)
@@ -41,21 +56,16 @@ class Settling:
     travel: float = 0.0  #: greatest displacement of a node [mm]
     jump: float = 0.0  #: greatest distance of a node from the linear prediction [mm]
     lost_branch: LostBranch | None = None
-
-
-class Switch(NamedTuple):
-    """An element whose law changes between two shapes, where derivatives have a kink."""
-    term: str
-    element: int  #: of the term; of a contact its first node
-    before: str  #: "slack", "rounded", "taut", "wrinkled"; "apart", "point on face", ...
-    after: str
+    #: what has another state than in the shape settled before: on the way between the two derivatives may have kinks
+    switched: Sequence[Switch] = ()
 
 
 def _settling(found: dict[str, Any]) -> Settling:
     status = Status[found.pop("status").upper()]
     lost = found.pop("lost_branch", None)
+    switched = [Switch(*each) for each in found.pop("switched", [])]
     return Settling(success=status is Status.CONVERGED, status=status,
-                    lost_branch=None if lost is None else LostBranch(**lost), **found)
+                    lost_branch=None if lost is None else LostBranch(**lost), switched=switched, **found)
 
 
 class Equilibrium:
@@ -250,43 +260,63 @@ class Equilibrium:
         Raises:
             InputError: this shape is not settled, or its tangent is singular.
         """
-        return self._core.value_and_grad(as_metric(self._core, metric))
+        return self._told(self._core.value_and_grad(as_metric(self._core, metric)))
 
     def jacobian(self, metrics: Sequence[MetricLike]) -> Array:
         """Derivatives of several metrics, one row each, (m, numbers)."""
-        return self._core.jacobian(self._metrics(metrics))
+        return self._told(self._core.jacobian(self._metrics(metrics)))
 
     def weighted_gradient(self, metrics: Sequence[MetricLike], weights: npt.ArrayLike) -> Array:
         """jacobian(metrics).T @ weights by one linear system, (numbers,)."""
         found = self._metrics(metrics)
         array = _arguments.numbers(weights, "weights", f"real numbers of shape ({len(found)},)", (len(found),))
-        return self._core.weighted_gradient(found, array)
+        return self._told(self._core.weighted_gradient(found, array))
 
     def gauss_newton_product(self, residuals: Sequence[MetricLike], change: npt.ArrayLike) -> Array:
         """J^T J change for residuals of a least-squares problem, by two linear systems, (numbers,)."""
-        return self._core.gauss_newton_product(self._metrics(residuals), self._vector(change, "change"))
+        return self._told(self._core.gauss_newton_product(self._metrics(residuals), self._vector(change, "change")))
 
     def metric_covariance(self, metrics: Sequence[MetricLike], covariance: npt.ArrayLike) -> Array:
         """First-order covariance of metrics, (m, m), from that of the numbers, (numbers, numbers)."""
         size = self.value.size
         array = _arguments.numbers(covariance, "covariance", f"real numbers of shape ({size}, {size})", (size, size))
-        return self._core.metric_covariance(self._metrics(metrics), array)
+        return self._told(self._core.metric_covariance(self._metrics(metrics), array))
 
     def response(self, change: npt.ArrayLike) -> Array:
         """dx/d(numbers) change: how the nodes move at first order, (n, 3) [mm]."""
-        return self._core.response(self._vector(change, "change"))
+        return self._told(self._core.response(self._vector(change, "change")))
 
     def pull_back(self, weights: npt.ArrayLike) -> Array:
         """Transpose of `response`: derivative by the numbers of a function whose derivative by x is `weights`, (n, 3)."""
         shape = (self._core.node_count, 3)
-        return self._core.pull_back(_arguments.numbers(weights, "weights", f"real numbers of shape {shape}", shape))
+        array = _arguments.numbers(weights, "weights", f"real numbers of shape {shape}", shape)
+        return self._told(self._core.pull_back(array))
+
+    def kinks(self) -> list[Switch]:
+        """What stands so near a kink at this shape that rounding decides on which side: what changes its law when the
+        shape grows and shrinks by a billionth. Derivatives hold on one side at best there, and whatever gives them
+        warns of it (`KinkWarning`).
+
+        Raises:
+            InputError: this shape is not settled.
+        """
+        return [Switch(*each) for each in self._core.kinks()]
 
     def switches(self, change: npt.ArrayLike) -> list[Switch]:
-        """What changes its law between the shapes predicted for -change and +change: derivatives have a kink there.
-        At a kink the list is not empty however small the change."""
+        """What changes its law between the shapes predicted for -change and +change: where it `is_kink`, derivatives
+        jump there. At a kink the list is not empty however small the change."""
         return [Switch(*each) for each in self._core.switches(self._vector(change, "change"))]
 
     # --- inside
+
+    def _told(self, derivatives: Found) -> Found:
+        """The derivatives, after a warning where this shape stands at a kink."""
+        kinks = self.kinks()
+        if kinks:
+            first = kinks[0]
+            warnings.warn(f"{first.term}, element {first.element}: stands between {first.before} and {first.after} "
+                          f"({len(kinks)} such elements); derivatives hold on one side at best", KinkWarning, stacklevel=3)
+        return derivatives
 
     def _places(self) -> list[tuple[str, slice, tuple[int, ...]]]:
         places: list[tuple[str, slice, tuple[int, ...]]] = []

@@ -17,7 +17,7 @@ Groundwork given_ground(const Scene& scene, Given& given);
 
 // A given start, 3 x node_count, relative to the model's origin. Throws InputError for another number of
 // nodes and for coordinates that are not finite.
-Points relative_start(const Points& start, const Model& model);
+Points relative_start(const Eigen::Map<const Points>& start, const Model& model);
 
 // As from the scene's own file; what is wrong with the mesh is said of kMeshInMemory.
 Groundwork lay_groundwork(const Scene& scene, TriangleMesh mesh);
