@@ -50,11 +50,6 @@ double differing_results(const fs::path& a, const fs::path& b) {
 // As `coapt solve` does it, here and there.
 StressOutcome same_bits_apart(StressSubject& subject) {
   const StressOptions& options = subject.bench.options();
-  if (!options.solve_apart)
-    return {StressVerdict::NotApplicable,
-            {},
-            {},
-            "there is no command that could solve it in a process of its own"};
   const Scene& scene = own_scene(subject).scene;
   const fs::path folder = options.folder / "S18", here = folder / "here", there = folder / "there";
   RunOptions run_options;
@@ -130,11 +125,11 @@ StressOutcome same_bits_on_threads(StressSubject& subject) {
 }  // namespace
 
 std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
-  std::vector<StressRow> rows = {
-      {"S18", subject->name, "the same run again", kDiffering, "", true,
-       [subject] { return same_bits(*subject); }},
-      {"S18", subject->name, "the same run in a process of its own", "results that differ", "", true,
-       [subject] { return same_bits_apart(*subject); }}};
+  std::vector<StressRow> rows = {{"S18", subject->name, "the same run again", kDiffering, "", true,
+                                  [subject] { return same_bits(*subject); }}};
+  if (subject->bench.options().solve_apart)
+    rows.push_back({"S18", subject->name, "the same run in a process of its own", "results that differ", "",
+                    true, [subject] { return same_bits_apart(*subject); }});
   for (const std::string solver : {"newton", "lbfgs"}) {
     if (!subject->bench.has_solver(solver)) continue;
     rows.push_back({"H3", subject->name, "by " + solver, kDistanceFromOwn, "", true,

@@ -74,7 +74,7 @@ struct StressOptions {
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
   IntersectionJudge judge;
   // Solves the scene file in a process of its own and writes the results into the folder, within so many
-  // seconds; empty: the row that needs it means nothing.
+  // seconds; empty: the row that needs it is left out.
   std::function<void(const std::filesystem::path& scene, const std::filesystem::path& folder, double seconds)>
       solve_apart;
   std::function<bool()> is_cancelled;               // asked at each iterate; may be empty
