@@ -176,7 +176,7 @@ void add_accounts(const Comparison& comparison, Page& page) {
   if (ends.rows.empty()) return;
   const auto solved = std::find_if(comparison.methods.begin(), comparison.methods.end(),
                                    [](const ComparedMethod& method) { return method.run.has_value(); });
-  PageSection account = solve_account(solved->run->model, solved->run->report).back();
+  PageSection account = what_was_solved(solved->run->model, solved->run->report);
   account.title += ", by " + solved->name;
   account.blocks.emplace_back(std::move(ends));
   page.sections.push_back(std::move(account));

@@ -196,13 +196,6 @@ PageTable level_table(const std::vector<CascadeLevel>& levels) {
   return table;
 }
 
-PageSection account(const Model& model, const Report& report) {
-  PageSection section{"What was solved", {solve_table(model, report), term_table(report.result)}};
-  if (!report.result.phase_s.empty()) section.blocks.emplace_back(phase_table(report.result));
-  if (!report.levels.empty()) section.blocks.emplace_back(level_table(report.levels));
-  return section;
-}
-
 }  // namespace
 
 size_t page_shapes(const Model& model) {
@@ -230,8 +223,15 @@ PagePlot residual_plot(const std::vector<NamedReport>& reports, bool against_tim
   return plot;
 }
 
+PageSection what_was_solved(const Model& model, const Report& report) {
+  PageSection section{"What was solved", {solve_table(model, report), term_table(report.result)}};
+  if (!report.result.phase_s.empty()) section.blocks.emplace_back(phase_table(report.result));
+  if (!report.levels.empty()) section.blocks.emplace_back(level_table(report.levels));
+  return section;
+}
+
 std::vector<PageSection> solve_account(const Model& model, const Report& report) {
-  return {figures(report), convergence(report), account(model, report)};
+  return {figures(report), convergence(report), what_was_solved(model, report)};
 }
 
 std::string solve_page(const Model& model, const Report& report) {

@@ -13,6 +13,9 @@ namespace coapt {
 // Shapes that the page shows at most between the start and the result: as many as keep it small.
 size_t page_shapes(const Model& model);
 
+// Mesh, solver, certificate, cost, by which version, and the energies.
+PageSection what_was_solved(const Model& model, const Report& report);
+
 // Every figure of result.json, how the solve went, and what was solved: with its certificate, by which
 // version.
 std::vector<PageSection> solve_account(const Model& model, const Report& report);

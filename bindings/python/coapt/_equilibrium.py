@@ -4,19 +4,18 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments, _core, _inputs
 from ._errors import InputError
-from ._inputs import Path
+from ._inputs import Found, Path
 from ._result import Status
 from .metrics import Metric, MetricLike, as_metric
 
 Array = npt.NDArray[np.float64]
-Found = TypeVar("Found")
 _SHAPES = {"positions": (-1, 3), "rest": (-1, 3), "forces": (-1, 3)}
 
 
