@@ -3,6 +3,7 @@
 #include "cli/shape_scenes.hpp"
 #include "core/error.hpp"
 #include "mesh/generators/mitral.hpp"
+#include "mesh/generators/rough_valve.hpp"
 #include "scene/closed_curve.hpp"
 #include "scene/import.hpp"
 #include "scene/markups.hpp"
@@ -22,7 +23,7 @@ namespace {
 struct GenerateArguments : SceneArguments {
   std::string what;
   int triangles = 2500;
-  unsigned seed = 0;
+  unsigned seed = 0, rough = 0;
   std::string annulus, papillary, model;
   std::vector<double> anterior, ventricle;  // three numbers, or none
   std::vector<std::string> given;           // options on the command line
@@ -72,6 +73,23 @@ void write_shape(const GenerateArguments& arguments) {
   write_shape_scene(arguments.what, options, arguments.folder);
 }
 
+void write_rough(const GenerateArguments& arguments) {
+  std::vector<std::string> defects;
+  const bool is_mitral = arguments.what == "mitral";
+  if (!is_mitral && arguments.what != "tricuspid")
+    defects.push_back("--rough: belongs to the shapes mitral and tricuspid; there is no rough " +
+                      arguments.what);
+  for (const char* option : {"--seed", "--model", "--membrane", "--annulus"})
+    if (is_given(arguments, option))
+      defects.push_back(std::string(option) + ": has no meaning beside --rough, which draws the whole valve");
+  if (!defects.empty()) throw InputError(defects);
+  const Valve valve =
+      rough_valve({.kind = is_mitral ? RoughKind::Mitral : RoughKind::Tricuspid,
+                   .seed = arguments.rough,
+                   .triangles = is_given(arguments, "--triangles") ? arguments.triangles : 0});
+  write_valve_scene(valve, arguments.folder, import_options(arguments));
+}
+
 void write_mitral(const GenerateArguments& arguments) {
   if (!arguments.model.empty() && is_given(arguments, "--membrane"))
     throw InputError(
@@ -85,7 +103,11 @@ void write_mitral(const GenerateArguments& arguments) {
 
 void generate(const GenerateArguments& arguments) {
   check_measured(arguments);
-  if (arguments.what == "mitral") {
+  if (is_given(arguments, "--rough")) {
+    write_rough(arguments);
+  } else if (arguments.what == "tricuspid") {
+    throw InputError("generate tricuspid: there are only rough ones; say which with --rough SEED");
+  } else if (arguments.what == "mitral") {
     write_mitral(arguments);
   } else {
     write_shape(arguments);
@@ -99,7 +121,7 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   const auto arguments = std::make_shared<GenerateArguments>();
   CLI::App* command =
       app.add_subcommand("generate", "Write a valve or a simple shape with a scene that is ready to solve");
-  std::string shapes = "mitral";
+  std::string shapes = "mitral, tricuspid (with --rough)";
   for (const std::string& name : shape_names()) shapes += ", " + name;
   command->add_option("SHAPE", arguments->what, shapes)->required();
   command
@@ -110,6 +132,10 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
   command
       ->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
       ->capture_default_str();
+  command->add_option(
+      "--rough", arguments->rough,
+      "Mitral and tricuspid: draw the whole valve, uneven in every way: slivers, slack and short "
+      "chords, tissue, motion, pressure, and 300 to 20000 triangles unless they are given");
   command
       ->add_option("--model", arguments->model,
                    "Mitral: tissue, chords and pressure of a published model of springs")

@@ -162,7 +162,7 @@ void write_shape_scene(const std::string& name, const ShapeOptions& options,
       std::find_if(all.begin(), all.end(), [&](const Shape& candidate) { return candidate.name == name; });
   if (shape == all.end())
     throw InputError("shape \"" + name + "\" is not known" + suggestion(name, shape_names()) +
-                     "; there are: mitral, " + listed(shape_names()));
+                     "; there are: mitral, tricuspid, " + listed(shape_names()));
   check_options(*shape, options);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
