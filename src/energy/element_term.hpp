@@ -44,6 +44,17 @@ concept HasKink = ElementKernel<K> && requires(const typename K::Rest& rest, dou
   { K::rounded(rest, share) } -> std::same_as<typename K::Rest>;
 };
 
+// A kernel whose law stiffens without bound, for EnergyTerm::limit_stress():
+//   limit_stress   sets the limit in the rest data; an infinite scale takes it away
+//   raise_limit    moves it at x, and returns the excess there
+template <class K>
+concept HasStressLimit = ElementKernel<K> &&
+    requires(typename K::Rest& rest, const Eigen::Vector<double, 3 * K::kNodes>& x,
+             const TensionScale& scale) {
+  K::limit_stress(rest, scale);
+  { K::raise_limit(rest, x) } -> std::same_as<double>;
+};
+
 template <ElementKernel K>
 class ElementTerm final : public EnergyTerm {
  public:
@@ -69,11 +80,32 @@ class ElementTerm final : public EnergyTerm {
   bool round_kinks(double share) override {
     if constexpr (HasKink<K>) {
       if (sharp_.empty()) sharp_ = rest_;
-      std::transform(sharp_.begin(), sharp_.end(), rest_.begin(),
-                     [share](const typename K::Rest& rest) { return K::rounded(rest, share); });
+      std::transform(sharp_.begin(), sharp_.end(), rest_.begin(), rest_.begin(),
+                     [share](const typename K::Rest& sharp, const typename K::Rest& now) {
+                       typename K::Rest rounded = K::rounded(sharp, share);
+                       if constexpr (requires { rounded.limit; }) rounded.limit = now.limit;
+                       return rounded;
+                     });
     }
     return HasKink<K>;
   }
+
+  bool limit_stress(const TensionScale& scale) override {
+    if constexpr (HasStressLimit<K>)
+      for (auto& rest : rest_) K::limit_stress(rest, scale);
+    return HasStressLimit<K>;
+  }
+
+  double raise_stress_limits(const Points& x) override {
+    double excess = 0;
+    if constexpr (HasStressLimit<K>)
+      for (size_t e = 0; e < rest_.size(); ++e)
+        excess =
+            std::max(excess, K::raise_limit(rest_[e], gather(x, stencils_.nodes.data() + e * K::kNodes)));
+    return excess;
+  }
+
+  void release_stress_limits() override { limit_stress({kInfinity, kInfinity}); }
 
   double evaluate(const Points& x, Sink& sink) const override {
     if (sink.wants_hessian()) return evaluate_with_hessian(x, sink);

@@ -8,6 +8,11 @@
 namespace coapt {
 namespace {
 
+// Limits of stress: a hundred times the tension of a membrane that carries all loads along its width, and of
+// a line that carries a tenth of them. Ten to a thousand do as well on eight valves; one leaves sheets too
+// soft.
+constexpr double kStressLimit = 100, kLineShare = 0.1;
+
 constexpr double kBalanced = 1e-8;  // out-of-balance force over reaction of a prestressed reference state
 
 double largest_column_norm(const Points& vectors) {
@@ -72,6 +77,32 @@ bool Objective::round_kinks(double share) {
   bool has_kinks = false;
   for (const auto& term : terms_) has_kinks = term->round_kinks(share) || has_kinks;
   return has_kinks;
+}
+
+bool Objective::limit_stress(const Vector& q) {
+  prepare(q);
+  Points load = Points::Zero(3, node_count());
+  for (const auto& term : terms_)
+    if (term->role() == TermRole::Load) pour(*term, Sink(load.data()));
+  const double force = load.colwise().norm().sum(), size = extent(q);
+  release_stress_limits();
+  if (!(force > 0 && size > 0 && std::isfinite(force))) return false;
+  const TensionScale scale{kStressLimit * force / size, kStressLimit * kLineShare * force};
+  for (const auto& term : terms_) has_stress_limits_ = term->limit_stress(scale) || has_stress_limits_;
+  return has_stress_limits_;
+}
+
+double Objective::raise_stress_limits(const Vector& q) {
+  prepare(q);
+  double excess = 0;
+  for (const auto& term : terms_) excess = std::max(excess, term->raise_stress_limits(x_));
+  return excess;
+}
+
+void Objective::release_stress_limits() {
+  if (!has_stress_limits_) return;
+  for (const auto& term : terms_) term->release_stress_limits();
+  has_stress_limits_ = false;
 }
 
 double Objective::pour(const EnergyTerm& term, Sink sink) const {

@@ -59,6 +59,15 @@ class Objective {
   // Rounds the kinks of all terms, as EnergyTerm::round_kinks() does. Returns whether there are any.
   bool round_kinks(double share);
 
+  // Laws that stiffen without bound go on along their tangent beyond what the loads may be expected to need,
+  // as EnergyTerm::limit_stress() says. limit: returns whether there are any; without loads nothing is
+  // limited. raise: at q, where the limits follow; returns the greatest excess. release: the laws as they
+  // were given.
+  bool limit_stress(const Vector& q);
+  bool has_stress_limits() const { return has_stress_limits_; }
+  double raise_stress_limits(const Vector& q);
+  void release_stress_limits();
+
   // Threads that may assemble the Hessian; 1 from the start. The result has the same bits whatever their
   // number.
   void use_threads(int count) { threads_ = count; }
@@ -158,6 +167,7 @@ class Objective {
   int free_count_ = 0;
   double load_factor_ = 1, stiffness_factor_ = 1;
   int threads_ = 1;
+  bool has_stress_limits_ = false;
 
   enum class Circulatory { None, HeldDead, PathWork };
   Circulatory circulatory_ = Circulatory::None;

@@ -38,6 +38,12 @@ struct TangentBlock {
   Eigen::Matrix3d value;  // [force/length]
 };
 
+// What the loads of a scene may be expected to stretch elements with.
+struct TensionScale {
+  double membrane = 0;  // [force/length]
+  double line = 0;      // [force]
+};
+
 class EnergyTerm {
  public:
   explicit EnergyTerm(std::string name) : name_(std::move(name)) {}
@@ -62,6 +68,21 @@ class EnergyTerm {
   // Rounds the kinks of the law over at least this share of the length of each element, for continuation;
   // 0: as the law was given. Returns whether it has any.
   virtual bool round_kinks(double /*share*/) { return false; }
+
+  // --- Laws that stiffen without bound ----------------------------------------------------------------
+  // For continuation: the law of an element goes on along its tangent beyond a limit of its strain, which
+  // rises until nothing lies beyond it (docs/decisions/009-stress-limits.md).
+
+  // Sets the limits where the tension is that of `scale`. Returns whether the term has laws that stiffen so.
+  virtual bool limit_stress(const TensionScale& /*scale*/) { return false; }
+
+  // Moves the limit of each element that lies beyond its own at x to the strain at which the law has the
+  // stress that the tangent has at x. Returns the greatest ln(stress of the law over that of the tangent)
+  // before; 0 where no element lies beyond its limit.
+  virtual double raise_stress_limits(const Points& /*x*/) { return 0; }
+
+  // Takes the limits away.
+  virtual void release_stress_limits() {}
 
   // --- Loads without a potential -------------------------------------------------------------------
   // A circulatory force depends on the positions and is no gradient (pressure on a free edge). Such a

@@ -44,12 +44,14 @@ class Newton {
       : objective_(objective), monitor_(monitor), options_(options), hessian_(options.factorisation) {}
   ~Newton() {
     if (rounding_ > 0) objective_.round_kinks(0);
+    objective_.release_stress_limits();
   }
   Newton(const Newton&) = delete;
   Newton& operator=(const Newton&) = delete;
 
   Status minimize(Vector& q) {
     at_.q = q;
+    objective_.limit_stress(q);
     evaluate();
     if (wants_rounding() && objective_.round_kinks(kFirstRounding)) {
       rounding_ = kFirstRounding;
@@ -71,6 +73,7 @@ class Newton {
       }
       std::swap(at_, next_);
       q = at_.q;
+      raise_limits();
     }
   }
 
@@ -82,6 +85,18 @@ class Newton {
 
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
+
+  // Where elements lie beyond the limits of their laws the limits follow. Where the iterates have settled the
+  // limits follow to the end, and go.
+  void raise_limits() {
+    while (objective_.has_stress_limits()) {
+      const double excess = objective_.raise_stress_limits(at_.q);
+      const bool is_settled = objective_.relative_residual(at_.g) < kSettled;
+      if (is_settled && excess < kExact) objective_.release_stress_limits();
+      if (excess > 0) evaluate();
+      if (!is_settled) return;
+    }
+  }
 
   // From a start whose forces exceed its loads, because stiff chords already pull, many of them become slack
   // and taut again and again, and the Hessian sees neither coming. With kinks as wide as the chords are long
@@ -283,6 +298,7 @@ class SolverNewton final : public Solver {
 
   std::string_view name() const override { return "newton"; }
   bool follows_path() const override { return true; }
+  bool raises_stress_limits() const override { return true; }
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
     Newton newton(options_, objective, monitor);

@@ -162,6 +162,7 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
     has_arrived = !has_motion;
     do {
       if (!has_arrived) {
+        if (solver.raises_stress_limits()) objective.limit_stress(result.q);
         const Move move = move_prescribed(problem.motion, moved, t, objective, result.q);
         has_arrived = move.reached == t;
         is_blocked = !has_arrived && move.reached - moved < kLeastMotion;

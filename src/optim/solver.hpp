@@ -71,6 +71,9 @@ class Solver {
   // step with its start. Others get a load without potential in rounds, each with a true potential.
   virtual bool follows_path() const { return false; }
 
+  // Whether the method raises and releases the limits of Objective::limit_stress() itself.
+  virtual bool raises_stress_limits() const { return false; }
+
   // Whether the method asks Monitor::step_limit before every step. One that does not is refused terms that
   // limit steps.
   virtual bool honours_step_limits() const { return true; }

@@ -49,22 +49,42 @@ struct CableLaw {
     double area = 0;       // A
     double smoothing = 0;  // s0, a share of the length
     Law law;
+    double limit =
+        std::numeric_limits<double>::infinity();  // of rho, beyond which w goes on along its tangent
   };
 
   static Rest rest(double length, double area, double smoothing, const Law& law) {
     return {length, area, smoothing, law};
   }
 
+  // EnergyTerm::limit_stress().
+  static void limit_stress(Rest& rest, const TensionScale& scale) {
+    rest.limit = std::numeric_limits<double>::infinity();
+    const double stress = scale.line / rest.area;
+    if (stress < rest.limit) rest.limit = elongation_of(rest.law, stress, kMostElongation);
+  }
+  static double raise_limit(Rest& rest, const Eigen::Vector<double, 6>& x) {
+    const double e = (x.tail<3>() - x.head<3>()).norm() / rest.length - 1;
+    if (e <= 0) return 0;
+    const double rho = rounded_elongation(e, rest.smoothing).value;
+    if (!(rho > rest.limit)) return 0;
+    const double stress = continued(rest, rho).stress, excess = std::log(rest.law.at(rho).stress / stress);
+    rest.limit = elongation_of(rest.law, stress, rho);
+    return excess;
+  }
+
   // The same cable with the onset of its tension rounded over at least this share of its length.
   static Rest rounded(const Rest& given, double share) {
-    return rest(given.length, given.area, std::max(given.smoothing, share), given.law);
+    Rest result = given;
+    result.smoothing = std::max(given.smoothing, share);
+    return result;
   }
 
   // Energy, force and stiffness at elongation e = l/r - 1.
   static AxialLaw elastic(const Rest& rest, double e) {
     if (e <= 0) return {};
     const Elongation rho = rounded_elongation(e, rest.smoothing);
-    const CurveValue w = rest.law.at(rho.value);
+    const CurveValue w = continued(rest, rho.value);
     return {rest.area * rest.length * w.energy, rest.area * w.stress * rho.slope,
             rest.area / rest.length * (w.stiffness * rho.slope * rho.slope + w.stress * rho.curvature)};
   }
@@ -82,6 +102,27 @@ struct CableLaw {
   }
 
  private:
+  static constexpr double kMostElongation = 10;
+
+  // The law up to the limit, its tangent beyond.
+  static CurveValue continued(const Rest& rest, double rho) {
+    if (rho <= rest.limit) return rest.law.at(rho);
+    const CurveValue end = rest.law.at(rest.limit);
+    const double past = rho - rest.limit;
+    return {end.energy + (end.stress + 0.5 * end.stiffness * past) * past, end.stress + end.stiffness * past,
+            end.stiffness};
+  }
+
+  // The elongation of this stress, at most `high`; by bisection, as a stress may overflow.
+  static double elongation_of(const Law& law, double stress, double high) {
+    double low = 0;
+    while (high - low > 1e-14 * high) {
+      const double middle = 0.5 * (low + high);
+      (law.at(middle).stress < stress ? low : high) = middle;
+    }
+    return high;
+  }
+
   // With a stiffness of at least `least` in the Hessian.
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H, double least) {

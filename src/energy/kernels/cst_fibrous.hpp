@@ -65,6 +65,15 @@ struct CstFibrous {
     return {shape.inverse, shape.area * thickness, relaxes, law};
   }
 
+  // EnergyTerm::limit_stress().
+  static void limit_stress(Rest& rest, const TensionScale& scale) requires requires(Law law) { law.limit; }
+  {
+    const double area = 0.5 / std::abs(rest.shape.determinant());
+    rest.law.limit_stress(scale.membrane * area / rest.volume);
+  }
+  static double raise_limit(Rest& rest, const CstVector& x) requires requires(Law law) { law.limit; }
+  { return rest.law.raise_limit(respond(rest, cst_strain(cst_frame(rest.shape, x))).w.energy); }
+
   // The same element with its knees rounded over at least this strain.
   static Rest rounded(Rest rest, double share) requires requires(Law law) { law.fibre_knee; }
   {

@@ -13,6 +13,11 @@
 #include "energy/laws/isotropic.hpp"
 #include "energy/term.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 namespace coapt {
 
 template <typename Law>
@@ -65,6 +70,29 @@ struct CstIsotropic {
     return evaluate(rest, x, g, H, true);
   }
 
+  // EnergyTerm::limit_stress(). In uniaxial tension the nominal stress is about 2 psi' l.
+  static void limit_stress(Rest& rest, const TensionScale& scale) requires requires(Law law) {
+    law.invariant.limit;
+  }
+  {
+    const double area = 0.5 / std::abs(rest.shape.determinant());
+    rest.law.invariant.limit_stress(0.5 * scale.membrane * area / rest.volume);
+  }
+  static double raise_limit(Rest& rest, const CstVector& x) requires requires(Law law) {
+    law.invariant.limit;
+  }
+  {
+    const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.shape, x)));
+    const double l1 = std::max(stretch(p.major), kThinnest);
+    double l2 = std::max(stretch(p.minor), kThinnest);
+    if (rest.relaxes) {
+      // No strain is greater than that of a sheet as wide as long.
+      if (l1 <= 1 || 2 * l1 * l1 + 1 / (l1 * l1 * l1 * l1) - 3 <= rest.law.invariant.limit) return 0;
+      l2 = std::max(l2, free_width(rest.law, l1));
+    }
+    return rest.law.invariant.raise_limit(rest.law.strain(l1, l2));
+  }
+
   // The same element with its knee rounded over at least this strain.
   static Rest rounded(Rest rest, double share) requires requires(Law law) { law.knee; }
   {
@@ -98,21 +126,23 @@ struct CstIsotropic {
     return {w.energy, {s1, s2, 0}, {c11, c22, c12, shear}, regime};
   }
 
-  // The width at which a strip stretched by l1 > 1 is free, by Newton.
+  // The width at which a strip stretched by l1 >= 1 is free: dw/dl2 is negative below and positive at l2 =
+  // l1. Newton from the law's guess; where it leaves the bracket or gains little, as on the steep side of an
+  // exponential, the geometric mean of the bracket.
   static double free_width(const Law& law, double l1) {
-    double l2 = std::max(law.free_width(l1), kThinnest);
-    // Beyond the rest width only where a negative Poisson's ratio takes it.
-    const double widest = std::max(1.0, 2 * l2);
-    constexpr int kMost = 50;
+    double low = kThinnest, high = l1, l2 = std::clamp(law.free_width(l1), kThinnest, l1);
+    constexpr int kMost = 200;
     constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
+    constexpr double kGain = 0.3;   // of the stress that Newton's step has to leave at most
+    double last = std::numeric_limits<double>::infinity();
     for (int k = 0; k < kMost; ++k) {
       const StretchEnergy w = law.evaluate(l1, l2);
+      (w.w2 < 0 ? low : high) = l2;
       const double next = l2 - w.w2 / w.w22;
-      // Nor to less than half: dw/dl2 is positive at the widest and convex below.
-      const double kept = std::clamp(next, 0.5 * l2, widest);
-      const bool is_there = std::abs(kept - l2) <= kLast * l2;
-      l2 = kept;
-      if (is_there) break;
+      if (std::abs(next - l2) <= kLast * l2) return next;
+      const bool is_slow = !(std::abs(w.w2) <= kGain * std::exchange(last, std::abs(w.w2)));
+      l2 = next > low && next < high && !is_slow ? next : std::sqrt(low * high);
+      if (high - low <= kLast * kLast * high) break;
     }
     return l2;
   }
@@ -132,7 +162,7 @@ struct CstIsotropic {
     if (l1 <= 1) return {};
     const StretchEnergy w = rest.law.evaluate(l1, l);
     Principal wrinkled{w.energy, {w.w1 / l1, 0, 0}, {}, MembraneRegime::Wrinkled};
-    const double along = w.w11 - w.w12 * w.w12 / w.w22;
+    const double along = w.w11 - w.w12 * (w.w12 / w.w22);
     wrinkled.tangent.c11 = (along - wrinkled.stress.s11) / (l1 * l1);
     // Turning the major direction; l1 > 1 > l2.
     wrinkled.tangent.shear = wrinkled.stress.s11 / (l1 * l1 - l2 * l2);

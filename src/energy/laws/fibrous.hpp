@@ -9,7 +9,9 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace coapt {
 
@@ -95,10 +97,12 @@ struct OrthotropicLaw {
 };
 
 // W = c0 (exp(Q) - 1),  Q = c1 (I1 - 3)^2 + c2 (l_f - 1)^4,  incompressible; l_f stretch along the fibre.
-// Without stiffness at rest. Source: May-Newman & Yin 1998.
+// Without stiffness at rest. Source: May-Newman & Yin 1998. Beyond Q = limit the exponential goes on along
+// its tangent parabola (EnergyTerm::limit_stress(), our own); without a limit the law is as published.
 struct MayNewmanYinLaw {
   double c0 = 0;  // [stress]
   double c1 = 0, c2 = 0;
+  double limit = std::numeric_limits<double>::infinity();
 
   PlaneEnergy evaluate(double c11, double c22, double c12) const {
     const PlaneInvariant i = first_invariant(c11, c22, c12), l = stretch_of(1, 0, c11, c22);
@@ -106,9 +110,20 @@ struct MayNewmanYinLaw {
     PlaneEnergy q;
     add_composed({c1 * j * j, 2 * c1 * j, 2 * c1}, i, q);
     add_composed({c2 * e * e * e * e, 4 * c2 * e * e * e, 12 * c2 * e * e}, l, q);
-    const double grown = c0 * std::exp(q.energy);
-    return {c0 * std::expm1(q.energy), grown * q.stress,
-            grown * (q.tangent + q.stress * q.stress.transpose())};
+    const double at = std::min(q.energy, limit), past = q.energy > limit ? q.energy - limit : 0;
+    const double grown = c0 * std::exp(at), slope = grown * (1 + past);
+    return {c0 * std::expm1(at) + (past > 0 ? grown * (past + 0.5 * past * past) : 0), slope * q.stress,
+            slope * q.tangent + grown * q.stress * q.stress.transpose()};
+  }
+  // The limit where c0 exp(Q) is this much [stress].
+  void limit_stress(double stress) { limit = std::max(0.0, std::log(stress / c0)); }
+  // EnergyTerm::raise_stress_limits() of an element with this energy.
+  double raise_limit(double energy) {
+    const double over = (energy / c0 - std::expm1(limit)) * std::exp(-limit);  // past + past^2/2
+    if (!(over > 0)) return 0;
+    const double past = std::sqrt(1 + 2 * over) - 1, back = std::log1p(past);
+    limit += back;
+    return past - back;
   }
   // There is none at rest: the secant of a strip pulled along the fibre by a tenth.
   double initial_young() const {

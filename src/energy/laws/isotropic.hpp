@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace coapt {
 
@@ -56,26 +58,92 @@ struct InvariantEnergy {
   double energy = 0, first = 0, second = 0;
 };
 
+// ln psi' and psi''/psi', which stay finite where an exponential overflows.
+struct LogSlope {
+  double log = 0, growth = 0;
+};
+
 // psi = mu/2 (I - 3).
 struct NeoHookeanInvariant {
   double shear_modulus = 0;  // mu [stress]
 
   InvariantEnergy at(double j) const { return {0.5 * shear_modulus * j, 0.5 * shear_modulus, 0}; }
+  LogSlope log_slope(double /*j*/) const { return {std::log(0.5 * shear_modulus), 0}; }
   double initial_shear_modulus() const { return shear_modulus; }
 };
 
-// psi = C0/2 (I - 3) + C1/2 (exp(C2 (I - 3)^2) - 1). Source: the form of Lee & Sacks as used for tricuspid
-// leaflets by Mathur et al. 2022.
+// psi = C0/2 (I - 3) + C1/2 (exp(C2 (I - 3)^2) - 1) up to j = limit, and beyond it along its tangent: the
+// parabola that has its value, slope and curvature there. Without a limit the law as it was published.
+// Source: the form of Lee & Sacks as used for tricuspid leaflets by Mathur et al. 2022; the limit, which
+// solvers set and take away (energy/stress_limit.hpp), is our own.
 struct ExponentialInvariant {
   double c0 = 0, c1 = 0;  // [stress]
   double c2 = 0;
+  double limit = std::numeric_limits<double>::infinity();
 
   InvariantEnergy at(double j) const {
+    if (j <= limit) return exponential(j);
+    const InvariantEnergy end = exponential(limit);
+    const double past = j - limit;
+    return {end.energy + (end.first + 0.5 * end.second * past) * past, end.first + end.second * past,
+            end.second};
+  }
+  LogSlope log_slope(double j) const {
+    if (j > limit) {
+      const InvariantEnergy w = at(j);
+      return {std::log(w.first), w.second / w.first};
+    }
+    // ln(a + b) of the constant and the exponential part of psi'.
+    const double a = std::log(0.5 * c0), b = c2 * j * j + std::log(c1 * c2 * std::max(j, 0.0));
+    const double most = std::max(a, b), log = most + std::log1p(std::exp(std::min(a, b) - most));
+    if (!(b > a - kNegligible)) return {log, 2 * c1 * c2 / c0};
+    return {log, std::exp(b - log) * (1 / j + 2 * c2 * j)};
+  }
+  double initial_shear_modulus() const { return c0; }
+
+  // The limit where psi' is this much [stress].
+  void limit_stress(double slope) {
+    limit = std::numeric_limits<double>::infinity();
+    if (slope < limit) limit = strain_of(std::log(slope));
+  }
+
+  // EnergyTerm::raise_stress_limits() of an element at j.
+  double raise_limit(double j) {
+    if (!(j > limit)) return 0;
+    const double stress = log_slope(j).log;
+    limit = std::numeric_limits<double>::infinity();
+    const double excess = log_slope(j).log - stress;
+    limit = strain_of(stress);
+    return excess;
+  }
+
+ private:
+  // The j at which ln psi' of the law itself is this much; 0 where it is less everywhere. Newton on ln psi',
+  // which is all but a parabola.
+  double strain_of(double log_stress) const {
+    if (!(log_stress > std::log(0.5 * c0))) return 0;
+    const ExponentialInvariant whole{c0, c1, c2};
+    double low = 0, high = 1;
+    while (whole.log_slope(high).log < log_stress) high *= 2;
+    double j = high;
+    for (int k = 0; k < 100 && high - low > 1e-14 * high; ++k) {
+      const LogSlope slope = whole.log_slope(j);
+      (slope.log < log_stress ? low : high) = j;
+      const double next = j - (slope.log - log_stress) / slope.growth;
+      const bool is_there = std::abs(next - j) <= 1e-12 * j;
+      j = next >= low && next <= high ? next : 0.5 * (low + high);
+      if (is_there) break;
+    }
+    return j;
+  }
+
+  static constexpr double kNegligible = 700;  // a summand smaller by a factor exp(700) underflows
+
+  InvariantEnergy exponential(double j) const {
     const double grown = c1 * std::exp(c2 * j * j);
     return {0.5 * (c0 * j + c1 * std::expm1(c2 * j * j)), 0.5 * c0 + c2 * j * grown,
             c2 * (1 + 2 * c2 * j * j) * grown};
   }
-  double initial_shear_modulus() const { return c0; }
 };
 
 // A law of the first invariant in plane stress.
@@ -101,6 +169,12 @@ struct InvariantLaw {
             psi.second * i1 * i2 + psi.first * 4 * thin2 * thin};
   }
   double free_width(double l1) const { return 1 / std::sqrt(l1); }
+  // I1 - 3, of the isochoric part where the volume changes.
+  double strain(double l1, double l2) const {
+    const double thin = 1 / (l1 * l2), thin2 = thin * thin;
+    if (bulk > 0) return volume(l1, l2, thin2, balanced_volume(l1, l2, thin2)).invariant;
+    return distortion((l1 - 1) * (l1 + 1), (l2 - 1) * (l2 + 1), thin2);
+  }
   double initial_young() const {
     const double mu = invariant.initial_shear_modulus();
     return bulk > 0 ? 9 * bulk * mu / (3 * bulk + mu) : 3 * mu;
@@ -111,11 +185,11 @@ struct InvariantLaw {
   }
 
  private:
-  // f(J) and its derivatives at fixed l1, l2.
+  // W and its second derivative by J at fixed l1, l2.
   struct Volume {
-    double energy, first, second;
+    double energy, second;
+    double invariant, di;  // isochoric, less 3, and its derivative by J
     InvariantEnergy psi;
-    double di, ddi;  // of the isochoric invariant by J
   };
   Volume volume(double l1, double l2, double thin2, double j) const {
     const double root = std::cbrt(j), a = 1 / (root * root), plane = l1 * l1 + l2 * l2;
@@ -124,32 +198,47 @@ struct InvariantLaw {
     const double p1 = shrunk + a * (l1 - 1) * (l1 + 1), p2 = shrunk + a * (l2 - 1) * (l2 + 1);
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
-    const InvariantEnergy psi = invariant.at(distortion(p1, p2, thin2 / (a * a)));
-    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1),
-            psi.first * di + bulk * (j - 1),
-            psi.second * di * di + psi.first * ddi + bulk,
-            psi,
-            di,
-            ddi};
+    const double isochoric = distortion(p1, p2, thin2 / (a * a));
+    const InvariantEnergy psi = invariant.at(isochoric);
+    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1), psi.second * di * di + psi.first * ddi + bulk,
+            isochoric, di, psi};
   }
 
-  // psi grows with J - 1 faster than bulk resists, so the least energy lies between no change of volume and
-  // the J of least distortion; Newton, kept between them by bisection.
-  StretchEnergy with_volume(double l1, double l2, double thin2) const {
+  // The J of least energy lies between no change of volume and J*, that of least distortion. With
+  // J = 1 + (J* - 1) s and u = ln(s/(1 - s)) the stress of psi and that of the bulk modulus balance where
+  //   ln psi'(j) + ln(4 thin2/(3 bulk)) - 5/3 ln J + ln(J* + J) - u = 0,
+  // which falls with u from +infinity to -infinity, nearly along a straight line however steep psi is. Newton
+  // in u, kept in its bracket by bisection.
+  double balanced_volume(double l1, double l2, double thin2) const {
     const double plane = l1 * l1 + l2 * l2, least_distortion = std::sqrt(0.5 * plane / thin2);
-    double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion), j = 1;
-    Volume v = volume(l1, l2, thin2, j);
-    constexpr int kMost = 100;
-    constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
+    const double width = least_distortion - 1;
+    constexpr int kMost = 200;
+    constexpr double kLast = 1e-9;  // of J: the error that a step this small leaves is its square
+    constexpr double kMostLogit = 700;
+    const auto share = [](double u) { return 1 / (1 + std::exp(-u)); };  // s
+    const auto volume_of = [&](double u) {
+      return u < 0 ? 1 + width * share(u) : least_distortion - width * share(-u);
+    };
+    double low = -kMostLogit, high = kMostLogit, u = 0, j = volume_of(u);
     for (int k = 0; k < kMost; ++k) {
-      (v.first > 0 ? high : low) = j;
-      double next = j - v.first / v.second;
-      if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-      const double moved = std::abs(next - j);
-      j = next;
-      v = volume(l1, l2, thin2, j);
-      if (moved <= kLast * j) break;
+      const Volume v = volume(l1, l2, thin2, j);
+      const LogSlope slope = invariant.log_slope(v.invariant);
+      const double balance = slope.log + std::log(4 * thin2 / (3 * bulk)) - 5.0 / 3 * std::log(j) +
+                             std::log(least_distortion + j) - u;
+      (balance > 0 ? low : high) = u;
+      const double by_u = width * share(u) * share(-u);  // dJ/du
+      const double fall = (slope.growth * v.di - 5 / (3 * j) + 1 / (least_distortion + j)) * by_u - 1;
+      u -= balance / fall;
+      if (!(u >= low && u <= high)) u = 0.5 * (low + high);
+      const double last = std::exchange(j, volume_of(u));
+      if (std::abs(j - last) <= kLast * j) break;
     }
+    return j;
+  }
+
+  StretchEnergy with_volume(double l1, double l2, double thin2) const {
+    const double j = balanced_volume(l1, l2, thin2);
+    const Volume v = volume(l1, l2, thin2, j);
     // At fixed J the derivatives by the stretches; then those through J, which the minimum fixes.
     const double root = std::cbrt(j), a = 1 / (root * root), b = j * j * a * thin2;  // I = a plane + b
     const double i1 = 2 * (a * l1 - b / l1), i2 = 2 * (a * l2 - b / l2);
@@ -160,9 +249,9 @@ struct InvariantLaw {
     return {v.energy,
             first * i1,
             first * i2,
-            second * i1 * i1 + first * (2 * a + 6 * b / (l1 * l1)) - w1j * w1j / v.second,
-            second * i2 * i2 + first * (2 * a + 6 * b / (l2 * l2)) - w2j * w2j / v.second,
-            second * i1 * i2 + first * 4 * b / (l1 * l2) - w1j * w2j / v.second};
+            second * i1 * i1 + first * (2 * a + 6 * b / (l1 * l1)) - w1j * (w1j / v.second),
+            second * i2 * i2 + first * (2 * a + 6 * b / (l2 * l2)) - w2j * (w2j / v.second),
+            second * i1 * i2 + first * 4 * b / (l1 * l2) - w1j * (w2j / v.second)};
   }
 };
 

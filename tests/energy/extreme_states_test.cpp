@@ -1,0 +1,182 @@
+// Every membrane law far outside what tissue is measured at: stretches from 0.2 to 3, uniaxial, biaxial and
+// sheared, with the published numbers of real leaflets. Energy, gradient and Hessian against differences, and
+// the minimum that the law takes over its change of volume, or over its wrinkles, against brute force. Where
+// an exponential overflows the energy is infinite, and nothing else.
+#include "support/single_triangle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace coapt {
+namespace {
+
+constexpr double kMostFinite = 1e120;  // whose second derivatives are finite too
+
+// Numbers of published leaflets [MPa]: the tricuspid valve of Mathur et al. 2022, with the bulk modulus 2/D
+// that it prints and incompressible, and a bioprosthetic leaflet.
+std::vector<ExponentialLaw> published_exponentials() {
+  std::vector<ExponentialLaw> all{{{0.067608, 0.0132848, 38.1878}, 0}};
+  for (const double bulk : {0.0, 2 / 20.06689, 20.0})
+    for (const ExponentialInvariant& leaflet :
+         {ExponentialInvariant{0.001, 0.000124, 4.568202}, ExponentialInvariant{0.001, 0.000188, 14.85959},
+          ExponentialInvariant{0.001, 0.000191, 17.75149}})
+      all.push_back({leaflet, bulk});
+  return all;
+}
+
+std::vector<Eigen::Matrix2d> extreme_states() {
+  std::vector<Eigen::Matrix2d> all;
+  for (const double l : {0.203, 0.52, 0.81, 1.021, 1.31, 1.703, 1.852, 2.104, 2.61, 2.998}) {
+    for (const double width : {0.211, 0.655, 1 / std::sqrt(l) + 1e-3, 0.993, 1.013 * l})
+      all.push_back(plane(l, 0, width));
+    all.push_back(plane(l, 0.4, 0.91));
+    all.push_back(plane(1.04, 0.5 * l, l));
+  }
+  return all;
+}
+
+template <typename Law>
+double energy_at(const Single<Law>& s, const CstVector& x) {
+  return KernelOf<Law>::Type::evaluate(s.rest, x, nullptr, nullptr);
+}
+
+// Along one direction by differences: slope and curvature of the energy.
+template <typename Law>
+void expect_derivatives(const Law& law, const Eigen::Matrix2d& F, bool relaxes) {
+  using Kernel = typename KernelOf<Law>::Type;
+  const Single<Law> s(law, F, 0.3, relaxes);
+  SCOPED_TRACE(testing::Message() << "F = " << F(0, 0) << " " << F(0, 1) << " " << F(1, 1)
+                                  << (relaxes ? ", relaxed" : ", resisting"));
+  ASSERT_FALSE(std::isnan(s.energy));
+  ASSERT_GE(s.energy, 0);
+  if (s.energy > kMostFinite) return;
+  ASSERT_TRUE(s.g.allFinite() && s.H.allFinite());
+  CstVector d;
+  d << 0.3, -0.7, 0.2, -0.5, 0.4, 0.1, 0.6, 0.35, -0.8;
+  const double h = 1e-5;
+  const auto slope = [&](double t) {
+    CstVector g;
+    Kernel::evaluate(s.rest, s.x + t * d, &g, nullptr);
+    return g.dot(d);
+  };
+  const auto work = [&](double t) { return energy_at(s, s.x + t * d) - energy_at(s, s.x - t * d); };
+  const double by_energy = (8 * work(h) - work(2 * h)) / (12 * h);
+  EXPECT_NEAR(by_energy, s.g.dot(d), 1e-5 * s.g.norm() * d.norm() + 1e-9 * s.energy / h + 1e-16);
+  const auto change = [&](double t) { return slope(t) - slope(-t); };
+  const double by_slope = (8 * change(h) - change(2 * h)) / (12 * h);
+  EXPECT_NEAR(by_slope, d.dot(s.H * d), 1e-4 * s.H.norm() * d.squaredNorm() + 1e-10 * s.g.norm() / h + 1e-14);
+}
+
+template <typename Law>
+void expect_right_everywhere(const Law& law) {
+  for (const Eigen::Matrix2d& F : extreme_states())
+    for (const bool relaxes : {true, false}) expect_derivatives(law, F, relaxes);
+}
+
+TEST(ExtremeStates, DerivativesOfPublishedLawsHold) {
+  for (const ExponentialLaw& law : published_exponentials()) {
+    SCOPED_TRACE(testing::Message() << "c2 " << law.invariant.c2 << ", bulk " << law.bulk);
+    expect_right_everywhere(law);
+  }
+  expect_right_everywhere(OrthotropicLaw{0.1, 0.02, {5.9, 0.15, 0.01}, {1.2, 0.25, 0.01}, 0.3, 0.02});
+  expect_right_everywhere(MayNewmanYinLaw{0.000399, 4.325, 1446.5});
+  expect_right_everywhere(CrimpedFibreLaw{0.01, CrimpedFibre(48, 12, 1.6, 0.01), 0.1});
+}
+
+template <typename Entry>
+class ExtremeState : public testing::Test {};
+TYPED_TEST_SUITE(ExtremeState, MembraneLaws, LawNames);
+
+TYPED_TEST(ExtremeState, DerivativesHold) { expect_right_everywhere(TypeParam::law(1)); }
+
+// The energy is the work of the force along the way: nothing jumps on it.
+TEST(ExtremeStates, NothingJumpsOnTheWay) {
+  for (const ExponentialLaw& law : published_exponentials())
+    for (const double across : {0.5, 0.9, 1.0}) {  // widths, as a power of the stretch: -1 is uniaxial
+      const auto at = [&](double l) { return Single<ExponentialLaw>(law, plane(l, 0, std::pow(l, across))); };
+      const double step = 0.0005;
+      for (double l = 1.01; l < 2.6; l += step) {
+        const auto left = at(l), middle = at(l + 0.5 * step), right = at(l + step);
+        if (!(right.energy < kMostFinite)) break;
+        const CstVector d = right.x - left.x;  // the way is all but straight
+        const double work = (left.g.dot(d) + 4 * middle.g.dot(d) + right.g.dot(d)) / 6;
+        ASSERT_NEAR(right.energy - left.energy, work, 2e-3 * work) << law.bulk << " at " << l;
+      }
+    }
+}
+
+// Least energy over all changes of volume, in long double.
+long double least_over_volume(const ExponentialLaw& law, long double l1, long double l2) {
+  const ExponentialInvariant& i = law.invariant;
+  const auto energy = [&](long double log_volume) {
+    const long double J = std::exp(log_volume), bar = std::pow(J, -2.0L / 3);
+    const long double j = bar * (l1 * l1 + l2 * l2 + J * J / (l1 * l1 * l2 * l2)) - 3;
+    return 0.5L * (i.c0 * j + i.c1 * std::expm1(i.c2 * j * j) + law.bulk * (J - 1) * (J - 1));
+  };
+  // A grid, then thirds between its neighbours: the energy has one minimum.
+  constexpr long double kStep = 0.05L;
+  long double best = 0;
+  for (long double at = -25; at <= 10; at += kStep)
+    if (energy(at) < energy(best)) best = at;
+  long double low = best - kStep, high = best + kStep;
+  for (int k = 0; k < 200; ++k) {
+    const long double third = (high - low) / 3;
+    if (energy(low + third) < energy(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return energy(low);
+}
+
+TEST(ExtremeStates, CompressibleLawsTakeTheVolumeOfLeastEnergy) {
+  for (const ExponentialLaw& law : published_exponentials()) {
+    if (law.bulk == 0) continue;
+    for (const auto& [l1, l2] : {std::pair{1.7, 1.7},
+                                 {2.1, 1.0},
+                                 {2.0, 2.0},
+                                 {3.0, 3.0},
+                                 {3.0, 1.0},
+                                 {0.2, 0.2},
+                                 {1.3, 0.7},
+                                 {1.05, 1.01}}) {
+      const auto expected = static_cast<double>(least_over_volume(law, l1, l2));
+      const double energy = law.evaluate(l1, l2).energy;
+      if (std::isinf(energy))
+        EXPECT_GT(expected, 1e300) << l1 << " x " << l2;
+      else
+        EXPECT_NEAR(energy, expected, 1e-9 * expected) << l1 << " x " << l2 << ", bulk " << law.bulk;
+    }
+  }
+}
+
+// The same by hand: figures that the audit of the law was made with.
+TEST(ExtremeStates, TheSeptalLeafletHasTheEnergyThatItHas) {
+  const ExponentialLaw septal{{0.001, 0.000191, 17.75149}, 2 / 20.06689};
+  EXPECT_NEAR(septal.evaluate(1.7, 1.7).energy, 0.1297, 1e-4);
+  EXPECT_NEAR(septal.evaluate(2.1, 1.0).energy, 0.2346, 1e-4);
+  EXPECT_GT(septal.evaluate(2.0, 2.0).w11, 0);
+}
+
+// No width that wrinkles leave has less energy.
+TEST(ExtremeStates, RelaxedLawsTakeTheWidthOfLeastEnergy) {
+  for (const ExponentialLaw& law : published_exponentials())
+    for (const double l : {1.2, 1.7, 1.9, 2.5, 3.0}) {
+      const double relaxed = Single<ExponentialLaw>(law, plane(l, 0, 0.205)).density();
+      double least = std::numeric_limits<double>::infinity();
+      for (double width = 0.205; width < l; width += 1e-3)
+        least = std::min(least, law.evaluate(l, width).energy);
+      if (std::isinf(least)) {
+        EXPECT_TRUE(std::isinf(relaxed)) << l;
+        continue;
+      }
+      EXPECT_LE(relaxed, least * (1 + 1e-9)) << l << ", bulk " << law.bulk;
+      EXPECT_GT(relaxed, 0.9 * least) << l << ", bulk " << law.bulk;
+    }
+}
+
+}  // namespace
+}  // namespace coapt
