@@ -101,7 +101,7 @@ double mean_chord_stress(const Valve& valve) {
 // Chords by what the mean strand is strained once it is straight; the strand that bears most is strained some
 // five times as much.
 double chord_young(double stress, RandomSource& random) {
-  return rounded(stress / random.log_between(0.004, 0.015));
+  return rounded(stress / random.log_between(0.003, 0.008));
 }
 
 Material linear_chord(double stress, RandomSource& random) {
