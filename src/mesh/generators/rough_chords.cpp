@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -129,6 +131,7 @@ class RoughChordBuilder {
   ChordNetwork finished() {
     settle();
     cut_lengths();
+    reach_leaflets();
     network_.junctions.resize(3, static_cast<int>(junctions_.size()));
     for (size_t i = 0; i < junctions_.size(); ++i)
       network_.junctions.col(static_cast<int>(i)) = junctions_[i];
@@ -227,6 +230,33 @@ class RoughChordBuilder {
       const bool is_short = random_.chance(0.04);
       const double shortage = random_.between(0.01, kMostShortage);
       if (is_short) chord.rest_length = (1 - shortage) * length;
+    }
+  }
+
+  // Lengthens strands between a tip and a vertex that could not reach it in the closed valve, not even with the
+  // leaflet drawn straight from the annulus.
+  void reach_leaflets() {
+    constexpr int kPlaces = 60;  // of the annulus
+    std::map<std::pair<ChordEnd::Kind, int>, Chord*> to;
+    for (Chord& chord : network_.chords) to[{chord.to.kind, chord.to.index}] = &chord;
+    for (const Chord& last : network_.chords) {
+      if (last.to.kind != ChordEnd::Kind::Leaflet) continue;
+      std::vector<Chord*> path = {to.at({last.to.kind, last.to.index})};
+      while (path.back()->from.kind == ChordEnd::Kind::Junction)
+        path.push_back(to.at({path.back()->from.kind, path.back()->from.index}));
+      const Vec3 tip = network_.papillary_closed.col(path.back()->from.index);
+      double needed = 0, length = 0;
+      for (int i = 0; i < kPlaces; ++i) {
+        const double u = double(i) / kPlaces, leaflet = (surface_.open(u, 0) - open(last.to.index)).norm();
+        needed = std::max(needed, (surface_.closed(u, 0) - tip).norm() - leaflet);
+      }
+      for (const Chord* chord : path) length += chord->rest_length;
+      if (length >= needed) continue;
+      for (Chord* chord : path) {
+        const double most = (1 + kMostSlack) * (position(chord->to) - position(chord->from)).norm();
+        chord->rest_length =
+            std::max(chord->rest_length, std::min(most, chord->rest_length * needed / length));
+      }
     }
   }
 

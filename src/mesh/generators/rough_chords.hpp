@@ -17,7 +17,8 @@ inline constexpr double kMostShortage = 0.1;  // of the few strands that are too
 // Rest lengths are those of the surface as closed by construction, a few percent longer, so that the leaflets
 // can meet, with tips that have made a share of their way drawn from 0 to 1: on the rest of it chords pull;
 // branch points start where strands are neither stretched nor slacker than kMostSlack if there is such a
-// place, and lengths are cut to these limits. One strand in twenty-five is too short by up to kMostShortage.
+// place, and lengths are cut to these limits. One strand in twenty-five is too short by up to kMostShortage,
+// but none so that its vertex could not be reached in the closed valve.
 // Plans are made on the surface: trees are about the same at every mesh size.
 ChordNetwork rough_chords(const RoughSurface& surface, const RoughMesh& mesh, RandomSource& random);
 
