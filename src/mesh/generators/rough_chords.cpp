@@ -233,8 +233,8 @@ class RoughChordBuilder {
     }
   }
 
-  // Lengthens strands between a tip and a vertex that could not reach it in the closed valve, not even with the
-  // leaflet drawn straight from the annulus.
+  // Lengthens strands between a tip and a vertex that could not reach it in the closed valve, not even with
+  // the leaflet drawn straight from the annulus.
   void reach_leaflets() {
     constexpr int kPlaces = 60;  // of the annulus
     std::map<std::pair<ChordEnd::Kind, int>, Chord*> to;
