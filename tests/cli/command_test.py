@@ -296,6 +296,26 @@ class CommandTest(CommandCase):
         self.assert_bad_input(mitral("--anterior", 0, 1, 0), "--annulus FILE")
         self.assert_bad_input(coapt("generate", "disc", "--annulus", ring, "-o", self.folder / "x"), "mitral")
 
+    def test_generates_rough_valves(self):
+        for shape in ["mitral", "tricuspid"]:
+            with self.subTest(shape=shape):
+                scene = self.generate(shape, "--rough", 1, "--triangles", 300)
+                self.assertIn('"contact_barrier"', scene.read_text())
+                self.assertIn('"follower"', scene.read_text())
+                files = ["scene.json", "valve.json", "leaflets.obj"]
+                first = [(self.folder / name).read_bytes() for name in files]
+                self.generate(shape, "--rough", 1, "--triangles", 300)
+                self.assertEqual(first, [(self.folder / name).read_bytes() for name in files])
+                self.generate(shape, "--rough", 2, "--triangles", 300)
+                self.assertNotEqual(first, [(self.folder / name).read_bytes() for name in files])
+                self.assertIn("no defects", coapt("check", scene).stdout)
+        generate = lambda *options: coapt("generate", *options, "-o", self.folder / "x")
+        self.assert_bad_input(generate("tricuspid"), "--rough SEED")
+        self.assert_bad_input(generate("disc", "--rough", 1), "--rough", "disc")
+        self.assert_bad_input(generate("mitral", "--rough", 1, "--seed", 2), "--seed")
+        self.assert_bad_input(generate("tricuspid", "--rough", 1, "--model", "hammer-2008"), "--model")
+        self.assert_bad_input(generate("mitral", "--rough", 1, "--triangles", 100), "at least 250")
+
     def test_imports_linear_leaflets_and_chords_where_asked(self):
         self.generate("mitral", "--triangles", 300)
         out = self.folder / "linear"

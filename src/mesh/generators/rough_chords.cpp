@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -18,7 +20,7 @@ using RoughFan = std::vector<RoughInsertion>;
 struct RoughTree {
   int group = 0;
   std::string material;
-  double area = 0;  // where it leaves the tip [mm^2]
+  double area = 0;  // of a strand that ends at a leaflet; others bear several [mm^2]
   std::vector<RoughFan> fans;
 };
 
@@ -60,8 +62,9 @@ std::vector<RoughFan> in_fans(const std::vector<RoughInsertion>& insertions, int
 }
 
 std::vector<RoughTree> planned_trees(const RoughSurface& surface, RandomSource& random) {
-  const double spacing = random.log_between(1.3, 4.5), belly_share = random.between(0.25, 0.5);
+  const double spacing = random.log_between(0.8, 4.5), belly_share = random.between(0.25, 0.5);
   const double scale = random.between(0.8, 1.3);
+  const int widest = 3 + random.below(8);  // fan
   std::vector<RoughTree> trees;
   for (const LeafletHalf& half : halves(surface)) {
     const int count = std::max(3, static_cast<int>(std::lround(half.length / spacing)));
@@ -75,15 +78,15 @@ std::vector<RoughTree> planned_trees(const RoughSurface& surface, RandomSource& 
       const double u = placed(i, belly_count);
       belly.push_back({u, random.between(0.5, 0.8)});
     }
-    const std::vector<RoughFan> fans = in_fans(margin, 1, 5, random);
+    const std::vector<RoughFan> fans = in_fans(margin, 1, widest, random);
     for (size_t i = 0; i < fans.size(); ++i) {
-      RoughTree tree{half.group, "primary", scale * random.between(0.3, 0.5), {fans[i]}};
+      RoughTree tree{half.group, "primary", scale * random.between(0.08, 0.16), {fans[i]}};
       const bool is_joined = i + 1 < fans.size() && random.chance(0.4);
       if (is_joined) tree.fans.push_back(fans[++i]);
       trees.push_back(tree);
     }
     for (const RoughFan& fan : in_fans(belly, 1, 3, random))
-      trees.push_back({half.group, "secondary", scale * random.between(0.6, 1.1), {fan}});
+      trees.push_back({half.group, "secondary", scale * random.between(0.2, 0.4), {fan}});
   }
   return trees;
 }
@@ -95,6 +98,8 @@ class RoughChordBuilder {
       : surface_(surface), mesh_(mesh), random_(random) {
     network_.papillary = surface.tips;
     network_.papillary_closed = surface.tips_closed;
+    // Lengths that take no account of how the tips move leave chords pulling.
+    foreseen_tips_ = surface.tips + random.unit() * (surface.tips_closed - surface.tips);
     is_rim_.resize(static_cast<size_t>(mesh.leaflets.vertex_count()), false);
     for (int v = 0; v < mesh.leaflets.vertex_count(); ++v)
       is_rim_[v] = mesh.coordinates(1, v) <= 0 || mesh.coordinates(1, v) >= 1;
@@ -116,17 +121,17 @@ class RoughChordBuilder {
     }
     if (count == 0) return;
     const int tip = chosen_tip(tree.group, open_sum / count);
-    const Place from{{ChordEnd::Kind::Papillary, tip}, surface_.tips.col(tip), surface_.tips_closed.col(tip)};
-    if (fans.size() == 1) return add_fan(from, fans[0], tree, tree.area, 1);
+    const Place from{{ChordEnd::Kind::Papillary, tip}, surface_.tips.col(tip), foreseen_tips_.col(tip)};
+    if (fans.size() == 1) return add_fan(from, fans[0], tree, 1);
     const Place fork = add_junction(from, closed_sum / count, open_sum / count, random_.between(0.3, 0.45));
-    add_strand(from, fork, tree, tree.area, 1);
-    for (const std::vector<int>& fan : fans)
-      add_fan(fork, fan, tree, tree.area * static_cast<double>(fan.size()) / count, 2);
+    add_strand(from, fork, tree, count, 1);
+    for (const std::vector<int>& fan : fans) add_fan(fork, fan, tree, 2);
   }
 
   ChordNetwork finished() {
     settle();
     cut_lengths();
+    reach_leaflets();
     network_.junctions.resize(3, static_cast<int>(junctions_.size()));
     for (size_t i = 0; i < junctions_.size(); ++i)
       network_.junctions.col(static_cast<int>(i)) = junctions_[i];
@@ -144,7 +149,7 @@ class RoughChordBuilder {
 
   // The nearest vertex (of the margin for t = 1, else of the inside) that no chord has yet; -1: it is far.
   int free_vertex(const RoughInsertion& insertion) {
-    constexpr double kFar = 5;  // [mm]
+    constexpr double kFar = 3;  // [mm]
     const Vec3 point = surface_.open(insertion.u, insertion.t);
     int best = -1;
     for (int v = 0; v < mesh_.leaflets.vertex_count(); ++v) {
@@ -176,23 +181,22 @@ class RoughChordBuilder {
     return {end, junctions_.back(), from.closed + share * (closed_middle - from.closed)};
   }
 
-  void add_strand(const Place& from, const Place& to, const RoughTree& tree, double area, int level) {
+  void add_strand(const Place& from, const Place& to, const RoughTree& tree, int borne, int level) {
     const double length = (to.closed - from.closed).norm() * (1 + random_.between(0.01, 0.06));
-    network_.chords.push_back({from.end, to.end, length, area, tree.material, level});
+    network_.chords.push_back({from.end, to.end, length, borne * tree.area, tree.material, level});
   }
 
-  void add_fan(const Place& from, const std::vector<int>& vertices, const RoughTree& tree, double area,
-               int level) {
+  void add_fan(const Place& from, const std::vector<int>& vertices, const RoughTree& tree, int level) {
     Vec3 closed_sum = Vec3::Zero(), open_sum = Vec3::Zero();
     for (const int v : vertices) closed_sum += closed(v), open_sum += open(v);
-    const double count = static_cast<double>(vertices.size());
+    const int count = static_cast<int>(vertices.size());
     Place root = from;
-    if (vertices.size() > 1) {
+    if (count > 1) {
       root = add_junction(from, closed_sum / count, open_sum / count, random_.between(0.45, 0.65));
-      add_strand(from, root, tree, area, level++);
+      add_strand(from, root, tree, count, level++);
     }
     for (const int v : vertices)
-      add_strand(root, {{ChordEnd::Kind::Leaflet, v}, open(v), closed(v)}, tree, area / count, level);
+      add_strand(root, {{ChordEnd::Kind::Leaflet, v}, open(v), closed(v)}, tree, 1, level);
   }
 
   Vec3 position(const ChordEnd& end) const {
@@ -229,10 +233,38 @@ class RoughChordBuilder {
     }
   }
 
+  // Lengthens strands between a tip and a vertex that could not reach it in the closed valve, not even with
+  // the leaflet drawn straight from the annulus.
+  void reach_leaflets() {
+    constexpr int kPlaces = 60;  // of the annulus
+    std::map<std::pair<ChordEnd::Kind, int>, Chord*> to;
+    for (Chord& chord : network_.chords) to[{chord.to.kind, chord.to.index}] = &chord;
+    for (const Chord& last : network_.chords) {
+      if (last.to.kind != ChordEnd::Kind::Leaflet) continue;
+      std::vector<Chord*> path = {to.at({last.to.kind, last.to.index})};
+      while (path.back()->from.kind == ChordEnd::Kind::Junction)
+        path.push_back(to.at({path.back()->from.kind, path.back()->from.index}));
+      const Vec3 tip = network_.papillary_closed.col(path.back()->from.index);
+      double needed = 0, length = 0;
+      for (int i = 0; i < kPlaces; ++i) {
+        const double u = double(i) / kPlaces, leaflet = (surface_.open(u, 0) - open(last.to.index)).norm();
+        needed = std::max(needed, (surface_.closed(u, 0) - tip).norm() - leaflet);
+      }
+      for (const Chord* chord : path) length += chord->rest_length;
+      if (length >= needed) continue;
+      for (Chord* chord : path) {
+        const double most = (1 + kMostSlack) * (position(chord->to) - position(chord->from)).norm();
+        chord->rest_length =
+            std::max(chord->rest_length, std::min(most, chord->rest_length * needed / length));
+      }
+    }
+  }
+
   const RoughSurface& surface_;
   const RoughMesh& mesh_;
   RandomSource& random_;
   ChordNetwork network_;
+  Points foreseen_tips_;  // closed, as lengths take them
   std::vector<Vec3> junctions_;
   std::vector<bool> is_rim_;
   std::set<int> taken_;

@@ -147,9 +147,7 @@ void add_tips(RoughKind kind, RandomSource& random, RoughSurface& surface) {
     const double depth = random.between(27, 33);
     const Vec3 centre(outward * commissure.x(),
                       outward * commissure.y() * (kind == RoughKind::Mitral ? 0.4 : 1), -depth);
-    Vec3 motion = random_direction(random);
-    motion.z() = 0.3 + 0.7 * std::abs(motion.z());  // a contracting ventricle brings them nearer, mostly
-    motion = motion.normalized() * random.between(1, 4.2);
+    const Vec3 motion = random_direction(random) * random.between(1.5, 4.2);
     const int count = 2 + random.below(4);
     for (int i = 0; i < count; ++i) {
       const double angle = kFullTurn * (i + random.between(-0.2, 0.2)) / count, out = random.between(1.5, 4);

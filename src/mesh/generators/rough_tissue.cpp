@@ -37,9 +37,12 @@ Material linear_leaflet(double pressure, double thickness, RandomSource& random)
 // 17.8); c1 follows from the stretch at which the leaflet is to bear its load.
 Material exponential_leaflet(double pressure, double thickness, RandomSource& random) {
   constexpr double kMostUniaxial = 1.5;
+  constexpr double kSofter =
+      0.65;  // a sheet of finite bulk modulus stretches more than its formula here says
   const double c0 = rounded(random.log_between(0.001, 0.01)), c2 = rounded(random.log_between(4, 20));
   double stretch = random.between(1.15, 1.35);
   const bool has_bulk = random.chance(0.5);
+  if (has_bulk) stretch = 1 + kSofter * (stretch - 1);
   const double bulk = rounded(random.log_between(0.1, 1));
   ExponentialSheet sheet{c0, 0, c2, thickness};
   do {
@@ -49,7 +52,7 @@ Material exponential_leaflet(double pressure, double thickness, RandomSource& ra
     // The tension is linear in c1.
     sheet.c1 = rounded(std::max(1e-5, (wanted - matrix) / (sheet.biaxial(stretch) - matrix)));
     stretch = 1 + 0.9 * (stretch - 1);
-  } while (sheet.uniaxial(kMostUniaxial) < kTube * pressure);
+  } while (sheet.uniaxial(has_bulk ? 1 + kSofter * (kMostUniaxial - 1) : kMostUniaxial) < kTube * pressure);
   Material law{"cst_exponential",
                {{"c0", pressure_text(c0)}, {"c1", pressure_text(sheet.c1)}, {"c2", number_text(c2)}}};
   if (has_bulk) law.keys.emplace_back("bulk", pressure_text(bulk));
@@ -72,6 +75,12 @@ Material orthotropic_leaflet(double pressure, double thickness, RandomSource& ra
   return law;
 }
 
+// 0 linear, 1 exponential (every other one: what tissue is), 2 orthotropic.
+int leaflet_type(RandomSource& random) {
+  constexpr int kTypes[] = {0, 1, 1, 2};
+  return kTypes[random.below(4)];
+}
+
 Material leaflet(int type, double pressure, double thickness, RandomSource& random) {
   Material law = type == 0   ? linear_leaflet(pressure, thickness, random)
                  : type == 1 ? exponential_leaflet(pressure, thickness, random)
@@ -80,14 +89,29 @@ Material leaflet(int type, double pressure, double thickness, RandomSource& rand
   return law;
 }
 
-Material linear_chord(RandomSource& random) {
-  return {"cable", {{"young", pressure_text(rounded(random.log_between(15, 80)))}}};
+// Stress in the mean strand that ends at a leaflet: together they bear half the load of an annulus of
+// 800 mm^2.
+double mean_chord_stress(const Valve& valve) {
+  double area = 0;
+  for (const Chord& chord : valve.chords.chords)
+    if (chord.to.kind == ChordEnd::Kind::Leaflet) area += chord.area;
+  return 0.5 * 800 * valve.pressure / area;
 }
 
-// Between the fits of Mathur et al. 2022: moduli of 7 to 61 MPa, exponents of 56 to 98.
-Material ogden_chord(RandomSource& random) {
+// Chords by what the mean strand is strained once it is straight; the strand that bears most is strained some
+// five times as much.
+double chord_young(double stress, RandomSource& random) {
+  return rounded(stress / random.log_between(0.003, 0.008));
+}
+
+Material linear_chord(double stress, RandomSource& random) {
+  return {"cable", {{"young", pressure_text(chord_young(stress, random))}}};
+}
+
+// Exponents of the fits of Mathur et al. 2022 (56 to 98) and a little below.
+Material ogden_chord(double stress, RandomSource& random) {
   const int terms = 1 + random.below(3);
-  const double mu = random.log_between(5, 40), alpha = random.between(40, 100);
+  const double mu = chord_young(stress, random) / 3, alpha = random.between(40, 100);
   std::vector<double> pairs;
   for (int k = 0; k < terms; ++k) {
     pairs.push_back(rounded(mu / terms * random.between(0.7, 1.3)));
@@ -97,12 +121,12 @@ Material ogden_chord(RandomSource& random) {
 }
 
 // The toe's slope at its end is the line's, as in the fit of Kaiser et al. 2019 (exponent times strain 7.2).
-Material toe_chord(RandomSource& random) {
-  const double recruited = rounded(random.between(0.03, 0.12)),
+Material toe_chord(double stress, RandomSource& random) {
+  const double recruited = rounded(random.between(0.03, 0.1)),
                exponent = rounded(random.between(5, 8) / recruited);
   const double intercept = recruited + std::expm1(-exponent * recruited) / exponent;
   return {"cable_toe",
-          {{"young", pressure_text(rounded(random.log_between(20, 80)))},
+          {{"young", pressure_text(chord_young(stress, random))},
            {"recruitment_strain", number_text(recruited)},
            {"intercept", number_text(intercept)},
            {"exponent", number_text(exponent)}}};
@@ -124,19 +148,20 @@ double ExponentialSheet::uniaxial(double stretch) const {
 void draw_tissue(RandomSource& random, Valve& valve) {
   constexpr double kOddLeaflet = 0.25;  // share of leaflets of another law than the valve's
   valve.thickness = rounded(random.between(0.4, 1.2));
-  const int usual = random.below(3);
+  const int usual = leaflet_type(random);
   for (const std::string& region : valve.leaflets.region_names) {
     const bool is_odd = random.chance(kOddLeaflet);
-    const int other = random.below(3);
+    const int other = leaflet_type(random);
     valve.membranes[region] = leaflet(is_odd ? other : usual, valve.pressure, valve.thickness, random);
   }
   std::set<std::string> materials;
   for (const Chord& chord : valve.chords.chords) materials.insert(chord.material);
+  const double stress = mean_chord_stress(valve);
   for (const std::string& material : materials) {
     const int type = random.below(3);
-    valve.cables[material] = type == 0   ? linear_chord(random)
-                             : type == 1 ? ogden_chord(random)
-                                         : toe_chord(random);
+    valve.cables[material] = type == 0   ? linear_chord(stress, random)
+                             : type == 1 ? ogden_chord(stress, random)
+                                         : toe_chord(stress, random);
   }
 }
 
