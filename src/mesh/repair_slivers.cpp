@@ -14,6 +14,7 @@ constexpr double kMostCollapsed = 0.01;  // length of a collapsed edge over the 
 constexpr double kBetter = 1.5;          // by which the worst triangle improves where no sliver goes
 constexpr double kSameSide = 0.2;        // cosine between the normals of a triangle before and after
 constexpr int kMostPasses = 100;
+constexpr size_t kMostAround = 500;  // triangles of a vertex: the spokes of a larger fan are left
 
 size_t pos(int i) { return static_cast<size_t>(i); }
 
@@ -226,6 +227,8 @@ std::optional<Proposal> SliverRepairer::collapse(int v, int u) const {
 }
 
 bool SliverRepairer::take_best(int t) {
+  for (const int v : triangles_[pos(t)])
+    if (around_[pos(v)].size() > kMostAround) return false;
   std::vector<Proposal> proposals;
   const auto consider = [&](std::optional<Proposal> proposal) {
     if (proposal && improves(*proposal)) proposals.push_back(std::move(*proposal));

@@ -88,8 +88,10 @@ void merge_in(std::vector<int>& list, Points* positions, int gone, int into) {
 }
 
 void renumber(const std::vector<int>& number, Valve& valve) {
+  // A set of a file may name vertices that do not exist; those nobody takes.
   const auto renumbered = [&](std::vector<int>& list) {
-    for (int& v : list) v = number[static_cast<size_t>(v)];
+    for (int& v : list)
+      if (v >= 0 && static_cast<size_t>(v) < number.size()) v = number[static_cast<size_t>(v)];
   };
   renumbered(valve.annulus);
   renumbered(valve.free_edge);

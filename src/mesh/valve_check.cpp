@@ -34,7 +34,7 @@ std::string range_text(const std::array<double, 2>& range, double factor = 1) {
 }
 
 // Zero for a sliver, whose normal says nothing.
-Vec3 unit_normal(const TriangleMesh& mesh, int t) {
+Vec3 normal_unless_sliver(const TriangleMesh& mesh, int t) {
   const Vec3 a = mesh.vertices.col(mesh.triangles(0, t));
   const Vec3 u = mesh.vertices.col(mesh.triangles(1, t)) - a, v = mesh.vertices.col(mesh.triangles(2, t)) - a;
   const Vec3 n = u.stableNormalized().cross(v.stableNormalized());
@@ -59,7 +59,8 @@ std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
     if (edge.triangles.size() != 2) continue;
     const int s = edge.triangles[0], t = edge.triangles[1];
     const int sign = runs_upward(leaflets, s, edge) == runs_upward(leaflets, t, edge) ? -1 : 1;
-    if (!(sign * unit_normal(leaflets, s).dot(unit_normal(leaflets, t)) < kFoldedCosine)) continue;
+    if (!(sign * normal_unless_sliver(leaflets, s).dot(normal_unless_sliver(leaflets, t)) < kFoldedCosine))
+      continue;
     if (++count > kFew) continue;
     pairs.append(pairs.empty() ? "(" : ", (").append(std::to_string(s)).append(", ");
     pairs.append(std::to_string(t)).append(")");

@@ -216,8 +216,9 @@ TEST(Import, MakesTheRelaxedMitralValveSolvable) {
     EXPECT_EQ(valve.annulus, given.annulus);
     EXPECT_EQ(valve.leaflets.vertices, given.leaflets.vertices);
     EXPECT_EQ(valve.closed_reference->triangles, valve.leaflets.triangles);
-    const RunReport report =
-        run(load_scene(folder.path() / "scene.json"), built_in_solvers(), {.writes = false});
+    RunOptions options;
+    options.writes = false;
+    const RunReport report = run(load_scene(folder.path() / "scene.json"), built_in_solvers(), options);
     EXPECT_EQ(report.report.result.status, Status::Converged) << size;
     EXPECT_LE(report.report.result.iterations, 60) << size;
   }
