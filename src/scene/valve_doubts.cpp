@@ -61,12 +61,11 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
 
 std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model) {
   const auto annulus = ground.model.sets.find("annulus");
-  const bool has_annulus = annulus != ground.model.sets.end() && !annulus->second.empty();
-  if (!scene.mesh || (ground.networks.empty() && !has_annulus)) return {};
+  if (!scene.mesh || annulus == ground.model.sets.end() || annulus->second.empty()) return {};
   Valve valve;
   valve.leaflets = ground.model.mesh;
   valve.closed_reference = ground.model.closed_reference;
-  if (has_annulus) valve.annulus = annulus->second;
+  valve.annulus = annulus->second;
   valve.chords = joined_networks(ground);
   valve.pressure = model.applied_pressure;
   for (const MembraneProperties& membrane : model.membrane)
