@@ -207,14 +207,15 @@ void find_overstretched(const Valve& valve, const ChordGraph& graph, std::vector
   std::vector<int> numbers;
   for (const Stretch& stretch : list) numbers.push_back(stretch.chord);
   const Stretch& most = list.front();
-  doubts.push_back(
-      named("chord", "chords", numbers) + ": " + std::to_string(list.size()) +
-      (list.size() == 1 ? " insertion lies" : " insertions lie") +
-      " farther from the papillary tip than the chords to it are long, in the open and the closed "
-      "position; worst: " +
-      three_digits(most.distance) + " mm apart with " + three_digits(most.length) +
-      " mm of chord, a strain of " + three_digits(100 * most.open) + " % (closed: " +
-      three_digits(100 * most.closed) + " %). Check rest lengths, their unit and the place of the tips.");
+  const bool is_moved = has_closed || chords.papillary_closed.cols() > 0;
+  std::string text = named("chord", "chords", numbers) + ": " + std::to_string(list.size()) +
+                     (list.size() == 1 ? " insertion lies" : " insertions lie") +
+                     " farther from the papillary tip than the chords to it are long";
+  if (is_moved) text += ", in the open and the closed position";
+  text += "; worst: " + three_digits(most.distance) + " mm apart with " + three_digits(most.length) +
+          " mm of chord, a strain of " + three_digits(100 * most.open) + " %";
+  if (is_moved) text += " (closed: " + three_digits(100 * most.closed) + " %)";
+  doubts.push_back(text + ". Check rest lengths, their unit and the place of the tips.");
 }
 
 }  // namespace

@@ -36,17 +36,13 @@ ChordNetwork joined_networks(const Groundwork& ground) {
   return all;
 }
 
-// The sign of the pressure on the side that the normals point to; 0 where no pressure or both signs act.
-int front_sign(const Scene& scene) {
-  int sign = 0;
-  for (const TermSpec& term : scene.terms) {
-    if (term.type != "load_pressure") continue;
-    const Parameters& p = term.parameters;
-    const int here = (p.text("side") == "back" ? -1 : 1) * (p.number("value") < 0 ? -1 : 1);
-    if (sign != 0 && sign != here) return 0;
-    sign = here;
-  }
-  return sign;
+// Whether a pressure acts on the side that the normals point to. One on the other side was asked for by name:
+// it opens the valve.
+bool presses_front(const Scene& scene) {
+  return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
+    return term.type == "load_pressure" && term.parameters.text("side") == "front" &&
+           term.parameters.number("value") > 0;
+  });
 }
 
 }  // namespace
@@ -71,9 +67,9 @@ std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& grou
   for (const MembraneProperties& membrane : model.membrane)
     if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))
       valve.thickness = membrane.thickness;
-  const int sign = front_sign(scene);
-  if (sign == 0) valve.annulus.clear();
-  if (sign < 0) valve.leaflets.triangles.row(1).swap(valve.leaflets.triangles.row(2));
+  // Cut and shortened chords hang loose or are overstretched by intention.
+  if (!scene.interventions.empty()) valve.chords.chords.clear();
+  if (!presses_front(scene)) valve.annulus.clear();
   std::vector<std::string> doubts = valve_doubts(valve, scene.file.string());
   for (const std::string& doubt : fold_doubts(valve.leaflets))
     doubts.push_back(scene.mesh->file.string() + ": " + doubt);

@@ -12,7 +12,8 @@ namespace coapt {
 // valve: mm, MPa.
 std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file);
 
-// Of a scene that has a set `annulus`, and so is a valve; nothing of others. Pre: model is built of it.
+// Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
+// chords nothing where interventions edit them. Pre: model is built of it.
 std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model);
 
 }  // namespace coapt
