@@ -14,13 +14,14 @@ namespace {
 
 struct ImportArguments : SceneArguments {
   std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
-  bool incompressible = false;
+  bool incompressible = false, keeps_mesh = false;
 };
 
 void import_file(const ImportArguments& arguments) {
   refuse_folder_of(arguments.file, arguments.folder);
   ImportOptions options = import_options(arguments);
   options.incompressible = arguments.incompressible;
+  options.repairs = !arguments.keeps_mesh;
   options.young = arguments.young;
   options.chord_young = arguments.chord_young;
   options.annulus_closed = arguments.annulus_closed;
@@ -45,6 +46,8 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
   add_scene_options(*command, *arguments, {"follower", "frozen", "field"});
   command->add_flag("--incompressible", arguments->incompressible,
                     "Leave the bulk modulus of membrane laws out: incompressible leaflets");
+  command->add_flag("--no-repair", arguments->keeps_mesh,
+                    "Keep slivers of the mesh, which are otherwise flipped, cut off or collapsed");
   command->add_option("--young", arguments->young,
                       "Linear leaflets of this modulus (\"1 MPa\") in the place of the laws of the file");
   command->add_option("--chord-young", arguments->chord_young,

@@ -16,7 +16,6 @@ namespace coapt {
 namespace {
 
 constexpr double kZeroHeight = 1e-12;  // of the longest edge: the rest strain is lost in rounding
-constexpr double kSliverAspect = 1e3;  // longest edge over height
 constexpr double kMixedScales = 1e6;   // longest over shortest edge
 constexpr double kLargeOffset = 1e6;   // distance from the origin over size: six of sixteen digits are lost
 constexpr size_t kListed = 10;
@@ -218,7 +217,9 @@ void check_shapes(const TriangleMesh& mesh, Report& report) {
                    "collapse an edge or remove it");
   report.warn(Kind::Sliver, slivers,
               triangles_text(slivers) + ": slivers, longest edge up to " + rounded(worst) +
-                  " times the height; results there are poor, remesh if they matter");
+                  " times the height; results there are poor and a solve may stall: `coapt import` repairs "
+                  "those of a "
+                  "valve, other meshes want remeshing there");
   if (longest > kMixedScales * shortest)
     report.warn(Kind::MixedScales, {0},
                 "edge lengths differ by a factor of " + rounded(longest / shortest) +

@@ -8,6 +8,9 @@
 
 namespace coapt {
 
+// Longest edge over height, above which a triangle is a sliver. repair_slivers.hpp takes them out.
+inline constexpr double kSliverAspect = 1e3;
+
 enum class Severity { Error, Warning };
 
 enum class MeshDefectKind {
@@ -16,7 +19,7 @@ enum class MeshDefectKind {
   RepeatedIndex,            // Error: a triangle names a vertex twice
   NotFinite,                // Error: a coordinate is NaN or infinite
   ZeroArea,                 // Error: height below 1e-12 of the longest edge
-  Sliver,                   // Warning: longest edge above 1000 times the height
+  Sliver,                   // Warning: longest edge above kSliverAspect times the height
   MixedScales,              // Warning: edge lengths differ by more than 1e6
   LargeOffset,              // Warning: more than 1e6 times its size away from the origin
   IsolatedVertex,           // Warning: on no triangle

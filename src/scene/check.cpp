@@ -4,7 +4,9 @@
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/build.hpp"
+#include "scene/groundwork.hpp"
 #include "scene/scene.hpp"
+#include "scene/valve_doubts.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -58,7 +60,11 @@ std::optional<Model> load(const std::filesystem::path& scene_file, CheckReport& 
     return std::nullopt;
   }
   try {
-    return build(*scene);
+    const Groundwork ground = lay_groundwork(*scene);
+    Model model = build(*scene, ground);
+    append(report.warnings, model.warnings);
+    append(report.warnings, valve_doubts(*scene, ground, model));
+    return model;
   } catch (const InputError& error) {
     append(report.defects, error.defects());
     return std::nullopt;
@@ -144,7 +150,6 @@ CheckReport check(const std::filesystem::path& scene_file) {
   CheckReport report;
   std::optional<Model> model = load(scene_file, report);
   if (!model) return report;
-  append(report.warnings, model->warnings);
   report.derivatives = check_model(*model);
   return report;
 }

@@ -17,7 +17,8 @@ struct CheckReport {
   bool is_sound() const;  // no defects, and all derivatives passed
 };
 
-// Reads the scene and its meshes and looks at all of it in one pass. The derivatives are examined at the
+// Reads the scene and its meshes and looks at all of it in one pass, also at what is doubtful about a valve
+// (mesh/valve_check.hpp). The derivatives are examined at the
 // start shape, moved at random (same seed each time) by up to a twentieth of the mean edge; a term that is
 // not active there (a slack chord) at the shape enlarged by a tenth, and one that does not pass (a membrane
 // at the borders of its regimes, where the Hessian jumps) at the start shape enlarged by a quarter. Throws

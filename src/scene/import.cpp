@@ -6,12 +6,14 @@
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/valve_import.hpp"
+#include "scene/detail/import_repair.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/detail/law_terms.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/valve_curves.hpp"
 #include "scene/markups.hpp"
 #include "scene/units.hpp"
+#include "scene/valve_doubts.hpp"
 #include "scene/valve_json.hpp"
 
 #include <algorithm>
@@ -257,7 +259,12 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
     warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
   if (valve.annulus.empty() && valve.supports.empty())
     warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
+  const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
+  Valve loaded = valve;
+  loaded.pressure = quantity_value(pressure_text(valve, options), kPressure);
+  append(warnings, valve_doubts(loaded, file.string()));
   write_valve_scene(valve, out_dir, options);
+  detail::write_repairs(out_dir / "repairs.csv", repair);
   return warnings;
 }
 

@@ -24,6 +24,7 @@ struct ImportOptions {
   bool bends = true;                // false: no term `bending`, whatever the membrane
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
+  bool repairs = true;          // slivers of the leaflets (mesh/repair_valve.hpp)
   bool incompressible = false;  // leaves the key `bulk` of membrane laws out, whatever file they come from
   std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
 };
@@ -32,7 +33,9 @@ struct ImportOptions {
 // folder. Returns warnings, whole sentences. Of a mesh the rim nearest to annulus_closed, or else the
 // longest, is the annulus; its vertices go to the points of the curve at the same part of the length.
 // papillary gives a valve without chords tips, and chords to the free edge
-// (mesh/generators/leaflet_chords.hpp). Throws InputError.
+// (mesh/generators/leaflet_chords.hpp). Slivers are repaired, and the steps listed in repairs.csv; what is
+// doubtful about mesh, chords, sizes and pressure is among the warnings. Throws InputError, also for slivers
+// that no step repairs.
 std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
                                       const ImportOptions& options = {});
 

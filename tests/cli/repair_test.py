@@ -57,6 +57,31 @@ class RepairTest(CommandCase):
         self.assertEqual(run.returncode, 0)
         self.assertIn("nothing to repair", run.stdout)
 
+    def test_import_repairs_slivers_or_names_them(self):
+        mesh, out = self.folder / "sheet.obj", self.folder / "out"
+        grid = [(3 - 1e-6, 3) if (i, j) == (2, 3) else (i, j) for j in range(7) for i in range(7)]
+        lines = [f"v {x} {y} 0" for x, y in grid]
+        for corner in (1 + i + 7 * j for j in range(6) for i in range(6)):
+            lines += [f"f {corner} {corner + 1} {corner + 8}", f"f {corner} {corner + 8} {corner + 7}"]
+        mesh.write_text("\n".join(lines) + "\n")
+        run = coapt("import", mesh, "-o", out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        for piece in ["repaired 2 slivers (triangles ", "1 edge collapsed", "mm", "repairs.csv"]:
+            self.assertIn(piece, run.stdout)
+        self.assertTrue((out / "repairs.csv").read_text().startswith("step,triangles,"))
+        run = coapt("check", out / "scene.json")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertNotIn("sliver", run.stdout)
+        run = coapt("import", mesh, "-o", out, "--no-repair")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("slivers, longest edge up to", run.stdout)
+        self.assertFalse((out / "repairs.csv").exists())
+        run = coapt("check", out / "scene.json")
+        self.assertIn("slivers, longest edge up to", run.stdout, run.stderr)
+        mesh.write_text("v 0 0 0\nv 10 0 0\nv 5 1e-6 0\nf 1 2 3\n")
+        self.assert_bad_input(coapt("import", mesh, "-o", self.folder / "none"), "sheet.obj", "triangle 0", "--no-repair")
+        self.assertFalse((self.folder / "none").exists())
+
     def test_repair_cannot_move_what_is_held(self):
         path, scene = self.two_sheets(lambda i, j: (i + 0.3, j + 0.2, 0))
         scene["boundary"][0]["nodes"] = "all"
