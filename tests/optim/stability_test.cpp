@@ -33,7 +33,7 @@ struct Tangent {
         lower.insert(row, column) = symmetric(row, column);
     lower.makeCompressed();
     const SkewProduct product = [this](const Vector& v, Vector& out) { out += skew * v; };
-    return judge_stability(lower, skew.isZero(0) ? SkewProduct() : product,
+    return judge_stability(lower, skew.isZero(1e-14) ? SkewProduct() : product,
                            std::vector<bool>(static_cast<size_t>(symmetric.rows()), false), zero, options);
   }
   double lowest() const {
@@ -315,7 +315,9 @@ struct LoadedStrip {
   }
   // Compressed in its plane, without any load.
   Points flat() const {
-    Objective objective(start, fixed(), terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0})));
+    Terms terms = terms_of(membrane_term(mesh.vertices, mesh.triangles, {1, 0.3, 0}));
+    terms.push_back(bending_term(mesh.vertices, mesh.triangles, 1e-4));
+    Objective objective(start, fixed(), std::move(terms));
     StopRule stop;
     stop.tolerance = 1e-12;
     return objective.positions(
