@@ -311,7 +311,9 @@ struct LoadedStrip {
       for (const int node : corners) balance.col(node) -= kPressure / 6 * normal;
     }
     terms.push_back(std::make_unique<LoadDead>("weight", "load_field", balance, mesh.vertices));
-    return Objective(flat, fixed(), std::move(terms));
+    Objective objective(mesh.vertices, fixed(), std::move(terms));  // at rest: nothing is a prestress
+    objective.prescribe(flat);
+    return objective;
   }
   // Compressed in its plane, without any load.
   Points flat() const {
