@@ -85,20 +85,21 @@ std::vector<FreeDirections> free_directions(const SparseMatrix& lower, const Ske
       if (is_prescribed[static_cast<size_t>(3 * blocks[k] + c)])
         columns(columns.rows() - 3 + c, c) = greatest + 2 * least + 1;
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    FreeDirections free{blocks[k], Eigen::MatrixXd(3, 0)};
+    Eigen::Matrix3d axes;
+    int count = 0;
     for (int c = 0; c < 3; ++c) {
       if (svd.singularValues()[c] > least) continue;
+      const Vec3 axis = svd.matrixV().col(c);
       if (skew) {
-        moved.segment<3>(3 * blocks[k]) = svd.matrixV().col(c);
+        moved.segment<3>(3 * blocks[k]) = axis;
         forces.setZero();
         skew(moved, forces);
         moved.segment<3>(3 * blocks[k]).setZero();
         if (forces.norm() > least) continue;
       }
-      free.axes.conservativeResize(3, free.axes.cols() + 1);
-      free.axes.rightCols<1>() = svd.matrixV().col(c);
+      axes.col(count++) = axis;
     }
-    if (free.axes.cols() > 0) found.push_back(std::move(free));
+    if (count > 0) found.push_back({blocks[k], axes.leftCols(count)});
   }
   return found;
 }

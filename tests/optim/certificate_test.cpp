@@ -211,6 +211,17 @@ TEST_P(Solvers, S9LeavesASaddleForAMinimum) {
               summary(result.certificate).c_str());
 }
 
+TEST(Certificate, BeginsTheMessageWithADoubtThatRemains) {
+  const PushedStrip strip;
+  Objective objective = strip.objective();
+  StabilityOptions stays = kAsked;
+  stays.finds_descent = false;
+  const Result result = solved(objective, objective.unknowns(strip.start), "lbfgs", 1e-9, stays);
+  ASSERT_EQ(result.status, Status::Converged) << result.message;
+  EXPECT_TRUE(result.message.starts_with("converged, but its stability is in doubt (a saddle of the energy"))
+      << result.message;
+}
+
 TEST(Certificate, NamesTheNodeAndTheTermFarthestFromEquilibrium) {
   const Disc disc;
   Terms terms = disc.terms(disc.mesh.vertices);
