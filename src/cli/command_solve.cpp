@@ -159,8 +159,11 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     print_summary(report);
     if (checkpointing) checkpointing->finish(arguments->scene);
     const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
-    const bool is_good = is_reached && report.report.result.status == Status::Converged;
-    exit_code = is_good ? kConverged : kNotConverged;
+    const Result& result = report.report.result;
+    if (!is_reached || result.status != Status::Converged)
+      exit_code = kNotConverged;
+    else
+      exit_code = stability_doubt(result.certificate).empty() ? kConverged : kInDoubt;
   });
 }
 

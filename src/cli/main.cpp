@@ -42,7 +42,9 @@ int run_command(int argc, char** argv) {
   add_compare_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
-  app.footer("Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error.");
+  app.footer(
+      "Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error, 4 converged "
+      "(result written) but its stability is in doubt.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // help or version

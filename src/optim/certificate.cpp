@@ -9,6 +9,8 @@
 namespace coapt {
 namespace {
 
+constexpr double kNegligible = 1e-6;  // stiffness, relative to reference force over extent
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", value);
@@ -63,7 +65,23 @@ bool has_clear_forces(Objective& objective, const Vector& q) {
          std::sqrt(reactions.colwise().squaredNorm().maxCoeff()) > 1e-3 * objective.reference_force();
 }
 
-StabilityReport stability_at(Objective& objective, const Vector& q, const StabilityOptions& options) {
+// Numbers of the nodes of blocks of three unknowns.
+std::vector<int> nodes_of(const std::vector<int>& blocks, const FixedMask& fixed) {
+  std::vector<int> active, nodes;
+  for (int node = 0; node < fixed.cols(); ++node)
+    if (!fixed.col(node).all()) active.push_back(node);
+  for (const int block : blocks) nodes.push_back(active[static_cast<size_t>(block)]);
+  return nodes;
+}
+
+// What resists less, costs nothing beside the scene [force/length].
+double negligible_stiffness(const Objective& objective, const Vector& q, double tolerance) {
+  const double extent = objective.extent(q);
+  return extent > 0 ? std::max(kNegligible, 10 * tolerance) * objective.reference_force() / extent : 0;
+}
+
+StabilityReport stability_at(Objective& objective, const Vector& q, double tolerance,
+                             const StabilityOptions& options) {
   StabilityReport report;
   if (objective.free_count() == 0) {
     report.verdict = Stability::NothingToJudge;
@@ -74,18 +92,24 @@ StabilityReport stability_at(Objective& objective, const Vector& q, const Stabil
   SparseMatrix h;
   objective.hessian(q, g, h, Projection::None);
   if (!g.allFinite() || !std::isfinite(h.sum())) return report;
-  // A rigid turn of a body that is not quite in balance has the stiffness force over length.
-  const double extent = objective.extent(q);
-  const double noise = extent > 0 ? 10 * g.lpNorm<Eigen::Infinity>() / extent : 0;
-  return judge_stability(h, prescribed_unknowns(objective.fixed()), noise, options);
+  SkewProduct skew;
+  if (objective.has_skew_tangent())
+    skew = [&](const Vector& v, Vector& product) { objective.add_skew_product(v, product); };
+  return judge_stability(h, skew, prescribed_unknowns(objective.fixed()),
+                         negligible_stiffness(objective, q, tolerance), options);
 }
 
 std::string modes(int count, const std::string& kind) {
   return count < 0 ? kind + " modes that were not counted" : counted(count, kind + " mode");
 }
 
-std::string stability_summary(const Certificate& certificate) {
-  const StabilityReport& report = certificate.stability;
+std::string lowest_text(const StabilityReport& report) {
+  std::string text = number(report.lowest.real());
+  if (report.lowest.imag() != 0) text += " +- " + number(std::abs(report.lowest.imag())) + " i";
+  return text;
+}
+
+std::string stability_summary(const StabilityReport& report) {
   switch (report.verdict) {
     case Stability::NotKnown:
       return "stability not judged";
@@ -95,11 +119,19 @@ std::string stability_summary(const Certificate& certificate) {
       return report.pivot_ratio > 0
                  ? "strict minimum (smallest pivot ratio " + number(report.pivot_ratio) + ")"
                  : "strict minimum, just";
+    case Stability::Stable:
+      return "stable (lowest eigenvalue of the unsymmetric tangent " + lowest_text(report) + ")";
     case Stability::Flat:
       return "flat, with " + modes(report.zero_modes, "zero-energy");
     case Stability::Saddle:
-      return (certificate.is_conservative ? "saddle, with "
-                                          : "stability not proven: the symmetric part of the tangent has ") +
+      return "saddle, with " + modes(report.negative_modes, "negative");
+    case Stability::Divergence:
+      return "unstable by divergence (lowest eigenvalue of the unsymmetric tangent " + lowest_text(report) +
+             ")";
+    case Stability::Flutter:
+      return "unstable by flutter (lowest eigenvalue of the unsymmetric tangent " + lowest_text(report) + ")";
+    case Stability::NotDecided:
+      return "stability not decided: the symmetric part of the tangent has " +
              modes(report.negative_modes, "negative");
   }
   return "";
@@ -125,19 +157,19 @@ Certificate certify(Objective& objective, const Vector& q, double tolerance, con
   const Points x = objective.positions(q);
   certificate.is_balance_clear = has_clear_forces(objective, q);
   certificate.free_parts = free_parts(objective, x);
-  if (!(certificate.residual <= tolerance)) certificate.imbalance = largest_imbalance(objective, x);
-  if (judges_stability && options.factorisation) {
-    StabilityOptions judged = options;
-    judged.finds_descent = certificate.is_conservative;  // else there is no energy to descend
-    certificate.stability = stability_at(objective, q, judged);
+  const bool is_equilibrium = certificate.residual <= tolerance;
+  if (!is_equilibrium) certificate.imbalance = largest_imbalance(objective, x);
+  if (is_equilibrium && judges_stability && options.factorisation) {
+    certificate.stability = stability_at(objective, q, tolerance, options);
+    certificate.free_nodes = nodes_of(certificate.stability.free_blocks, objective.fixed());
   }
   return certificate;
 }
 
 std::string summary(const Certificate& certificate) {
-  std::string text = stability_summary(certificate);
-  if (certificate.stability.loose_nodes > 0)
-    text += ", " + counted(certificate.stability.loose_nodes, "loose node");
+  std::string text = stability_summary(certificate.stability);
+  if (!certificate.free_nodes.empty())
+    text += ", " + counted(static_cast<int>(certificate.free_nodes.size()), "free node");
   if (certificate.is_balance_clear)
     text +=
         ", reactions balance to " + number(std::max(certificate.balance.force, certificate.balance.moment));
@@ -145,6 +177,25 @@ std::string summary(const Certificate& certificate) {
     text += ", largest out-of-balance force " + number(worst->force) + " at node " +
             std::to_string(worst->node) + " (most of it by " + worst->term + ")";
   return text;
+}
+
+std::string stability_doubt(const Certificate& certificate) {
+  const StabilityReport& report = certificate.stability;
+  switch (report.verdict) {
+    case Stability::NotKnown:
+      return certificate.is_made ? "its Hessian is not finite" : "";
+    case Stability::Saddle:
+      return "a saddle of the energy, with " + modes(report.negative_modes, "negative");
+    case Stability::Divergence:
+      return "the follower load drives it away along " + modes(report.unstable_modes, "unstable");
+    case Stability::Flutter:
+      return "the follower load makes it flutter in " + modes(report.unstable_modes, "unstable");
+    case Stability::NotDecided:
+      return "the symmetric part of the tangent has " + modes(report.negative_modes, "negative") +
+             ", and the lowest eigenvalues of the whole could not be found";
+    default:
+      return "";
+  }
 }
 
 }  // namespace coapt

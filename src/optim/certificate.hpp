@@ -38,22 +38,31 @@ struct Certificate {
   // There are loads, or reactions that stand clear of round-off. Otherwise the balance is that of round-off.
   bool is_balance_clear = false;
 
-  // Of the exact Hessian; with a load that has no potential of the symmetric part of the exact tangent: then
-  // a positive one proves stability, and another one does not disprove it.
+  // Of the exact Hessian; with a load that has no potential of the exact tangent, whose symmetric part is
+  // looked at first: a positive definite one is enough. Not judged of a state that is no equilibrium.
   StabilityReport stability;
   bool is_conservative = true;
+
+  // Nodes whose place is not determined, ascending: they can be moved, alone or with others, at no cost.
+  std::vector<int> free_nodes;
 
   std::vector<FreePart> free_parts;
   std::optional<Imbalance> imbalance;  // of a state that is no equilibrium
 };
 
-// The certificate of a state. With a load that has no potential, the objective follows the path from q on
-// afterwards. judges_stability: otherwise Stability::NotKnown, and no Hessian is evaluated.
-// Cost where all is well: one Hessian, one factorisation, some gradients.
+// The certificate of a state. Stiffnesses below a millionth, or ten times the tolerance, of the reference
+// force over the extent count as none: what rests on less is moved by forces that the tolerance lets pass, by
+// a hundredth, or a tenth, of the scene. With a load that has no potential, the objective follows the path
+// from q on afterwards. judges_stability: otherwise Stability::NotKnown, and no Hessian is evaluated. Cost
+// where all is well: one Hessian, one factorisation, some gradients.
 Certificate certify(Objective& objective, const Vector& q, double tolerance, const StabilityOptions& options,
                     bool judges_stability = true);
 
-// "strict minimum (smallest pivot ratio 3e-06), 2 loose nodes, reactions balance to 2e-13".
+// "strict minimum (smallest pivot ratio 3e-06), 2 free nodes, reactions balance to 2e-13".
 std::string summary(const Certificate& certificate);
+
+// Why an equilibrium may not be stable, such as "a saddle with 2 negative modes"; empty: it is, or is flat,
+// or no certificate was asked for. Pre: the state is an equilibrium.
+std::string stability_doubt(const Certificate& certificate);
 
 }  // namespace coapt

@@ -29,46 +29,6 @@ bool ends_the_run(Status status) {
          status == Status::NonFinite || status == Status::NoEquilibrium;
 }
 
-// Renews the load that has no potential until the exact residual is small. Each round minimises the
-// potential around the last equilibrium; the remainder contracts geometrically where it settles.
-Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-              int& rounds, std::string& note) {
-  if (!objective.has_circulatory_force() || solver.follows_path()) {
-    for (int stiffening = 0;; ++stiffening) {
-      if (objective.has_circulatory_force()) objective.follow_path(q);
-      monitor.begin_round(monitor.round() + 1, tolerance);
-      const Status status = solver.minimize(objective, q, monitor);
-      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
-    }
-  }
-  Vector best = q;
-  double best_residual = kInfinity, gained_residual = kInfinity;
-  double last_residual = kInfinity, contraction = kNaN;
-  int without_gain = 0;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    objective.hold_dead(q);
-    const double residual = objective.true_residual(q);
-    without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
-    if (without_gain == 0) gained_residual = residual;
-    if (residual < best_residual) {
-      best_residual = residual;
-      best = q;
-    }
-    if (round > 0) contraction = residual / last_residual;
-    last_residual = residual;
-    if (residual <= tolerance) return Status::Converged;
-    if (without_gain >= kMaxRoundsWithoutGain) break;
-    ++rounds;
-    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
-    const Status status = solver.minimize(objective, q, monitor);
-    if (ends_the_run(status)) return status;
-  }
-  q = best;
-  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
-         number(contraction) + " a round)";
-  return Status::Stalled;
-}
-
 // Whether a solver can begin there: a law that stiffens exponentially overflows where a sliver is stretched.
 bool is_finite(Objective& objective, const Vector& q) {
   Vector g;
@@ -140,6 +100,44 @@ std::string described(const BranchChange& change) {
 }
 
 }  // namespace
+
+Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+              int& rounds, std::string& note) {
+  if (!objective.has_circulatory_force() || solver.follows_path()) {
+    for (int stiffening = 0;; ++stiffening) {
+      if (objective.has_circulatory_force()) objective.follow_path(q);
+      monitor.begin_round(monitor.round() + 1, tolerance);
+      const Status status = solver.minimize(objective, q, monitor);
+      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
+    }
+  }
+  Vector best = q;
+  double best_residual = kInfinity, gained_residual = kInfinity;
+  double last_residual = kInfinity, contraction = kNaN;
+  int without_gain = 0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    objective.hold_dead(q);
+    const double residual = objective.true_residual(q);
+    without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
+    if (without_gain == 0) gained_residual = residual;
+    if (residual < best_residual) {
+      best_residual = residual;
+      best = q;
+    }
+    if (round > 0) contraction = residual / last_residual;
+    last_residual = residual;
+    if (residual <= tolerance) return Status::Converged;
+    if (without_gain >= kMaxRoundsWithoutGain) break;
+    ++rounds;
+    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
+    const Status status = solver.minimize(objective, q, monitor);
+    if (ends_the_run(status)) return status;
+  }
+  q = best;
+  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
+         number(contraction) + " a round)";
+  return Status::Stalled;
+}
 
 Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                     Result& result) {

@@ -21,4 +21,11 @@ struct Outcome {
 Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                     Result& result);
 
+// Solves at the full problem from q, in rounds of the monitor's. A load without potential is renewed until
+// the exact residual is small, where the solver does not work from the exact force: each round minimises the
+// potential around the last equilibrium, and the remainder contracts geometrically where it settles. rounds:
+// how many renewals, added. note: what there is to say where it does not settle.
+Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+              int& rounds, std::string& note);
+
 }  // namespace coapt

@@ -15,7 +15,7 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostSaddles = 2;      // that are left in one run
+constexpr int kMostAttempts = 4;     // to leave saddles in one run
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
 
@@ -32,6 +32,8 @@ std::string sentence(const Result& result, double tolerance, const std::string& 
   switch (result.status) {
     case Status::Converged:
       text = "converged" + at + wanted;
+      if (const std::string doubt = stability_doubt(result.certificate); !doubt.empty())
+        text = "converged, but its stability is in doubt (" + doubt + ")," + at + wanted;
       break;
     case Status::IterationLimit:
       text = "stopped at the iteration limit" + at;
@@ -77,8 +79,8 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
 
   if (problem.stability.factorisation) {
     PhaseTimer timer(monitor.phases(), "certificate");
-    const bool judges_stability = result.status == Status::Converged || result.status == Status::Stalled;
-    result.certificate = certify(objective, result.q, stop.tolerance, problem.stability, judges_stability);
+    result.certificate =
+        certify(objective, result.q, stop.tolerance, problem.stability, result.status == Status::Converged);
     for (int k = 0; k < result.certificate.stability.factorisations; ++k) monitor.count_factorisation();
   }
   // The potential around the final state, so that the energy depends on that state alone and not on the
@@ -95,25 +97,23 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
       note = feels_no_force(result) ? "no force acts anywhere: there is nothing to solve"
                                     : "the start is an equilibrium already";
   }
-  const StabilityReport& stability = result.certificate.stability;
-  if (stability.verdict == Stability::Saddle && result.certificate.is_conservative)
-    note = "this is a saddle of the energy, with " +
-           (stability.negative_modes < 0 ? "uncounted" : std::to_string(stability.negative_modes)) +
-           " negative modes";
   result.message = sentence(result, stop.tolerance, note);
 }
 
-// Goes down from a saddle along its negative mode. What descends from there never comes back to it, as its
-// energy is lower. Returns false where there is no saddle or no way down was found.
-bool leave_saddle(const Objective& objective, Monitor& monitor, Result& result) {
+// Leaves a saddle, or a divergence under a follower load, along its unstable mode: downhill, by the work
+// along the way where there is no energy. What descends from a saddle never comes back to it, as its energy
+// is lower; what a follower load drives may, so that every other attempt tries the other way first, and later
+// ones go farther. Returns false where there is nothing to leave or no way down was found.
+bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result& result) {
   const Vector& mode = result.certificate.stability.descent;
-  if (result.status != Status::Converged || !result.certificate.is_conservative || mode.size() == 0)
-    return false;
+  if (result.status != Status::Converged || mode.size() == 0) return false;
+  if (objective.has_circulatory_force()) objective.follow_path(result.q);
   const double energy = monitor.value(result.q), wanted = energy - monitor.energy_noise(energy);
-  const double extent = objective.extent(result.q);
-  double length = kFirstKick * extent / mode.lpNorm<Eigen::Infinity>();
+  const double first = (1 + attempt / 2) * kFirstKick * objective.extent(result.q);  // NOLINT: whole pairs
+  const double forward = attempt % 2 == 0 ? 1 : -1;
+  double length = first / mode.lpNorm<Eigen::Infinity>();
   for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25)
-    for (const double sign : {1.0, -1.0}) {
+    for (const double sign : {forward, -forward}) {
       const double step = monitor.step_limit(result.q, sign * mode, length);
       const Vector q = result.q + sign * step * mode;
       if (!(monitor.value(q) < wanted)) continue;
@@ -176,10 +176,13 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
                              std::to_string(result.rounds) + " rounds";
   judge(outcome, solver, problem, stop, monitor, result);
-  for (int saddle = 0; saddle < kMostSaddles && leave_saddle(problem.objective, monitor, result); ++saddle) {
-    monitor.begin_round(monitor.round() + 1, stop.tolerance);
-    const Status status = solver.minimize(objective, result.q, monitor);
-    judge({status, "a saddle was left on the way"}, solver, problem, stop, monitor, result);
+  for (int attempt = 0; attempt < kMostAttempts && leave_unstable(objective, attempt, monitor, result);
+       ++attempt) {
+    outcome = {};
+    outcome.status =
+        settle(solver, objective, result.q, monitor, stop.tolerance, result.rounds, outcome.note);
+    if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
+    judge(outcome, solver, problem, stop, monitor, result);
   }
 
   result.evaluations = {objective.counts().value - counts_before.value,

@@ -112,17 +112,34 @@ OrderedJson count_or_null(std::string_view meaning) {
 }
 
 OrderedJson certificate() {
-  const OrderedJson stabilities = {"not_known", "strict_minimum", "flat", "saddle", "nothing_to_judge"};
+  const OrderedJson stabilities = {"not_known", "strict_minimum", "stable",
+                                   "flat",      "saddle",         "divergence",
+                                   "flutter",   "not_decided",    "nothing_to_judge"};
   return object(
       {{"summary", text("all of it in one sentence")},
-       {"stability",
-        described({{"enum", stabilities}}, "by the signs of the eigenvalues of the exact Hessian")},
+       {"stability", described({{"enum", stabilities}},
+                               "by the signs of the eigenvalues of the exact Hessian or, where a load has no "
+                               "potential, of the real parts of those of the tangent")},
        {"conservative",
         flag("all loads have a potential; else the Hessian is the symmetric part of the tangent")},
        {"smallest_pivot_ratio", number("of the Cholesky factor of a strict minimum, smallest over largest")},
-       {"zero_modes", count_or_null("zero-energy modes")},
-       {"negative_modes", count_or_null("modes along which the energy falls")},
-       {"loose_nodes", count_or_null("free nodes without force or stiffness, left out of the judgement")},
+       {"doubt", described({{"type", OrderedJson::array({"string", "null"})}},
+                           "why a converged state may not be stable; null: it is, or was not judged")},
+       {"zero_modes", count_or_null("zero-energy modes, free directions of single nodes left out")},
+       {"negative_modes", count_or_null("modes along which the energy falls, or the work of the symmetric "
+                                        "part of the tangent")},
+       {"unstable_modes", count_or_null("eigenvalues with a negative real part that were found of a tangent "
+                                        "that is not symmetric; null: it did not have to be looked at")},
+       {"lowest_eigenvalue",
+        described({{"type", OrderedJson::array({"object", "null"})},
+                   {"properties", {{"real", {{"type", "number"}}}, {"imaginary", {{"type", "number"}}}}}},
+                  "of that tangent, the one with the lowest real part [N/mm]")},
+       {"free_directions", count_or_null("directions in which single nodes can be moved at no cost, left out "
+                                         "of the judgement")},
+       {"loose_nodes", count_or_null("nodes that can be moved at no cost in every direction")},
+       {"free_nodes", list({{"type", "integer"}},
+                           "nodes whose place is not determined: they can be moved, "
+                           "alone or with others, at no cost")},
        {"smallest_eigenvalues", list({{"type", "number"}}, "ascending, where they were asked for [N/mm]")},
        {"free_parts", list(object({{"node", count("its first node")},
                                    {"nodes", count("how many")},

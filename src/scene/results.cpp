@@ -104,25 +104,36 @@ OrderedJson counters_json(const Model& model, const Result& result) {
 
 OrderedJson counted(int count) { return count < 0 ? OrderedJson(nullptr) : OrderedJson(count); }
 
-OrderedJson certificate_json(const Model& model, const Certificate& certificate) {
+OrderedJson certificate_json(const Model& model, const Result& result) {
+  const Certificate& certificate = result.certificate;
+  const std::string doubt = result.status == Status::Converged ? stability_doubt(certificate) : "";
   const StabilityReport& stability = certificate.stability;
   const bool is_judged = stability.verdict != Stability::NotKnown;
   OrderedJson smallest = OrderedJson::array(), parts = OrderedJson::array();
   for (const double value : stability.smallest) smallest.push_back(number(value));
   for (const FreePart& part : certificate.free_parts)
     parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
-  OrderedJson json = {{"summary", summary(certificate)},
-                      {"stability", stability_name(stability.verdict)},
-                      {"conservative", certificate.is_conservative},
-                      {"smallest_pivot_ratio",
-                       stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : OrderedJson(nullptr)},
-                      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
-                      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
-                      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
-                      {"smallest_eigenvalues", smallest},
-                      {"free_parts", parts},
-                      {"force_balance", number(certificate.balance.force)},
-                      {"moment_balance", number(certificate.balance.moment)}};
+  OrderedJson lowest = nullptr;
+  if (stability.is_tangent_judged)
+    lowest = {{"real", number(stability.lowest.real())}, {"imaginary", number(stability.lowest.imag())}};
+  OrderedJson json = {
+      {"summary", summary(certificate)},
+      {"stability", stability_name(stability.verdict)},
+      {"conservative", certificate.is_conservative},
+      {"smallest_pivot_ratio",
+       stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : OrderedJson(nullptr)},
+      {"doubt", doubt.empty() ? OrderedJson(nullptr) : OrderedJson(doubt)},
+      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
+      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
+      {"unstable_modes", counted(stability.is_tangent_judged ? stability.unstable_modes : -1)},
+      {"lowest_eigenvalue", lowest},
+      {"free_directions", counted(is_judged ? stability.free_directions : -1)},
+      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
+      {"free_nodes", certificate.free_nodes},
+      {"smallest_eigenvalues", smallest},
+      {"free_parts", parts},
+      {"force_balance", number(certificate.balance.force)},
+      {"moment_balance", number(certificate.balance.moment)}};
   if (const auto& worst = certificate.imbalance) {
     const Vec3 at = worst->position + model.origin;
     json["imbalance"] = {{"node", worst->node},
@@ -256,7 +267,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"converged", result.status == Status::Converged},
       {"residual", number(result.residual)},
       {"energy", number(result.energy)},
-      {"certificate", certificate_json(model, result.certificate)},
+      {"certificate", certificate_json(model, result)},
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},

@@ -1,4 +1,4 @@
-// What a result says beyond its residual: minimum, saddle or flat, loose nodes, free parts, where a run that
+// What a result says beyond its residual: minimum, saddle or flat, free nodes, free parts, where a run that
 // did not converge is farthest from equilibrium. Rows S8, S9 and S10 of the verification table.
 #include "optim/certificate.hpp"
 
@@ -117,7 +117,10 @@ TEST(Certificate, TakesJunctionsOfSlackChordsOut) {
   ASSERT_EQ(result.status, Status::Converged) << result.message;
   EXPECT_EQ(result.certificate.stability.loose_nodes, 1);
   EXPECT_EQ(result.certificate.stability.verdict, Stability::StrictMinimum);
-  EXPECT_NE(summary(result.certificate).find("1 loose node"), std::string::npos);
+  EXPECT_EQ(result.certificate.stability.free_directions, 3);
+  EXPECT_EQ(result.certificate.free_nodes, std::vector<int>{n + 2});
+  EXPECT_TRUE(stability_doubt(result.certificate).empty());
+  EXPECT_NE(summary(result.certificate).find("1 free node"), std::string::npos);
 }
 
 TEST(Certificate, CountsTheSixMotionsOfAFloatingBalloon) {
@@ -131,6 +134,8 @@ TEST(Certificate, CountsTheSixMotionsOfAFloatingBalloon) {
   EXPECT_EQ(result.certificate.stability.verdict, Stability::Flat);
   EXPECT_EQ(result.certificate.stability.zero_modes, 6);
   EXPECT_EQ(result.certificate.stability.negative_modes, 0);
+  EXPECT_EQ(static_cast<int>(result.certificate.free_nodes.size()), mesh.vertex_count());
+  EXPECT_TRUE(stability_doubt(result.certificate).empty());
   ASSERT_EQ(result.certificate.free_parts.size(), 1u);
   EXPECT_EQ(result.certificate.free_parts[0].free_motions, 6);
   EXPECT_EQ(result.certificate.free_parts[0].node_count, mesh.vertex_count());
@@ -183,6 +188,7 @@ TEST(Certificate, CountsNoModesBeyondTheSizeThatItMayTake) {
   const Certificate certificate = certify(objective, result.q, 1e-9, options);
   EXPECT_EQ(certificate.stability.verdict, Stability::Saddle);
   EXPECT_EQ(certificate.stability.negative_modes, -1);
+  EXPECT_NE(stability_doubt(certificate).find("saddle"), std::string::npos);
 }
 
 class Solvers : public testing::TestWithParam<std::string> {};
@@ -203,6 +209,17 @@ TEST_P(Solvers, S9LeavesASaddleForAMinimum) {
   EXPECT_GT(objective.positions(result.q).row(2).cwiseAbs().maxCoeff(), 0.01);
   std::printf("S9 %s: %d iterations, %s, %s\n", GetParam().c_str(), result.iterations, result.message.c_str(),
               summary(result.certificate).c_str());
+}
+
+TEST(Certificate, BeginsTheMessageWithADoubtThatRemains) {
+  const PushedStrip strip;
+  Objective objective = strip.objective();
+  StabilityOptions stays = kAsked;
+  stays.finds_descent = false;
+  const Result result = solved(objective, objective.unknowns(strip.start), "lbfgs", 1e-9, stays);
+  ASSERT_EQ(result.status, Status::Converged) << result.message;
+  EXPECT_TRUE(result.message.starts_with("converged, but its stability is in doubt (a saddle of the energy"))
+      << result.message;
 }
 
 TEST(Certificate, NamesTheNodeAndTheTermFarthestFromEquilibrium) {

@@ -107,6 +107,7 @@ TEST(FollowerTangent, IsWhatTheLastStepsTakeWhereItsSymmetricPartIsIndefinite) {
   ASSERT_EQ(result.status, Status::Converged) << result.message;
   EXPECT_FALSE(result.certificate.is_conservative);
   EXPECT_GT(result.certificate.stability.negative_modes, 0);
+  EXPECT_FALSE(is_unstable(result.certificate.stability.verdict));
   const auto near = std::find_if(result.trace.begin(), result.trace.end(),
                                  [](const Iteration& iteration) { return iteration.residual < 1e-3; });
   const auto last = result.trace.end() - near;

@@ -67,9 +67,9 @@ RefinedShape refined_shape(RunReport& run, const SolveSetup& setup) {
           result.energy, result.status == Status::Cancelled};
 }
 
-// From a saddle newton would go on to a minimum, which says nothing about where the method stood.
+// From an unstable state newton would go on to a stable one, which says nothing about where the method stood.
 bool may_be_refined(const ComparedMethod& method) {
-  return result_of(method).certificate.stability.verdict != Stability::Saddle;
+  return !is_unstable(result_of(method).certificate.stability.verdict);
 }
 
 // Nothing where it was cancelled on the way.
