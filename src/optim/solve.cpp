@@ -68,6 +68,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
   std::string note = outcome.note;
   result.status = outcome.status;
   result.residual = objective.true_residual(result.q);
+  const double sliding = objective.sliding_force();
   if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
       result.status != Status::NoEquilibrium && !outcome.is_on_the_way && solver.is_at_rest())
     result.status = Status::Converged;
@@ -95,6 +96,8 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
       note = feels_no_force(result) ? "no force acts anywhere: there is nothing to solve"
                                     : "the start is an equilibrium already";
   }
+  if (result.status == Status::Converged && note.empty() && sliding > stop.tolerance)
+    note = "forces along its films, up to " + residual_text(sliding) + ", are the mesh's and left out";
   const StabilityReport& stability = result.certificate.stability;
   if (stability.verdict == Stability::Saddle && result.certificate.is_conservative)
     note = "this is a saddle of the energy, with " +
@@ -161,8 +164,8 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   Monitor monitor(objective, stop, observer);
 
   Result result;
-  result.q = problem.q0;
-  EquilibriumWatch watch(objective, problem.q0);
+  result.q = objective.smooth_start(problem.q0);
+  EquilibriumWatch watch(objective, result.q);
   monitor.set_watch(&watch);
   Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
   if (outcome.note.empty()) {
