@@ -16,7 +16,8 @@ namespace coapt {
 namespace {
 
 constexpr double kLeastDirection = 0.1;   // of a normal, within the plane in which a node may slide
-constexpr double kRough = 0.6;            // cosine between the normals at a node and of one of its triangles
+constexpr double kOblique = 0.5;          // cosine between a line and the normal
+constexpr double kRough = 0.85;           // cosine between the normals at a node and of one of its triangles
 constexpr double kLeastStiffness = 1e-3;  // of the directions in the film, beside the whole of a node
 
 Vec3 twice_area(const Points& x, const int* corners) {
@@ -85,7 +86,7 @@ class Films {
 
 }  // namespace
 
-NormalMotion::NormalMotion(const std::vector<std::unique_ptr<EnergyTerm>>& terms,
+NormalMotion::NormalMotion(const std::vector<std::unique_ptr<EnergyTerm>>& terms, const Points& start,
                            const std::vector<int>& block,
                            const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed) {
   const auto is_film = [](const auto& term) { return term->type() == SurfaceTension::kType; };
@@ -113,29 +114,40 @@ NormalMotion::NormalMotion(const std::vector<std::unique_ptr<EnergyTerm>>& terms
     place_[static_cast<size_t>(node)] =
         place_of_block_[static_cast<size_t>(block[static_cast<size_t>(node)])] =
             static_cast<int>(places_.size());
-    places_.push_back({block[static_cast<size_t>(node)], 1 - fixed.col(node).cast<double>()});
+    places_.push_back({block[static_cast<size_t>(node)], 1 - fixed.col(node).cast<double>(), Vec3::Zero()});
   }
   for (size_t k = 0; k < films.corners().size(); k += 3) {
     const int* corner = films.corners().data() + k;
     if (std::any_of(corner, corner + 3, [&](int node) { return place_[static_cast<size_t>(node)] >= 0; }))
       corners_.insert(corners_.end(), corner, corner + 3);
   }
+  turn_where_needed(smooth_start(start));
 }
 
-void NormalMotion::turn_to(const Points& x) {
-  for (Place& place : places_) place.normal.setZero();
+std::vector<Vec3> NormalMotion::normals_at(const Points& x) const {
+  std::vector<Vec3> normals(places_.size(), Vec3::Zero());
   for (size_t k = 0; k < corners_.size(); k += 3) {
     const Vec3 area = twice_area(x, corners_.data() + k);
     for (size_t c = k; c < k + 3; ++c)
       if (const int place = place_[static_cast<size_t>(corners_[c])]; place >= 0)
-        places_[static_cast<size_t>(place)].normal += area;
+        normals[static_cast<size_t>(place)] += area;
   }
-  for (Place& place : places_) {
-    const Vec3 within = place.normal.array() * place.is_free;
+  for (size_t k = 0; k < places_.size(); ++k) {
+    const Vec3 within = normals[k].array() * places_[k].is_free;
     const double length = within.norm();
-    place.normal =
-        length > kLeastDirection * place.normal.norm() ? Vec3(within / length) : Vec3(Vec3::Zero());
+    normals[k] = length > kLeastDirection * normals[k].norm() ? Vec3(within / length) : Vec3(Vec3::Zero());
   }
+  return normals;
+}
+
+bool NormalMotion::turn_where_needed(const Points& x) {
+  const std::vector<Vec3> normals = normals_at(x);
+  bool is_needed = false;
+  for (size_t k = 0; k < places_.size(); ++k)
+    is_needed = is_needed || (!normals[k].isZero() && std::abs(normals[k].dot(places_[k].normal)) < kOblique);
+  if (is_needed)
+    for (size_t k = 0; k < places_.size(); ++k) places_[k].normal = normals[k];
+  return is_needed;
 }
 
 double NormalMotion::restrict_gradient(Vector& g) const {
@@ -178,21 +190,20 @@ void NormalMotion::restrict_hessian(Eigen::SparseMatrix<double>& h) {
   }
 }
 
-bool NormalMotion::is_rough(const Points& x) {
+bool NormalMotion::is_rough(const Points& x, const std::vector<Vec3>& normals) const {
   for (size_t k = 0; k < corners_.size(); k += 3) {
     const Vec3 normal = twice_area(x, corners_.data() + k).normalized();
     for (size_t c = k; c < k + 3; ++c) {
       const int place = place_[static_cast<size_t>(corners_[c])];
       if (place < 0 || places_[static_cast<size_t>(place)].is_free.minCoeff() == 0) continue;
-      if (!(normal.dot(places_[static_cast<size_t>(place)].normal) > kRough)) return true;
+      if (!(normal.dot(normals[static_cast<size_t>(place)]) > kRough)) return true;
     }
   }
   return false;
 }
 
-Points NormalMotion::smooth_start(const Points& x) {
-  turn_to(x);
-  if (!is_rough(x)) return x;
+Points NormalMotion::smooth_start(const Points& x) const {
+  if (!is_rough(x, normals_at(x))) return x;
   Points smooth = x;
   for (int coordinate = 0; coordinate < 3; ++coordinate) settle(coordinate, smooth);
   return smooth;

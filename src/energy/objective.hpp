@@ -35,9 +35,9 @@ struct Balance {
 
 // Unknowns q: the three coordinates of every node that is not wholly prescribed, node after node. A
 // prescribed coordinate of such a node (a symmetry plane) stays in q, keeps its value, and has zero
-// gradient and a unit row in the Hessian. Nodes of films of constant tension move along their normals alone
-// (energy/normal_motion.hpp): of gradient and Hessian only that part is there, and only its force is in the
-// residual. One objective serves one thread; several may run side by side.
+// gradient and a unit row in the Hessian. Nodes of films of constant tension move along lines across them
+// alone (energy/normal_motion.hpp): of gradient and Hessian only that part is there, and only its force is in
+// the residual. One objective serves one thread; several may run side by side.
 class Objective {
  public:
   // start: 3 x node_count, the prescribed coordinates among them. terms: at least none; names unique.
@@ -55,9 +55,13 @@ class Objective {
   // Longest side of the box around all nodes [length], whatever the place and the unknowns are.
   double extent(const Vector& q) const;
 
-  // A start from q that films of constant tension can leave by their normals (NormalMotion::smooth_start).
+  // A start from q that films of constant tension can leave along their normals (NormalMotion::smooth_start),
+  // and whether the lines along which they move had to be turned for the state q.
   Vector smooth_start(const Vector& q) {
     return normal_motion_.is_empty() ? q : unknowns(normal_motion_.smooth_start(positions(q)));
+  }
+  bool turn_films(const Vector& q) {
+    return !normal_motion_.is_empty() && normal_motion_.turn_where_needed(positions(q));
   }
 
   // Factors on all loads and on all other energies, for continuation; 1 from the start. Load and stiffness

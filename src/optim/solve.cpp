@@ -15,6 +15,7 @@
 namespace coapt {
 namespace {
 
+constexpr int kMostTurns = 3;        // of the lines along which films move
 constexpr int kMostSaddles = 2;      // that are left in one run
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
@@ -165,11 +166,19 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
 
   Result result;
   result.q = objective.smooth_start(problem.q0);
+  objective.turn_films(result.q);
   EquilibriumWatch watch(objective, result.q);
   monitor.set_watch(&watch);
   Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
   if (outcome.note.empty()) {
     outcome = follow_path(solver, problem, stop, monitor, result);
+    for (int turn = 0;
+         turn < kMostTurns && outcome.status != Status::NoEquilibrium &&
+         outcome.status != Status::Cancelled && !monitor.is_out_of_time() && objective.turn_films(result.q);
+         ++turn) {
+      monitor.begin_round(monitor.round() + 1, stop.tolerance);
+      outcome.status = solver.minimize(objective, result.q, monitor);
+    }
     if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
     if (outcome.note.empty()) outcome.note = solver.remark();
   }
