@@ -67,7 +67,8 @@ TEST_F(AccuracyTest, SaysWhatItDidNotReach) {
   const RunReport found = run_to_accuracy(disc_scene(), solvers(), 1e-3, run_, 300);
   EXPECT_FALSE(found.report.accuracy->is_reached);
   EXPECT_EQ(found.report.accuracy->cuts, 1);
-  EXPECT_GT(found.report.accuracy->total_mm().value(), 1e-3);
+  EXPECT_FALSE(found.report.accuracy->total_mm());  // two meshes tell no order
+  EXPECT_NE(found.report.accuracy->message.find("the last moved 95 % of the surface"), std::string::npos);
   ASSERT_FALSE(found.report.warnings.empty());
   EXPECT_NE(found.report.warnings.back().find("not reached"), std::string::npos);
 
