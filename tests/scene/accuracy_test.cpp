@@ -3,6 +3,7 @@
 
 #include "mesh/cut_in_four.hpp"
 #include "scene/bench_fixture.hpp"
+#include "scene/discretisation.hpp"
 #include "scene/mesh_study.hpp"
 
 #include <nlohmann/json.hpp>
@@ -45,6 +46,20 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
     EXPECT_GT(closed.triangle_count(), last_triangles);
     last_triangles = closed.triangle_count();
   }
+}
+
+TEST(OrdersAgree, NeedsTwoThatAreAlike) {
+  const auto agree = [](const std::vector<double>& distances) {
+    MeshDistances found;
+    for (const double d : distances) found.to_next.push_back({d, d, d});
+    return orders_agree(found);
+  };
+  EXPECT_TRUE(agree({16, 4, 1}));
+  EXPECT_TRUE(agree({1, 16, 4.5, 1}));  // the last two count
+  EXPECT_FALSE(agree({4, 1}));          // three meshes tell one order
+  EXPECT_FALSE(agree({16, 4, 3}));      // 2 and 0.4
+  EXPECT_FALSE(agree({3, 2.5, 2.1}));   // alike, but hardly falling
+  EXPECT_FALSE(agree({4, 1, 0}));
 }
 
 TEST_F(AccuracyTest, IsASolveOfThatMeshToThatTolerance) {
