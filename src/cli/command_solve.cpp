@@ -113,9 +113,10 @@ void add_solve_command(CLI::App& app, int& exit_code) {
   const auto* tolerance =
       command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
           ->check(positive_defect);
-  command->add_option("--accuracy", arguments->accuracy,
-                      "Choose mesh and tolerance for this error of the closed shape, such as 0.1mm: cuts the "
-                      "triangles into four until the estimate is small enough");
+  command->add_option(
+      "--accuracy", arguments->accuracy,
+      "Choose mesh and tolerance for this error of 95 % of the closed surface, such as 0.1mm: cuts "
+      "the triangles into four until two refinements agree and the estimate is small enough");
   const auto* seconds =
       command
           ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")

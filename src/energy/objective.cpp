@@ -33,6 +33,7 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
       free_count_ += 3 - static_cast<int>(fixed_.col(node).count());
     }
   nodal_gradient_.resize(3, x_.cols());
+  normal_motion_ = NormalMotion(terms_, x_, block_, fixed_);
   keep_prestress_reaction();
 }
 
@@ -174,6 +175,7 @@ void Objective::split(const Points& nodal, Vector& free_part) {
     reaction = std::max(reaction, held.squaredNorm());
     if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
   }
+  sliding_force_ = normal_motion_.restrict_gradient(free_part);
   reaction_scale_ = std::sqrt(reaction);
   whole_reaction_scale_ = std::sqrt(whole_reaction);
 }
@@ -221,6 +223,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
     skew_.clear();
     if (circulatory_ == Circulatory::PathWork) add_circulatory_tangent(*h);
     pattern_.mask(*h);
+    if (!normal_motion_.is_empty()) normal_motion_.restrict_hessian(*h);
   }
   if (gradient == nullptr) return energy;
 

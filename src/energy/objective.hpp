@@ -2,6 +2,7 @@
 #pragma once
 
 #include "energy/hessian_pattern.hpp"
+#include "energy/normal_motion.hpp"
 #include "energy/term.hpp"
 
 #include <algorithm>
@@ -34,7 +35,9 @@ struct Balance {
 
 // Unknowns q: the three coordinates of every node that is not wholly prescribed, node after node. A
 // prescribed coordinate of such a node (a symmetry plane) stays in q, keeps its value, and has zero
-// gradient and a unit row in the Hessian. One objective serves one thread; several may run side by side.
+// gradient and a unit row in the Hessian. Nodes of films of constant tension move along lines across them
+// alone (energy/normal_motion.hpp): of gradient and Hessian only that part is there, and only its force is in
+// the residual. One objective serves one thread; several may run side by side.
 class Objective {
  public:
   // start: 3 x node_count, the prescribed coordinates among them. terms: at least none; names unique.
@@ -51,6 +54,15 @@ class Objective {
   Points positions(const Vector& q) const;
   // Longest side of the box around all nodes [length], whatever the place and the unknowns are.
   double extent(const Vector& q) const;
+
+  // A start from q that films of constant tension can leave along their normals (NormalMotion::smooth_start),
+  // and whether the lines along which they move had to be turned for the state q.
+  Vector smooth_start(const Vector& q) {
+    return normal_motion_.is_empty() ? q : unknowns(normal_motion_.smooth_start(positions(q)));
+  }
+  bool turn_films(const Vector& q) {
+    return !normal_motion_.is_empty() && normal_motion_.turn_where_needed(positions(q));
+  }
 
   // Factors on all loads and on all other energies, for continuation; 1 from the start. Load and stiffness
   // scaled alike leave an equilibrium where it is.
@@ -87,6 +99,10 @@ class Objective {
   // Out-of-balance force relative to the reference force, from the gradient of the last evaluation:
   // largest nodal norm of g over reference_force().
   double relative_residual(const Vector& g) const;
+
+  // Greatest nodal force along films of constant tension at the last gradient evaluation, which the mesh
+  // makes and neither gradient nor residual has, over reference_force(); 0 where there is none.
+  double sliding_force() const { return sliding_force_ == 0 ? 0 : sliding_force_ / reference_force(); }
 
   // Largest load or reaction of the last gradient evaluation [force]. Loads on wholly prescribed nodes do
   // not count, and of reactions only what is added to those of a prestressed reference state, which would
@@ -180,6 +196,9 @@ class Objective {
   Points prestress_reaction_;       // of the reference state, at prescribed coordinates; empty: it has none
   double load_scale_ = 0, reaction_scale_ = 0, whole_reaction_scale_ = 0;
   double first_scale_ = 0, strained_scale_ = 0;
+
+  NormalMotion normal_motion_;
+  double sliding_force_ = 0;  // left out at the last evaluation [force]
 
   HessianPattern pattern_;
   bool pattern_is_current_ = false;

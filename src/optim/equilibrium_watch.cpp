@@ -14,7 +14,9 @@ namespace {
 constexpr double kRoundOff = 1e-9;            // of a resultant, relative to the sum of the forces' magnitudes
 constexpr int kInterval = 50;                 // iterates from one look to the next
 constexpr double kFarDrift = 100;             // drift, relative to the extent of the start
-constexpr double kCollapsed = 1e-4;           // area, relative to the start
+constexpr double kCollapsed = 1e-2;           // area, relative to the start
+constexpr double kPinched = 0.02;             // share of the film that has collapsed
+constexpr double kNothing = 0.1;              // of its area is left
 constexpr double kFarFromEquilibrium = 1e-2;  // residual
 constexpr int kCollapsedLooks = 4;            // in a row
 
@@ -89,11 +91,24 @@ bool EquilibriumWatch::has_drifted(const Points& x) {
 }
 
 bool EquilibriumWatch::has_collapsed(const Points& x) {
-  const auto is_gone = [&](const Facet& f) { return facet_area(x, f.a, f.b, f.c) < kCollapsed * f.area; };
-  const auto found = std::find_if(film_.begin(), film_.end(), is_gone);
-  if (found == film_.end()) return false;
-  reason_ = "the film pinches off: " + std::to_string(std::count_if(film_.begin(), film_.end(), is_gone)) +
-            " of its facets have shrunk to nothing, near node " + std::to_string(found->a);
+  int gone = 0;
+  double before = 0, now = 0, gone_before = 0;
+  const Facet* first = nullptr;
+  for (const Facet& f : film_) {
+    const double area = facet_area(x, f.a, f.b, f.c);
+    before += f.area;
+    now += area;
+    if (area >= kCollapsed * f.area) continue;
+    if (first == nullptr) first = &f;
+    ++gone;
+    gone_before += f.area;
+  }
+  // A few facets without area tell of nodes that have slid together, not of the film.
+  if (first == nullptr || gone_before < kPinched * before) return false;
+  reason_ = now < kNothing * before
+                ? "the film shrinks to nothing"
+                : "the film pinches off: " + std::to_string(gone) +
+                      " of its facets have shrunk to nothing, near node " + std::to_string(first->a);
   return true;
 }
 

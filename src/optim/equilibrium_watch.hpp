@@ -19,9 +19,9 @@ class EquilibriumWatch {
   const std::string& obstacle() const { return obstacle_; }
 
   // Call it at each accepted iterate, with the relative residual there. Returns true once a part that nothing
-  // holds has gone a hundred times the extent of the start, or a film of constant tension has had facets of
-  // next to no area for some 200 iterates far from equilibrium: it pinches off. Looks every 50 iterates, and
-  // only where the scene has such parts or films.
+  // holds has gone a hundred times the extent of the start, or a fiftieth of a film of constant tension
+  // has shrunk to next to no area and stayed so for some 200 iterates far from equilibrium: it pinches off.
+  // Looks every 50 iterates, and only where the scene has such parts or films.
   bool is_lost(const Objective& objective, const Vector& q, double residual);
 
   // What is_lost() saw; before it did, that the shape grows without bound and which part is not held.

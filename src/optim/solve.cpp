@@ -15,6 +15,7 @@
 namespace coapt {
 namespace {
 
+constexpr int kMostTurns = 3;        // of the lines along which films move
 constexpr int kMostAttempts = 4;     // to leave saddles in one run
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
@@ -70,6 +71,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
   std::string note = outcome.note;
   result.status = outcome.status;
   result.residual = objective.true_residual(result.q);
+  const double sliding = objective.sliding_force();
   if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
       result.status != Status::NoEquilibrium && !outcome.is_on_the_way && solver.is_at_rest())
     result.status = Status::Converged;
@@ -97,6 +99,8 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
       note = feels_no_force(result) ? "no force acts anywhere: there is nothing to solve"
                                     : "the start is an equilibrium already";
   }
+  if (result.status == Status::Converged && note.empty() && sliding > stop.tolerance)
+    note = "forces along its films, up to " + residual_text(sliding) + ", are the mesh's and left out";
   result.message = sentence(result, stop.tolerance, note);
 }
 
@@ -161,12 +165,20 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   Monitor monitor(objective, stop, observer);
 
   Result result;
-  result.q = problem.q0;
-  EquilibriumWatch watch(objective, problem.q0);
+  result.q = objective.smooth_start(problem.q0);
+  objective.turn_films(result.q);
+  EquilibriumWatch watch(objective, result.q);
   monitor.set_watch(&watch);
   Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
   if (outcome.note.empty()) {
     outcome = follow_path(solver, problem, stop, monitor, result);
+    for (int turn = 0;
+         turn < kMostTurns && outcome.status != Status::NoEquilibrium &&
+         outcome.status != Status::Cancelled && !monitor.is_out_of_time() && objective.turn_films(result.q);
+         ++turn) {
+      monitor.begin_round(monitor.round() + 1, stop.tolerance);
+      outcome.status = solver.minimize(objective, result.q, monitor);
+    }
     if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
     if (outcome.note.empty()) outcome.note = solver.remark();
   }

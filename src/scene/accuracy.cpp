@@ -69,13 +69,19 @@ class Search {
       estimate.levels.back().to_previous = distances.to_next.back();
       const DiscretisationEstimate found = estimate_discretisation(distances);
       estimate.order = found.order;
+      mesh = std::move(finer);
+      estimate.discretisation_mm = std::nullopt;
+      if (!orders_agree(distances)) continue;
       const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {
         return error <= (1 - kAlgebraicShare) * estimate.wanted_mm;
       });
       const bool is_enough = fine_enough != found.error_mm.end();
-      const auto chosen = is_enough ? static_cast<size_t>(fine_enough - found.error_mm.begin()) : finer.cuts;
+      const auto chosen = is_enough ? static_cast<size_t>(fine_enough - found.error_mm.begin()) : mesh.cuts;
       estimate.discretisation_mm = found.error_mm[chosen];
-      mesh = std::move(finer);
+      // What the farthest point is beside the 95th percentile, as the distance to the finest mesh shows it.
+      const DistanceFigures& seen =
+          chosen < mesh.cuts ? distances.to_finest[chosen] : distances.to_next.back();
+      if (seen.p95 > 0) greatest_mm = found.error_mm[chosen] * seen.max / seen.p95;
       if (!is_enough) continue;
       return tightened(chosen == mesh.cuts ? std::move(mesh) : solved(chosen));
     }
@@ -85,6 +91,7 @@ class Search {
   const SolveSetup& setup() const { return setup_; }
 
   AccuracyEstimate estimate;
+  double greatest_mm = 0;  // error of the mesh at the farthest point, where it is known for the rest
 
  private:
   static RunOptions refining(const SolverTable& solvers, RunOptions options) {
@@ -165,14 +172,26 @@ void check(const Scene& scene, double wanted_mm, const RunOptions& options) {
   if (!defects.empty()) throw InputError(defects);
 }
 
-std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) {
+// What is known where the error is not.
+std::string last_change(const AccuracyEstimate& estimate) {
+  for (auto level = estimate.levels.rbegin(); level != estimate.levels.rend(); ++level)
+    if (const auto& change = level->to_previous)
+      return ", as no two refinements in a row agree in their order; the last moved 95 % of the surface by "
+             "up to " +
+             page_number(change->p95, 2) + " mm, its farthest point by " + page_number(change->max, 2) +
+             " mm";
+  return ", as there was no finer mesh to compare";
+}
+
+std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh, double greatest_mm) {
   const std::string where = " on " + std::to_string(mesh.model.mesh.triangle_count()) +
                             " triangles at tolerance " + page_number(estimate.tolerance);
   const std::string wanted = " (wanted: " + page_number(estimate.wanted_mm) + " mm)";
   if (!mesh.has_converged()) return "not known, as the solve" + where + " did not converge" + wanted;
   const std::optional<double> total = estimate.total_mm();
-  if (!total) return "not known" + where + wanted;
-  return page_number(*total, 2) + " mm by estimate" + where + wanted;
+  if (!total) return "not known" + where + (estimate.discretisation_mm ? "" : last_change(estimate)) + wanted;
+  return page_number(*total, 2) + " mm by estimate for 95 % of the surface, " +
+         page_number(greatest_mm + *estimate.algebraic_mm, 2) + " mm at its farthest point" + where + wanted;
 }
 
 }  // namespace
@@ -193,7 +212,7 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
   const std::optional<double> total = estimate.total_mm();
   estimate.cuts = static_cast<int>(mesh.cuts);
   estimate.is_reached = total && *total <= wanted_mm;
-  estimate.message = described(estimate, mesh);
+  estimate.message = described(estimate, mesh, search.greatest_mm);
 
   SolveSetup setup = search.setup();
   setup.stop.tolerance = estimate.tolerance;

@@ -31,6 +31,15 @@ std::optional<double> observed_order(const DistanceFigures& coarser, const Dista
   return std::log2(coarser.mean / finer.mean);
 }
 
+bool orders_agree(const MeshDistances& distances) {
+  constexpr double kLeastOrder = 0.5, kApart = 0.5;
+  const std::vector<DistanceFigures>& d = distances.to_next;
+  if (d.size() < 3) return false;
+  const auto before = observed_order(d[d.size() - 3], d[d.size() - 2]),
+             last = observed_order(d[d.size() - 2], d[d.size() - 1]);
+  return before && last && std::min(*before, *last) >= kLeastOrder && std::abs(*before - *last) <= kApart;
+}
+
 DiscretisationEstimate estimate_discretisation(const MeshDistances& distances) {
   const std::vector<DistanceFigures>&to_next = distances.to_next, &to_finest = distances.to_finest;
   DiscretisationEstimate estimate;

@@ -40,4 +40,8 @@ DiscretisationEstimate estimate_discretisation(const MeshDistances& distances);
 // log2 of the ratio of two mean distances, each to the next mesh; empty where one is zero.
 std::optional<double> observed_order(const DistanceFigures& coarser, const DistanceFigures& finer);
 
+// Whether the last two refinements show errors that fall alike, so that what is beyond the last mesh may be
+// told from them: two observed orders, of at least 1/2 each and no more than 1/2 apart. Needs four meshes.
+bool orders_agree(const MeshDistances& distances);
+
 }  // namespace coapt
