@@ -26,7 +26,7 @@ CASES = {
         ["generate", "mitral", "--triangles", "625"],
         ["--methods", METHODS, "--repeats", "1", "--max-seconds", "60", "--truth-seconds", "600"]),
     "human tricuspid valve, coarse": (
-        ["import", "valve_coarse.json", "--incompressible"],
+        ["import", "valve_coarse.json"],
         ["--methods", METHODS, "--tolerances", "1e-2,1e-4,1e-6", "--levels", "0", "--repeats", "1",
          "--max-seconds", "120", "--truth-seconds", "1200"])}
 

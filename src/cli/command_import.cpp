@@ -14,13 +14,14 @@ namespace {
 
 struct ImportArguments : SceneArguments {
   std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
-  bool incompressible = false, keeps_mesh = false;
+  std::string bulk = "none";
+  bool is_incompressible = false, keeps_mesh = false;
 };
 
 void import_file(const ImportArguments& arguments) {
   refuse_folder_of(arguments.file, arguments.folder);
   ImportOptions options = import_options(arguments);
-  options.incompressible = arguments.incompressible;
+  options.keeps_bulk = arguments.bulk == "stated";
   options.repairs = !arguments.keeps_mesh;
   options.young = arguments.young;
   options.chord_young = arguments.chord_young;
@@ -44,8 +45,14 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                    "Valve JSON with its meshes beside it, .inp, .feb, or a mesh (.obj .ply .stl .off .vtp)")
       ->required();
   add_scene_options(*command, *arguments, {"follower", "frozen", "field"});
-  command->add_flag("--incompressible", arguments->incompressible,
-                    "Leave the bulk modulus of membrane laws out: incompressible leaflets");
+  CLI::Option* bulk =
+      command
+          ->add_option("--bulk", arguments->bulk,
+                       "Bulk modulus of membrane laws: none, incompressible leaflets, or as stated")
+          ->check(CLI::IsMember({"none", "stated"}))
+          ->capture_default_str();
+  command->add_flag("--incompressible", arguments->is_incompressible, "The same as --bulk none, the default")
+      ->excludes(bulk);
   command->add_flag("--no-repair", arguments->keeps_mesh,
                     "Keep slivers of the mesh, which are otherwise flipped, cut off or collapsed");
   command->add_option("--young", arguments->young,

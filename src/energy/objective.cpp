@@ -81,16 +81,19 @@ bool Objective::round_kinks(double share) {
 }
 
 bool Objective::limit_stress(const Vector& q) {
+  has_stress_limits_ = false;
+  bool has_laws = false;
+  for (const auto& term : terms_) has_laws = term->limit_stress({kInfinity, kInfinity}) || has_laws;
+  if (!has_laws) return false;
   prepare(q);
   Points load = Points::Zero(3, node_count());
   for (const auto& term : terms_)
     if (term->role() == TermRole::Load) pour(*term, Sink(load.data()));
   const double force = load.colwise().norm().sum(), size = extent(q);
-  release_stress_limits();
   if (!(force > 0 && size > 0 && std::isfinite(force))) return false;
   const TensionScale scale{kStressLimit * force / size, kStressLimit * kLineShare * force};
-  for (const auto& term : terms_) has_stress_limits_ = term->limit_stress(scale) || has_stress_limits_;
-  return has_stress_limits_;
+  for (const auto& term : terms_) term->limit_stress(scale);
+  return has_stress_limits_ = true;
 }
 
 double Objective::raise_stress_limits(const Vector& q) {

@@ -12,6 +12,7 @@
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/valve_curves.hpp"
 #include "scene/markups.hpp"
+#include "scene/suggestion.hpp"
 #include "scene/units.hpp"
 #include "scene/valve_doubts.hpp"
 #include "scene/valve_json.hpp"
@@ -168,6 +169,21 @@ void take_membrane_option(const ImportOptions& options, bool is_own, Material& l
   }
 }
 
+// Incompressible membranes. A shell of a program that wrote the file keeps its volume by the program's own
+// rule (section Poisson's ratio 0.5 in the published tricuspid valve), whatever the volumetric term of its
+// law is.
+void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::string>& warnings) {
+  std::vector<std::string> regions;
+  for (auto& [region, law] : valve.membranes)
+    if (std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; }) > 0)
+      regions.push_back(region.empty() ? "the leaflets" : region);
+  if (regions.empty()) return;
+  warnings.push_back(
+      file + ": states a bulk modulus (" + listed(regions) +
+      "); the membranes are taken as incompressible, as the shells of finite-element runs keep "
+      "their volume. --bulk stated takes the modulus as it is.");
+}
+
 // The moduli of the options in the place of the valve's laws. A law of another thickness than the valve's
 // becomes a linear law of its own.
 void take_moduli(const ImportOptions& options, Valve& valve) {
@@ -248,9 +264,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
   detail::apply_curves(options, file.string(), valve, warnings);
-  if (options.incompressible)
-    for (auto& [region, law] : valve.membranes)
-      std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; });
+  if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
   take_moduli(options, valve);
   if (complete_thickness(options, valve))
     warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +

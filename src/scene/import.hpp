@@ -24,8 +24,9 @@ struct ImportOptions {
   bool bends = true;                // false: no term `bending`, whatever the membrane
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
-  bool repairs = true;          // slivers of the leaflets (mesh/repair_valve.hpp)
-  bool incompressible = false;  // leaves the key `bulk` of membrane laws out, whatever file they come from
+  bool repairs = true;  // slivers of the leaflets (mesh/repair_valve.hpp)
+  // Whether membranes keep the bulk modulus that the file states. Without it they are incompressible.
+  bool keeps_bulk = false;
   std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
 };
 

@@ -92,6 +92,36 @@ TYPED_TEST_SUITE(ExtremeState, MembraneLaws, LawNames);
 
 TYPED_TEST(ExtremeState, DerivativesHold) { expect_right_everywhere(TypeParam::law(1)); }
 
+// Chords from slack to four times their length: energy, force and stiffness.
+template <typename Law>
+void expect_line_derivatives(const Law& law) {
+  const auto rest = CableLaw<Law>::rest(2, 0.3, 0.002, law);
+  for (const double e : {-0.8, -0.1, 0.0007, 0.0031, 0.013, 0.09, 0.21, 0.7, 1.3, 3.0}) {
+    const AxialLaw at = CableLaw<Law>::elastic(rest, e);
+    ASSERT_FALSE(std::isnan(at.energy)) << e;
+    ASSERT_GE(at.energy, 0) << e;
+    if (at.energy > kMostFinite) continue;
+    const double h = 1e-6 * std::max(std::abs(e), 0.01);
+    const AxialLaw above = CableLaw<Law>::elastic(rest, e + h), below = CableLaw<Law>::elastic(rest, e - h);
+    const double change = 2 * h * rest.length;
+    EXPECT_NEAR((above.energy - below.energy) / change, at.force, 1e-6 * at.force + 1e-12) << e;
+    EXPECT_NEAR((above.force - below.force) / change, at.stiffness, 1e-5 * at.stiffness + 1e-9) << e;
+  }
+}
+
+TEST(ExtremeStates, DerivativesOfPublishedChordsHold) {
+  // The tricuspid valve of Mathur et al. 2022, leaflet by leaflet.
+  expect_line_derivatives(
+      OgdenLine{{18.884147787, 22.682992286, 19.502933935}, {98.253655, 98.251894, 98.253229}});
+  expect_line_derivatives(
+      OgdenLine{{4.241553985, 2.724796147, 3.7265674e-5}, {55.914887, 55.915477, 70.715073}});
+  expect_line_derivatives(
+      OgdenLine{{33.753478488, 1.4596286e-5, 0.020343017}, {1.531671e-4, 3.48813e-4, 113.447387}});
+  expect_line_derivatives(ToeLine{24.2, 0.0925907, 0.113, 48.8});
+  expect_line_derivatives(BilinearLine{0.1, {5.9, 0.25, 0.01}});
+  expect_line_derivatives(CrimpedLine{CrimpedFibre(48, 12, 1.6, 0.01)});
+}
+
 // The energy is the work of the force along the way: nothing jumps on it.
 TEST(ExtremeStates, NothingJumpsOnTheWay) {
   for (const ExponentialLaw& law : published_exponentials())

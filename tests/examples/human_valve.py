@@ -12,6 +12,6 @@ def imported_valve(coapt: str, shared: pathlib.Path, folder: pathlib.Path) -> pa
     if not source.exists():
         print(f"skipped: {source} is not there")
         sys.exit(SKIPPED)
-    subprocess.run([coapt, "import", str(source), "--incompressible", "-o", str(folder)], check=True,
+    subprocess.run([coapt, "import", str(source), "-o", str(folder)], check=True,
                    stdout=subprocess.DEVNULL)
     return folder / "scene.json"

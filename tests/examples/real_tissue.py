@@ -2,7 +2,7 @@
 
     real_tissue.py COAPT SHARED_DATA_FOLDER
 
-Exit code 77, "skipped", where the data is not there. The scene is what `coapt import --incompressible` writes: the
+Exit code 77, "skipped", where the data is not there. The scene is what `coapt import` writes: the
 materials of the data without their bulk modulus. Measured: mean distance 0.100 mm, orifice 3.5 mm2, area growth 20.4 %;
 see docs/validation/tricuspid.md. The bounds leave room for another branch of the chords, not for another law: the linear
 membrane ends at 0.68 mm, the printed compressibility at 0.34 mm.

@@ -117,7 +117,7 @@ class Nightly : public TricuspidContactTest {};
 TEST_F(Nightly, TricuspidValvesCloseWithoutAnIntersectionAtAnyIterate) {
   if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
   expect_contact_without_intersection("coarse tricuspid valve",
-                                      solve_judged(imported("valve_coarse.json", {.incompressible = true})));
+                                      solve_judged(imported("valve_coarse.json", {})));
   expect_contact_without_intersection(
       "full tricuspid valve, linear",
       solve_judged(imported("valve.json", {.young = "0.05 MPa", .chord_young = "40 MPa"})));

@@ -114,7 +114,7 @@ TEST_F(TricuspidModel, HasTheChordsOfTheConvertedOne) {
 
 TEST_F(TricuspidModel, BringsItsMaterialsIntoAScene) {
   const TemporaryFolder folder;
-  const auto warnings = import_valve(file_, folder.path(), {});
+  const auto warnings = import_valve(file_, folder.path(), {.keeps_bulk = true});
   std::string all;
   for (const std::string& warning : warnings) all += warning + "\n";
   for (const char* part :
@@ -140,7 +140,7 @@ TEST_F(TricuspidModel, BringsItsMaterialsIntoAScene) {
   EXPECT_EQ(model.lines.size(), 1836u);
   EXPECT_EQ(model.applied_pressure, 0.00306);
 
-  import_valve(file_, folder.path(), {.incompressible = true});
+  import_valve(file_, folder.path());
   EXPECT_EQ(file_text(folder.path() / "scene.json").find("bulk"), std::string::npos);
 }
 
@@ -156,7 +156,7 @@ RoundTrip round_trip(const TemporaryFolder& folder, const Valve& valve, const Im
   write_valve_scene(valve, a, options);
   RoundTrip trip;
   trip.exported = export_file(a / "scene.json", feb);
-  trip.imported = import_valve(feb, b, {.membrane = options.membrane});
+  trip.imported = import_valve(feb, b, {.membrane = options.membrane, .keeps_bulk = true});
   trip.before = read_valve(a / "valve.json").valve;
   trip.after = read_valve(b / "valve.json").valve;
   trip.scene_before = load_scene(a / "scene.json");
