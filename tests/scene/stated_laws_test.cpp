@@ -118,7 +118,7 @@ TEST_F(StatedLaws, AreReadInTheUnitOfTheFormula) {
   leaflets["model"] = "U = C0/2 (I1-3) + C1/2 (exp(C2 (I1-3)^2)-1) + (J-1)^2/D, kPa";
   chords["model"] = "Ogden N=1, kPa: mu1, alpha1";
   chords["anterior"] = {250, 40};
-  import_it({{"materials", leaflets}, {"chord_materials", chords}});
+  import_it({{"materials", leaflets}, {"chord_materials", chords}}, {.keeps_bulk = true});
   EXPECT_DOUBLE_EQ(terms_.at("anterior")->parameters.number("c0"), 1e-6);
   EXPECT_DOUBLE_EQ(terms_.at("anterior")->parameters.number("bulk"), 2e-3 / 20.06689);
   EXPECT_EQ(terms_.at("anterior")->parameters.number("c2"), 4.568202);
