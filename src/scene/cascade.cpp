@@ -18,6 +18,7 @@ constexpr int kFewestTriangles = 500;  // of a coarse mesh
 constexpr size_t kMostCoarseMeshes = 4;
 constexpr double kLeastCoarsening = 0.67;  // a mesh with more than this share of the next is no help
 constexpr double kCoarseTolerance = 1e-3;
+constexpr double kGapPerEdge = 0.1;  // left between facets that are pushed apart, of the mean edge
 
 // One step from a mesh of the cascade to the next coarser one.
 struct Step {
@@ -68,10 +69,22 @@ Points finer(const Step& step, const Points& x) {
   return result;
 }
 
-// Whether a barrier can start from x: no facets pass through each other.
-bool can_start_at(const Points& x, const Model& model) {
+// Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
+// their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
+// edge.
+bool make_startable(Points& x, const Model& model) {
   if (model.objective->step_limiting_term() == nullptr) return true;
-  return pairs_to_separate(x, all_facets(model), model.mesh.triangle_count(), {}).empty();
+  const Triangles facets = all_facets(model);
+  SeparationOptions options;
+  options.membrane_count = model.mesh.triangle_count();
+  if (pairs_to_separate(x, facets, options.membrane_count, {}).empty()) return true;
+  const double edge = mean_edge_length(model.X, model.mesh.triangles);
+  options.gap = kGapPerEdge * edge;
+  for (const auto& node : model.objective->fixed().colwise()) options.is_held.push_back(node.any());
+  Separation separation = separate(x, facets, options);
+  if (!separation.pairs_left.empty() || separation.largest_displacement > edge) return false;
+  x = std::move(separation.x);
+  return true;
 }
 
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
@@ -149,7 +162,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
     try {
       Model model = build(scene, thinned(ground, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
-      if (!is_coarsest && !can_start_at(start.x, model))
+      if (!is_coarsest && !make_startable(start.x, model))
         throw InputError("the shape found on a coarser one passes through itself there");
       const Problem problem =
           is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
@@ -181,7 +194,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                              const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
   std::optional<Start> start = coarse_start(scene, ground, cascade);
-  if (start && !can_start_at(start->x, model)) {
+  if (start && !make_startable(start->x, model)) {
     cascade.warn(
         "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
     start.reset();

@@ -69,7 +69,8 @@ struct CableLaw {
     const double rho = rounded_elongation(e, rest.smoothing).value;
     if (!(rho > rest.limit)) return 0;
     const double stress = continued(rest, rho).stress, excess = std::log(rest.law.at(rho).stress / stress);
-    rest.limit = elongation_of(rest.law, stress, rho);
+    const double most = 10 * rest.law.at(rest.limit).stress;
+    rest.limit = elongation_of(rest.law, most > 0 ? std::min(stress, most) : stress, rho);
     return excess;
   }
 

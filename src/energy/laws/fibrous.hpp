@@ -121,9 +121,9 @@ struct MayNewmanYinLaw {
   double raise_limit(double energy) {
     const double over = (energy / c0 - std::expm1(limit)) * std::exp(-limit);  // past + past^2/2
     if (!(over > 0)) return 0;
-    const double past = std::sqrt(1 + 2 * over) - 1, back = std::log1p(past);
-    limit += back;
-    return past - back;
+    const double past = std::sqrt(1 + 2 * over) - 1, excess = past - std::log1p(past);
+    limit += std::min(std::log1p(past), 2.3);  // ten times the stress at most
+    return excess;
   }
   // There is none at rest: the secant of a strip pulled along the fibre by a tenth.
   double initial_young() const {

@@ -110,7 +110,7 @@ struct ExponentialInvariant {
   // EnergyTerm::raise_stress_limits() of an element at j.
   double raise_limit(double j) {
     if (!(j > limit)) return 0;
-    const double stress = log_slope(j).log;
+    const double stress = std::min(log_slope(j).log, log_slope(limit).log + kMostRise);
     limit = std::numeric_limits<double>::infinity();
     const double excess = log_slope(j).log - stress;
     limit = strain_of(stress);
@@ -137,6 +137,7 @@ struct ExponentialInvariant {
     return j;
   }
 
+  static constexpr double kMostRise = 2.3;    // of ln psi' at the limit in one raise: ten times the stress
   static constexpr double kNegligible = 700;  // a summand smaller by a factor exp(700) underflows
 
   InvariantEnergy exponential(double j) const {
