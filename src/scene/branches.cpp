@@ -12,6 +12,9 @@
 namespace coapt {
 namespace {
 
+constexpr Eigen::Index kMostParts =
+    128;  // of the nodes, that contact stops apart from each other: a bound on the time
+
 constexpr double kSameState = 1e-3;  // distance of a node, over the mean edge length
 
 // The length that moves and distances are told in [mm]: of the triangles, or else of the lines.
@@ -35,6 +38,23 @@ Points random_moves(const Objective& objective, double radius, RandomSource& ran
   Points moves(3, objective.node_count());
   for (Eigen::Index k = 0; k < moves.cols(); ++k) moves.col(k) = random_in_ball(random, radius);
   return objective.fixed().select(0.0, moves.array()).matrix();
+}
+
+// Moves x by the columns from ... to - 1 of `moves` as far as the terms admit. A pair that is nearly in
+// contact would stop all nodes: halves that are stopped are moved one after the other, down to `smallest`
+// nodes.
+void move_admissibly(Objective& objective, const Points& moves, Eigen::Index from, Eigen::Index to,
+                     Eigen::Index smallest, Points& x) {
+  Points part = Points::Zero(3, moves.cols());
+  part.middleCols(from, to - from) = moves.middleCols(from, to - from);
+  const double share = objective.step_limit(x, part, 1);
+  if (share >= 1 || to - from <= smallest) {
+    x += share * part;
+    return;
+  }
+  const Eigen::Index middle = from + (to - from) / 2;
+  move_admissibly(objective, moves, from, middle, smallest, x);
+  move_admissibly(objective, moves, middle, to, smallest, x);
 }
 
 // An equilibrium as it is compared with others.
@@ -135,19 +155,23 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   const SolveSetup setup = solve_setup(scene, solvers, options);
   const double edge = edge_scale(model);
   Branches branches;
-  branches.kick_mm = branches.shortest_kick_mm = search.kick * edge;
+  branches.kick_mm = search.kick * edge;
   branches.tolerance_mm = kSameState * edge;
   std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
   branches.equilibria = {nearby(own, {}, run.report.metrics)};
+  const Eigen::Index smallest_part = std::max<Eigen::Index>(1, objective.node_count() / kMostParts);
   for (int start = 0; start < search.starts; ++start) {
     RandomSource random(search.seed, static_cast<std::uint64_t>(start));
     const Points moves = random_moves(objective, branches.kick_mm, random);
     objective.prescribe(states.front().x);
-    const double share = objective.step_limit(states.front().x, moves, 1);
-    const Result result = solve_again(states.front().x + share * moves, model, setup);
+    Points x = states.front().x;
+    move_admissibly(objective, moves, 0, moves.cols(), smallest_part, x);
+    const double wanted = moves.colwise().norm().sum();
+    const double share = wanted > 0 ? (x - states.front().x).colwise().norm().sum() / wanted : 1;
+    const Result result = solve_again(x, model, setup);
     if (result.status == Status::Cancelled) break;
     ++branches.starts;
-    branches.shortest_kick_mm = std::min(branches.shortest_kick_mm, share * branches.kick_mm);
+    branches.least_moved_share = std::min(branches.least_moved_share, share);
     if (result.status == Status::Converged)
       sort_in(result, model, options.judge, states, branches);
     else
@@ -195,7 +219,7 @@ void add_to_result(const std::filesystem::path& result_file, const Branches& bra
                         {"starts", branches.starts},
                         {"not_converged", branches.not_converged},
                         {"kick_mm", branches.kick_mm},
-                        {"shortest_kick_mm", branches.shortest_kick_mm},
+                        {"least_moved_share", branches.least_moved_share},
                         {"tolerance_mm", branches.tolerance_mm},
                         {"greatest_return_mm", branches.greatest_return_mm},
                         {"equilibria", equilibria},

@@ -36,19 +36,19 @@ struct Branches {
   int starts = 0;         // made; fewer than wanted where the user interrupted the search
   int not_converged = 0;  // of them
   double kick_mm = 0;
-  double shortest_kick_mm = 0;    // of the starts: contact may leave less room than kick_mm
-  double tolerance_mm = 0;        // states are the same where no determined node is farther apart
+  double least_moved_share = 1;  // of the starts: length of all moves that contact admitted, over that wanted
+  double tolerance_mm = 0;       // states are the same where no determined node is farther apart
   double greatest_return_mm = 0;  // of a node of the starts that came back to the solve's own state
   std::vector<NearbyEquilibrium> equilibria;  // distinct; the solve's own first
   std::vector<BranchRange> others;            // empty: there is no other equilibrium
 };
 
 // Moves every free node of run's equilibrium by a random vector, uniform in the ball of that radius, as far
-// as contact admits (Objective::step_limit), and solves again from there, once for each start. States that
-// differ by more than a thousandth of the mean edge at a node whose place is determined
-// (Certificate::free_nodes) are distinct. What is not found may be there all the same: starts are few, and
-// near. options: of the solve; its time limit is that of each start, its observer sees all iterates and ends
-// the search by cancelling. run.model is left at another state. Pre: run converged.
+// as contact admits (Objective::step_limit, for parts of the nodes apart), and solves again from there, once
+// for each start. States that differ by more than a thousandth of the mean edge at a node whose place is
+// determined (Certificate::free_nodes) are distinct. What is not found may be there all the same: starts are
+// few, and near. options: of the solve; its time limit is that of each start, its observer sees all iterates
+// and ends the search by cancelling. run.model is left at another state. Pre: run converged.
 Branches find_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
                        const BranchSearch& search, RunReport& run);
 

@@ -100,9 +100,10 @@ class CommandTest(CommandCase):
         if jsonschema is not None:
             validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
             self.assertEqual([e.message for e in validator.iter_errors(result)], [])
-        self.assert_bad_input(coapt("solve", scene, "--branches", 0), "--branches")
-        self.assert_bad_input(coapt("solve", scene, "--branch-kick", 0.1), "--branches")
-        self.assert_bad_input(coapt("solve", scene, "--branches", 1, "--branch-kick", "-1"), "above 0")
+        for wrong in [["--branches", 0], ["--branch-kick", 0.1], ["--branches", 1, "--branch-kick", "-1"]]:
+            run = coapt("solve", scene, *wrong)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertIn("--branch", run.stderr)
 
     def test_counters_are_zero_for_what_a_scene_does_not_use(self):
         coapt("solve", self.generate("disc", "--triangles", 200))
