@@ -7,6 +7,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "scene/accuracy.hpp"
+#include "scene/branches.hpp"
 #include "scene/units.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,16 +26,37 @@ struct SolveArguments {
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
   bool has_no_report = false;
+  BranchSearch branches = {.starts = 0};
   CheckpointArguments checkpoint;
 };
 
-void print_value(const char* label, const std::optional<double>& value, const char* unit,
-                 const char* format) {
-  if (!value) return;
-  std::printf("  %-22s ", label);
-  std::printf(format, *value);
-  std::printf("%s%s\n", unit[0] == 0 ? "" : " ", unit);
+// " (other equilibria: 8.16 to 10.20)" for a metric; nothing where there are none.
+void print_others(const std::optional<Branches>& branches, const char* metric, const char* format) {
+  if (!branches) return;
+  for (const BranchRange& range : branches->others) {
+    if (range.name != metric) continue;
+    std::printf(" (other equilibria: ");
+    std::printf(format, range.lowest);
+    std::printf(" to ");
+    std::printf(format, range.highest);
+    std::printf(")");
+  }
 }
+
+// Prints one metric with its range over the other equilibria, if any were found.
+struct MetricPrinter {
+  const std::optional<Branches>& branches;
+
+  void operator()(const char* label, const std::optional<double>& value, const char* unit, const char* format,
+                  const char* metric) const {
+    if (!value) return;
+    std::printf("  %-22s ", label);
+    std::printf(format, *value);
+    std::printf("%s%s", unit[0] == 0 ? "" : " ", unit);
+    print_others(branches, metric, format);
+    std::printf("\n");
+  }
+};
 
 void print_reference(const DistanceFigures& distance) {
   std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "distance to reference", distance.mean,
@@ -58,7 +80,31 @@ double wanted_accuracy(const std::string& text) {
   }
 }
 
-void print_summary(const RunReport& run) {
+void print_metrics(const Model& model, const Metrics& m, const std::optional<Branches>& branches) {
+  const MetricPrinter print = {branches};
+  if (m.orifice_area_mm2 && m.annulus_area_mm2) {
+    std::printf("  %-22s %.2f of %.1f mm2", "orifice area", *m.orifice_area_mm2, *m.annulus_area_mm2);
+    print_others(branches, "orifice_area_mm2", "%.2f");
+    std::printf("\n");
+  }
+  print("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f", "coaptation_area_mm2");
+  print("coaptation length", m.coaptation_length_mm, "mm", "%.2f", "coaptation_length_mm");
+  print("coaptation height", m.coaptation_height_mm, "mm", "%.2f", "coaptation_height_mm");
+  print("tenting height", m.tenting_height_mm, "mm", "%.2f", "tenting_height_mm");
+  print("prolapse height", m.prolapse_height_mm, "mm", "%.2f", "prolapse_height_mm");
+  if (model.mesh.triangle_count() > 0) {
+    std::printf("  %-22s %.6g mm2 (open: %.6g mm2)", "area", m.leaflet_area_closed_mm2,
+                m.leaflet_area_open_mm2);
+    print_others(branches, "leaflet_area_closed_mm2", "%.6g");
+    std::printf("\n");
+  }
+  print("greatest strain", m.max_principal_strain, "", "%.4f", "max_principal_strain");
+  print("greatest chord force", m.max_chord_force_n, "N", "%.4g", "max_chord_force_n");
+  print("greatest chord strain", m.max_chord_strain, "", "%.4f", "max_chord_strain");
+  print("greatest displacement", m.max_displacement_mm, "mm", "%.4g", "max_displacement_mm");
+}
+
+void print_summary(const RunReport& run, const std::optional<Branches>& branches) {
   const Report& report = run.report;
   const Result& result = report.result;
   const Metrics& m = report.metrics;
@@ -71,21 +117,9 @@ void print_summary(const RunReport& run) {
   std::printf("  %-22s %s, %d iterations, %ld gradients, %.2f s\n", "solver", report.solver.c_str(),
               result.iterations, result.evaluations.gradient, result.wall_s);
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
-  if (m.orifice_area_mm2 && m.annulus_area_mm2)
-    std::printf("  %-22s %.2f of %.1f mm2\n", "orifice area", *m.orifice_area_mm2, *m.annulus_area_mm2);
-  print_value("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f");
-  print_value("coaptation length", m.coaptation_length_mm, "mm", "%.2f");
-  print_value("coaptation height", m.coaptation_height_mm, "mm", "%.2f");
-  print_value("tenting height", m.tenting_height_mm, "mm", "%.2f");
-  print_value("prolapse height", m.prolapse_height_mm, "mm", "%.2f");
-  if (run.model.mesh.triangle_count() > 0)
-    std::printf("  %-22s %.6g mm2 (open: %.6g mm2)\n", "area", m.leaflet_area_closed_mm2,
-                m.leaflet_area_open_mm2);
-  print_value("greatest strain", m.max_principal_strain, "", "%.4f");
-  print_value("greatest chord force", m.max_chord_force_n, "N", "%.4g");
-  print_value("greatest chord strain", m.max_chord_strain, "", "%.4f");
-  print_value("greatest displacement", m.max_displacement_mm, "mm", "%.4g");
+  print_metrics(run.model, m, branches);
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
+  if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());
   if (report.reference) print_reference(both_directions(*report.reference));
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
@@ -99,6 +133,34 @@ RunIdentity identity(const Scene& scene, const RunOptions& options,
                      const std::optional<double>& accuracy_mm) {
   return {version(), scene_fingerprint(scene), options.solver.empty() ? scene.solver.type : options.solver,
           options.tolerance.value_or(scene.solver.tolerance), accuracy_mm};
+}
+
+// Where they were asked for and there is an equilibrium to begin from; adds them to result.json.
+std::optional<Branches> search_branches(const Scene& scene, RunOptions options, const BranchSearch& search,
+                                        RunReport& run) {
+  if (search.starts == 0) return std::nullopt;
+  if (run.report.result.status != Status::Converged) {
+    run.report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
+    return std::nullopt;
+  }
+  options.tolerance = run.report.tolerance;
+  Branches branches = find_branches(scene, all_solvers(), options, search, run);
+  add_to_result(run.folder / "result.json", branches);
+  return branches;
+}
+
+void add_branch_options(CLI::App& command, BranchSearch& search) {
+  auto* starts = command
+                     .add_option("--branches", search.starts,
+                                 "Look for other equilibria near by: solve again from N perturbed starts")
+                     ->type_name("N")
+                     ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--branch-kick", search.kick,
+                  "Greatest move of a node of these starts, over the mean edge length (default: 0.001)")
+      ->check(positive_defect)
+      ->needs(starts);
+  command.add_option("--branch-seed", search.seed, "Of their random moves (default: 1)")->needs(starts);
 }
 
 }  // namespace
@@ -129,6 +191,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                            ->add_option("--frames", arguments->frames,
                                         "Write every N-th iterate as a frame of an animation (frames.pvd)")
                            ->check(CLI::Range(1, 1000000000));
+  add_branch_options(*command, arguments->branches);
   add_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
   command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
@@ -154,10 +217,13 @@ void add_solve_command(CLI::App& app, int& exit_code) {
       solvers = checkpointing->recorded(solvers);
       options.observer = checkpointing->recorded(options.observer);
     }
-    const RunReport report =
+    RunReport report =
         accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
+    RunOptions again = options;
+    again.observer = make_observer();
+    const std::optional<Branches> branches = search_branches(scene, again, arguments->branches, report);
     end_progress();
-    print_summary(report);
+    print_summary(report, branches);
     if (checkpointing) checkpointing->finish(arguments->scene);
     const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
     const Result& result = report.report.result;

@@ -111,14 +111,16 @@ OrderedJson count_or_null(std::string_view meaning) {
   return described({{"type", OrderedJson::array({"integer", "null"})}, {"minimum", 0}}, meaning);
 }
 
+OrderedJson stability(std::string_view meaning) {
+  const OrderedJson names = {"not_known", "strict_minimum", "stable",          "flat", "saddle", "divergence",
+                             "flutter",   "not_decided",    "nothing_to_judge"};
+  return described({{"enum", names}}, meaning);
+}
+
 OrderedJson certificate() {
-  const OrderedJson stabilities = {"not_known", "strict_minimum", "stable",
-                                   "flat",      "saddle",         "divergence",
-                                   "flutter",   "not_decided",    "nothing_to_judge"};
   return object(
       {{"summary", text("all of it in one sentence")},
-       {"stability", described({{"enum", stabilities}},
-                               "by the signs of the eigenvalues of the exact Hessian or, where a load has no "
+       {"stability", stability("by the signs of the eigenvalues of the exact Hessian or, where a load has no "
                                "potential, of the real parts of those of the tangent")},
        {"conservative",
         flag("all loads have a potential; else the Hessian is the symmetric part of the tangent")},
@@ -179,6 +181,34 @@ OrderedJson branch_changes() {
                      "one step"),
               "steps of the prescribed motion or of the continuation that snapped to another branch of "
               "equilibria; told from the third step on");
+}
+
+OrderedJson branches() {
+  const OrderedJson equilibrium =
+      object({{"found", count("by how many perturbed starts")},
+              {"energy", number("potential energy [mJ]")},
+              {"stability", stability("as in the certificate")},
+              {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
+              {"greatest_distance_mm", number("of a node from the first equilibrium [mm]")},
+              {"mean_distance_mm", number("of the nodes from the first equilibrium [mm]")},
+              {"metrics", metrics()}},
+             "one equilibrium");
+  OrderedJson others = described({{"type", "object"}}, "range of each metric over the other equilibria");
+  others["additionalProperties"] =
+      object({{"lowest", number("of them")}, {"highest", number("of them")}}, "one metric");
+  return object({{"message", text("the outcome in one sentence")},
+                 {"starts", count("perturbed starts that were made")},
+                 {"not_converged", count("of them")},
+                 {"kick_mm", number("greatest move of a node of a start [mm]")},
+                 {"least_moved_share",
+                  number("of the starts: length of all moves that contact admitted, over that wanted")},
+                 {"tolerance_mm", number("nodes of distinct equilibria are farther apart somewhere [mm]")},
+                 {"greatest_return_mm",
+                  number("greatest distance of a node of the starts that came back to the first [mm]")},
+                 {"equilibria", list(equilibrium, "distinct, the one of this result first")},
+                 {"others", others}},
+                "other equilibria near by, where --branches looked for them; nodes whose place is not "
+                "determined are not compared");
 }
 
 OrderedJson accuracy(const OrderedJson& statuses) {
@@ -273,7 +303,8 @@ std::string result_schema() {
                                 "what was asked for")},
               {"levels", levels(statuses), Need::Optional},
               {"files", list({{"type", "string"}}, "names of the files beside this one, and its own")},
-              {"warnings", list({{"type", "string"}}, "whole sentences")}},
+              {"warnings", list({{"type", "string"}}, "whole sentences")},
+              {"branches", branches(), Need::Optional}},
              "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Coapt result";

@@ -83,6 +83,28 @@ class CommandTest(CommandCase):
         broken["status"] = "fine"
         self.assertNotEqual(list(validator.iter_errors(broken)), [])
 
+    def test_looks_for_other_equilibria(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        self.assertEqual(coapt("solve", scene, "--no-report").returncode, 0)
+        self.assertNotIn("branches", self.result())
+        run = coapt("solve", scene, "--no-report", "--branches", 2, "--branch-seed", 5)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        result = self.result()
+        branches = result["branches"]
+        self.assertIn(branches["message"], run.stdout)
+        self.assertEqual(branches["starts"], 2)
+        self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 2)
+        self.assertEqual(branches["equilibria"][0]["energy"], result["energy"])
+        self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
+        self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
+        if jsonschema is not None:
+            validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
+            self.assertEqual([e.message for e in validator.iter_errors(result)], [])
+        for wrong in [["--branches", 0], ["--branch-kick", 0.1], ["--branches", 1, "--branch-kick", "-1"]]:
+            run = coapt("solve", scene, *wrong)
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertIn("--branch", run.stderr)
+
     def test_counters_are_zero_for_what_a_scene_does_not_use(self):
         coapt("solve", self.generate("disc", "--triangles", 200))
         self.assertNotIn("collisions", self.result()["time"]["by_phase"])

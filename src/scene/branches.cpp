@@ -1,0 +1,230 @@
+#include "scene/branches.hpp"
+
+#include "mesh/formats/whole_file.hpp"
+#include "mesh/generators/random_source.hpp"
+#include "scene/detail/json_text.hpp"
+#include "scene/solve_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+constexpr Eigen::Index kMostParts =
+    128;  // of the nodes, that contact stops apart from each other: a bound on the time
+
+constexpr double kSameState = 1e-3;  // distance of a node, over the mean edge length
+
+// The length that moves and distances are told in [mm]: of the triangles, or else of the lines.
+double edge_scale(const Model& model) {
+  if (model.mesh.triangle_count() > 0) return mean_edge_length(model.mesh.vertices, model.mesh.triangles);
+  double sum = 0;
+  for (const Line& line : model.lines) sum += (model.X.col(line.a) - model.X.col(line.b)).norm();
+  return model.lines.empty() ? 1 : sum / static_cast<double>(model.lines.size());
+}
+
+// Uniform in the ball of this radius: points of the cube around it, until one is inside.
+Vec3 random_in_ball(RandomSource& random, double radius) {
+  while (true) {
+    Vec3 v;
+    for (double& coordinate : v) coordinate = random.between(-1, 1);
+    if (v.squaredNorm() <= 1) return radius * v;
+  }
+}
+
+Points random_moves(const Objective& objective, double radius, RandomSource& random) {
+  Points moves(3, objective.node_count());
+  for (Eigen::Index k = 0; k < moves.cols(); ++k) moves.col(k) = random_in_ball(random, radius);
+  return objective.fixed().select(0.0, moves.array()).matrix();
+}
+
+// Moves x by the columns from ... to - 1 of `moves` as far as the terms admit. A pair that is nearly in
+// contact would stop all nodes: halves that are stopped are moved one after the other, down to `smallest`
+// nodes.
+void move_admissibly(Objective& objective, const Points& moves, Eigen::Index from, Eigen::Index to,
+                     Eigen::Index smallest, Points& x) {
+  Points part = Points::Zero(3, moves.cols());
+  part.middleCols(from, to - from) = moves.middleCols(from, to - from);
+  const double share = objective.step_limit(x, part, 1);
+  if (share >= 1 || to - from <= smallest) {
+    x += share * part;
+    return;
+  }
+  const Eigen::Index middle = from + (to - from) / 2;
+  move_admissibly(objective, moves, from, middle, smallest, x);
+  move_admissibly(objective, moves, middle, to, smallest, x);
+}
+
+// An equilibrium as it is compared with others.
+struct KnownState {
+  Points x;
+  std::vector<int> free_nodes;  // ascending
+};
+
+struct NodeDistance {
+  double greatest = 0, mean = 0;  // [mm]
+};
+
+// Over the nodes that are not held and whose place both states determine.
+NodeDistance node_distance(const KnownState& a, const KnownState& b, const FixedMask& fixed) {
+  NodeDistance distance;
+  int count = 0;
+  for (int k = 0; k < static_cast<int>(a.x.cols()); ++k) {
+    if (fixed.col(k).all() || std::binary_search(a.free_nodes.begin(), a.free_nodes.end(), k) ||
+        std::binary_search(b.free_nodes.begin(), b.free_nodes.end(), k))
+      continue;
+    const double here = (a.x.col(k) - b.x.col(k)).norm();
+    distance.greatest = std::max(distance.greatest, here);
+    distance.mean += here;
+    ++count;
+  }
+  if (count > 0) distance.mean /= count;
+  return distance;
+}
+
+NearbyEquilibrium nearby(const Result& result, const NodeDistance& distance, Metrics metrics) {
+  return {result.energy, result.residual,   result.certificate.stability.verdict, 0, distance.greatest,
+          distance.mean, std::move(metrics)};
+}
+
+std::vector<BranchRange> ranges_of_others(const std::vector<NearbyEquilibrium>& equilibria) {
+  std::vector<BranchRange> ranges;
+  if (equilibria.size() < 2) return ranges;
+  const std::vector<MetricRow> names = metric_rows({});
+  for (size_t row = 0; row < names.size(); ++row) {
+    BranchRange range = {names[row].name, kInfinity, -kInfinity};
+    for (size_t k = 1; k < equilibria.size(); ++k) {
+      const std::optional<double> value = metric_rows(equilibria[k].metrics)[row].value;
+      if (!value || !std::isfinite(*value)) continue;
+      range.lowest = std::min(range.lowest, *value);
+      range.highest = std::max(range.highest, *value);
+    }
+    if (range.lowest <= range.highest) ranges.push_back(range);
+  }
+  return ranges;
+}
+
+// Takes a state that a perturbed start came to into the list, or counts it where it is known.
+void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
+             std::vector<KnownState>& states, Branches& branches) {
+  const Objective& objective = *model.objective;
+  const KnownState state = {objective.positions(result.q), result.certificate.free_nodes};
+  const NodeDistance from_own = node_distance(states.front(), state, objective.fixed());
+  for (size_t k = 0; k < states.size(); ++k) {
+    if (node_distance(states[k], state, objective.fixed()).greatest > branches.tolerance_mm) continue;
+    ++branches.equilibria[k].found;
+    if (k == 0) branches.greatest_return_mm = std::max(branches.greatest_return_mm, from_own.greatest);
+    return;
+  }
+  states.push_back(state);
+  const Fields fields = compute_fields(model, state.x);
+  branches.equilibria.push_back(nearby(result, from_own, measure(model, result.q, fields, judge)));
+  branches.equilibria.back().found = 1;
+}
+
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json equilibrium_json(const NearbyEquilibrium& equilibrium) {
+  nlohmann::ordered_json metrics = nlohmann::ordered_json::object();
+  for (const MetricRow& row : metric_rows(equilibrium.metrics)) {
+    if (row.value && row.is_count)
+      metrics[row.name] = std::lround(*row.value);
+    else
+      metrics[row.name] = finite_or_null(row.value.value_or(kNaN));
+  }
+  return {{"found", equilibrium.found},
+          {"energy", finite_or_null(equilibrium.energy)},
+          {"stability", stability_name(equilibrium.stability)},
+          {"residual", finite_or_null(equilibrium.residual)},
+          {"greatest_distance_mm", finite_or_null(equilibrium.greatest_mm)},
+          {"mean_distance_mm", finite_or_null(equilibrium.mean_mm)},
+          {"metrics", metrics}};
+}
+
+}  // namespace
+
+Branches find_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
+                       const BranchSearch& search, RunReport& run) {
+  Model& model = run.model;
+  Objective& objective = *model.objective;
+  const Result& own = run.report.result;
+  const SolveSetup setup = solve_setup(scene, solvers, options);
+  const double edge = edge_scale(model);
+  Branches branches;
+  branches.kick_mm = search.kick * edge;
+  branches.tolerance_mm = kSameState * edge;
+  std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
+  branches.equilibria = {nearby(own, {}, run.report.metrics)};
+  const Eigen::Index smallest_part = std::max<Eigen::Index>(1, objective.node_count() / kMostParts);
+  for (int start = 0; start < search.starts; ++start) {
+    RandomSource random(search.seed, static_cast<std::uint64_t>(start));
+    const Points moves = random_moves(objective, branches.kick_mm, random);
+    objective.prescribe(states.front().x);
+    Points x = states.front().x;
+    move_admissibly(objective, moves, 0, moves.cols(), smallest_part, x);
+    const double wanted = moves.colwise().norm().sum();
+    const double share = wanted > 0 ? (x - states.front().x).colwise().norm().sum() / wanted : 1;
+    const Result result = solve_again(x, model, setup);
+    if (result.status == Status::Cancelled) break;
+    ++branches.starts;
+    branches.least_moved_share = std::min(branches.least_moved_share, share);
+    if (result.status == Status::Converged)
+      sort_in(result, model, options.judge, states, branches);
+    else
+      ++branches.not_converged;
+  }
+  branches.others = ranges_of_others(branches.equilibria);
+  return branches;
+}
+
+std::string branches_message(const Branches& branches) {
+  const auto millimetres = [](double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.2g mm", value);
+    return std::string(text);
+  };
+  const std::string starts =
+      std::to_string(branches.starts) + " perturbed start" + (branches.starts == 1 ? "" : "s");
+  const std::string lost =
+      branches.not_converged == 0 ? "" : "; " + std::to_string(branches.not_converged) + " did not converge";
+  const size_t others = branches.equilibria.size() - 1;
+  if (others == 0) {
+    const int returned = branches.equilibria.front().found;
+    if (branches.starts == 0) return "interrupted before a perturbed start was solved";
+    if (returned == 0) return "none of " + starts + " converged";
+    return (lost.empty() ? starts : std::to_string(returned) + " of " + starts) +
+           " came back to the same state (greatest distance " + millimetres(branches.greatest_return_mm) +
+           ")" + lost;
+  }
+  double farthest = 0;
+  for (const NearbyEquilibrium& equilibrium : branches.equilibria)
+    farthest = std::max(farthest, equilibrium.greatest_mm);
+  return std::to_string(others) + (others == 1 ? " other" : " others") + " near by, from " + starts +
+         "; nodes differ by up to " + millimetres(farthest) + lost;
+}
+
+void add_to_result(const std::filesystem::path& result_file, const Branches& branches) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::parse(formats::read_whole(result_file));
+  nlohmann::ordered_json equilibria = nlohmann::ordered_json::array();
+  for (const NearbyEquilibrium& equilibrium : branches.equilibria)
+    equilibria.push_back(equilibrium_json(equilibrium));
+  nlohmann::ordered_json others = nlohmann::ordered_json::object();
+  for (const BranchRange& range : branches.others)
+    others[range.name] = {{"lowest", range.lowest}, {"highest", range.highest}};
+  result["branches"] = {{"message", branches_message(branches)},
+                        {"starts", branches.starts},
+                        {"not_converged", branches.not_converged},
+                        {"kick_mm", branches.kick_mm},
+                        {"least_moved_share", branches.least_moved_share},
+                        {"tolerance_mm", branches.tolerance_mm},
+                        {"greatest_return_mm", branches.greatest_return_mm},
+                        {"equilibria", equilibria},
+                        {"others", others}};
+  formats::write_whole(result_file, json_text(result, 2) + "\n");
+}
+
+}  // namespace coapt

@@ -1,0 +1,115 @@
+// Other equilibria near the one that a solve found, from perturbed starts.
+#include "scene/branches.hpp"
+
+#include "mesh/generators/shapes.hpp"
+#include "mesh/mesh_io.hpp"
+#include "scene/build.hpp"
+#include "scene/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+class BranchesOfAScene : public testing::Test {
+ protected:
+  // A shallow pyramid, 10 mm wide and 1 mm high, of a membrane that resists compression: pushed at its apex
+  // by less than it takes to snap it through, it is at rest above its base, and turned inside out below.
+  Scene pyramid() {
+    TriangleMesh mesh;
+    mesh.vertices.resize(3, 5);
+    mesh.vertices << -5, 5, 5, -5, 0, -5, -5, 5, 5, 0, 0, 0, 0, 0, 1;
+    mesh.triangles.resize(3, 4);
+    mesh.triangles << 0, 1, 2, 3, 1, 2, 3, 0, 4, 4, 4, 4;
+    write_mesh(folder_.path() / "pyramid.obj", mesh);
+    return load_scene(folder_.write("pyramid.json", R"({"mesh": {"file": "pyramid.obj"},
+      "boundary": [{"nodes": "boundary", "fix": true}],
+      "terms": [{"type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.5 mm"},
+                {"type": "load_field", "nodes": [4], "force": "0.001 N", "direction": [0, 0, -1]}]})"));
+  }
+
+  Scene blown_disc() {
+    write_mesh(folder_.path() / "disc.obj", disc(10, 200));
+    return load_scene(folder_.write("disc.json", R"({"mesh": {"file": "disc.obj"},
+      "boundary": [{"nodes": "boundary", "fix": true}],
+      "terms": [{"type": "cst_tension_field", "young": "1 MPa", "thickness": "0.5 mm"},
+                {"type": "load_pressure", "value": "1 kPa"}]})"));
+  }
+
+  Branches found(const Scene& scene, const BranchSearch& search) {
+    RunOptions options;
+    options.writes = false;
+    RunReport report = run(scene, built_in_solvers(), options);
+    EXPECT_EQ(report.report.result.status, Status::Converged) << report.report.result.message;
+    return find_branches(scene, built_in_solvers(), options, search, report);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BranchesOfAScene, FindsTheShallowPyramidTurnedInsideOut) {
+  const Branches branches = found(pyramid(), {.starts = 12, .kick = 0.5, .seed = 1});
+  EXPECT_EQ(branches.starts, 12);
+  EXPECT_EQ(branches.not_converged, 0);
+  ASSERT_EQ(branches.equilibria.size(), 2u) << branches_message(branches);
+  const NearbyEquilibrium &own = branches.equilibria[0], &other = branches.equilibria[1];
+  EXPECT_EQ(own.greatest_mm, 0);
+  EXPECT_GT(own.found, 0);
+  EXPECT_GT(other.found, 0);
+  EXPECT_EQ(own.found + other.found, 12);
+  EXPECT_NEAR(other.greatest_mm, 2, 0.02);  // from one millimetre above to one below
+  EXPECT_EQ(other.stability, Stability::StrictMinimum);
+  EXPECT_NEAR(own.energy - other.energy, 0.002, 2e-5);  // what the load does on the way
+  ASSERT_FALSE(branches.others.empty());
+  for (const BranchRange& range : branches.others)
+    if (range.name == "max_displacement_mm") {
+      EXPECT_NEAR(range.lowest, 2, 0.02);
+      EXPECT_EQ(range.lowest, range.highest);  // there is one other
+    }
+  EXPECT_EQ(branches_message(branches).find("1 other near by, from 12 perturbed starts"), 0u)
+      << branches_message(branches);
+}
+
+TEST_F(BranchesOfAScene, SeesOneStateWhereTheKickDoesNotReachAnother) {
+  const Branches branches = found(pyramid(), {.starts = 4});
+  EXPECT_EQ(branches.equilibria.size(), 1u);
+  EXPECT_EQ(branches.equilibria[0].found, 4);
+  EXPECT_TRUE(branches.others.empty());
+}
+
+TEST_F(BranchesOfAScene, ComesBackToTheOneStateOfABlownDisc) {
+  const Branches branches = found(blown_disc(), {.starts = 3, .kick = 0.2, .seed = 7});
+  ASSERT_EQ(branches.equilibria.size(), 1u) << branches_message(branches);
+  EXPECT_EQ(branches.equilibria[0].found, 3);
+  EXPECT_GT(branches.greatest_return_mm, 0);  // the starts were others
+  EXPECT_LT(branches.greatest_return_mm, branches.tolerance_mm);
+  EXPECT_NEAR(branches.least_moved_share, 1, 1e-12);  // no contact in the way
+  EXPECT_EQ(branches_message(branches).find("3 perturbed starts came back to the same state"), 0u)
+      << branches_message(branches);
+}
+
+TEST_F(BranchesOfAScene, DoesTheSameForTheSameSeed) {
+  const Branches a = found(blown_disc(), {.starts = 1, .seed = 3}),
+                 b = found(blown_disc(), {.starts = 1, .seed = 3}),
+                 c = found(blown_disc(), {.starts = 1, .seed = 4});
+  EXPECT_EQ(a.greatest_return_mm, b.greatest_return_mm);
+  EXPECT_NE(a.greatest_return_mm, c.greatest_return_mm);
+}
+
+TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
+  const Scene scene = blown_disc();
+  RunOptions options;
+  options.writes = false;
+  RunReport report = run(scene, built_in_solvers(), options);
+  int iterates = 0;
+  options.observer = [&iterates](const Iteration&, const Vector&) { return ++iterates < 2; };
+  const Branches branches =
+      find_branches(scene, built_in_solvers(), options, {.starts = 5, .kick = 0.2}, report);
+  EXPECT_LT(branches.starts, 5);
+  EXPECT_EQ(branches.equilibria.size(), 1u);
+}
+
+}  // namespace
+}  // namespace coapt
