@@ -18,7 +18,8 @@ constexpr int kFewestTriangles = 500;  // of a coarse mesh
 constexpr size_t kMostCoarseMeshes = 4;
 constexpr double kLeastCoarsening = 0.67;  // a mesh with more than this share of the next is no help
 constexpr double kCoarseTolerance = 1e-3;
-constexpr double kGapPerEdge = 0.1;  // left between facets that are pushed apart, of the mean edge
+constexpr double kMostResidual = 1e6;  // of a start
+constexpr double kGapPerEdge = 0.1;    // left between facets that are pushed apart, of the mean edge
 
 // One step from a mesh of the cascade to the next coarser one.
 struct Step {
@@ -85,6 +86,17 @@ bool make_startable(Points& x, const Model& model) {
   if (!separation.pairs_left.empty() || separation.largest_displacement > edge) return false;
   x = std::move(separation.x);
   return true;
+}
+
+// Whether a solver gets anywhere from this start. On slivers a shape that was carried over may bend and
+// stretch beyond measure: starts at up to 4e4 were seen to converge, one at 2e7 to stall.
+bool is_bearable(const Problem& problem) {
+  Vector g;
+  problem.objective.limit_stress(problem.q0);
+  problem.objective.gradient(problem.q0, g);
+  const double residual = problem.objective.relative_residual(g);
+  problem.objective.release_stress_limits();
+  return residual < kMostResidual;
 }
 
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
@@ -206,6 +218,17 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
       cascade.finish(judged(problem, start->status, *make_solver(model)));
       return std::move(cascade.outcome);
     }
+    if (!is_bearable(problem)) {
+      cascade.warn(
+          "The start that the cascade gave is bent or stretched beyond measure: the mesh was solved from its "
+          "own start.");
+      model.objective->prescribe(model.X);
+      start.reset();
+    }
+  }
+  if (start) {
+    Problem problem = problem_at(start->x, model);
+    problem.stability = stability;
     Result result = cascade.level(problem, model, stop.tolerance);
     if (result.status == Status::Converged || result.status == Status::IterationLimit ||
         was_interrupted(result.status)) {
