@@ -178,7 +178,8 @@ void add_solve_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--accuracy", arguments->accuracy,
       "Choose mesh and tolerance for this error of 95 % of the closed surface, such as 0.1mm: cuts "
-      "the triangles into four until two refinements agree and the estimate is small enough");
+      "the triangles into four until two refinements agree and the estimate is small enough; the "
+      "error at the farthest point is reported beside it");
   const auto* seconds =
       command
           ->add_option("--max-seconds", arguments->max_seconds, "Stop after this time, keep the best state")

@@ -1,6 +1,8 @@
 #include "optim/equilibrium_watch.hpp"
 
 #include "energy/kernels/surface_tension.hpp"
+#include "energy/normal_motion.hpp"
+#include "optim/film_size.hpp"
 
 #include <Eigen/Geometry>
 
@@ -18,7 +20,9 @@ constexpr double kCollapsed = 1e-2;           // area, relative to the start
 constexpr double kPinched = 0.02;             // share of the film that has collapsed
 constexpr double kNothing = 0.1;              // of its area is left
 constexpr double kFarFromEquilibrium = 1e-2;  // residual
+constexpr int kFilmInterval = 5;              // the same, of films whose nodes do not slide
 constexpr int kCollapsedLooks = 4;            // in a row
+constexpr int kFilmLooks = 3;                 // the same, of films whose nodes do not slide
 
 double facet_area(const Points& x, int a, int b, int c) {
   return 0.5 * Vec3(x.col(b) - x.col(a)).cross(Vec3(x.col(c) - x.col(a))).norm();
@@ -28,6 +32,15 @@ Vec3 centre(const Points& x, const std::vector<int>& nodes) {
   Vec3 sum = Vec3::Zero();
   for (const int node : nodes) sum += x.col(node);
   return sum / static_cast<double>(nodes.size());
+}
+
+// Whether nodes of films move along lines across them.
+bool has_normal_motion(const Objective& objective, const Points& x) {
+  std::vector<int> block;
+  int blocks = 0;
+  for (Eigen::Index node = 0; node < x.cols(); ++node)
+    block.push_back(objective.fixed().col(node).all() ? -1 : blocks++);
+  return !NormalMotion(objective.terms(), x, block, objective.fixed()).is_empty();
 }
 
 }  // namespace
@@ -49,6 +62,10 @@ EquilibriumWatch::EquilibriumWatch(const Objective& objective, const Vector& q)
       film_.push_back(
           {nodes[k], nodes[k + 1], nodes[k + 2], facet_area(x, nodes[k], nodes[k + 1], nodes[k + 2])});
   }
+  if (film_.empty()) return;
+  slides_ = !has_normal_motion(objective, x);
+  if (const auto films = free_films(objective, x); obstacle_.empty() && films && !films->has_pressure)
+    obstacle_ = "nothing holds the film open, and it shrinks to nothing";
 }
 
 void EquilibriumWatch::find_obstacle(const Objective& objective, const Points& x,
@@ -113,11 +130,19 @@ bool EquilibriumWatch::has_collapsed(const Points& x) {
 }
 
 bool EquilibriumWatch::is_lost(const Objective& objective, const Vector& q, double residual) {
-  if ((adrift_.empty() && film_.empty()) || ++iterates_ % kInterval != 0) return false;
+  if (adrift_.empty() && film_.empty()) return false;
+  if (!film_.empty() && residual < least_residual_) {
+    least_residual_ = residual;
+    nearest_ = q;
+  }
+  ++iterates_;
+  const bool looks_at_films = iterates_ % (slides_ ? kInterval : kFilmInterval) == 0;
+  if (iterates_ % kInterval != 0 && !looks_at_films) return false;
   const Points x = objective.positions(q);
-  if (has_drifted(x)) return true;
+  if (iterates_ % kInterval == 0 && has_drifted(x)) return true;
+  if (!looks_at_films) return false;
   collapsed_ = residual > kFarFromEquilibrium && has_collapsed(x) ? collapsed_ + 1 : 0;
-  return collapsed_ >= kCollapsedLooks;
+  return collapsed_ >= (slides_ ? kCollapsedLooks : kFilmLooks);
 }
 
 }  // namespace coapt

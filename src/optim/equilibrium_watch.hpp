@@ -14,15 +14,20 @@ class EquilibriumWatch {
   EquilibriumWatch(const Objective& objective, const Vector& q);
 
   // Why there can be no equilibrium, whatever the shape: a part that nothing holds along an axis, and on
-  // which dead loads have a resultant along it that no other load and no contact can meet. Empty: nothing of
-  // that kind.
+  // which dead loads have a resultant along it that no other load and no contact can meet; a film that no
+  // load and no support holds open. Empty: nothing of that kind.
   const std::string& obstacle() const { return obstacle_; }
 
   // Call it at each accepted iterate, with the relative residual there. Returns true once a part that nothing
   // holds has gone a hundred times the extent of the start, or a fiftieth of a film of constant tension
-  // has shrunk to next to no area and stayed so for some 200 iterates far from equilibrium: it pinches off.
-  // Looks every 50 iterates, and only where the scene has such parts or films.
+  // has shrunk to next to no area and stayed so far from equilibrium: it pinches off. That takes some 200
+  // iterates, as nodes may slide together for a while, but some ten where they move along lines across the
+  // film. Looks every 50 or 5 iterates, and only where the scene has such parts or films.
   bool is_lost(const Objective& objective, const Vector& q, double residual);
+
+  bool sees_films() const { return !film_.empty(); }
+  // The iterate with the least residual so far; empty where there are no films.
+  const Vector& nearest() const { return nearest_; }
 
   // What is_lost() saw; before it did, that the shape grows without bound and which part is not held.
   std::string reason() const { return reason_; }
@@ -45,6 +50,9 @@ class EquilibriumWatch {
   std::string obstacle_, reason_;
   std::vector<Adrift> adrift_;
   std::vector<Facet> film_;
+  bool slides_ = true;  // nodes may slide within the film
+  Vector nearest_;
+  double least_residual_ = kInfinity;
   double extent_ = 0;  // at the start
   int iterates_ = 0, collapsed_ = 0;
 };

@@ -1,11 +1,13 @@
 #include "core/error.hpp"
 #include "optim/bfgs.hpp"
 #include "optim/dynamic/dynamic.hpp"
+#include "optim/film_size.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
 #include "optim/path_following.hpp"
 #include "optim/solver.hpp"
+#include "optim/stationary_point.hpp"
 #include "optim/xpbd/solver_xpbd.hpp"
 
 #include <algorithm>
@@ -17,6 +19,7 @@ namespace {
 
 constexpr int kMostTurns = 3;        // of the lines along which films move
 constexpr int kMostAttempts = 4;     // to leave saddles in one run
+constexpr double kNear = 1e-3;       // residual of what is all but an equilibrium
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;
 
@@ -127,6 +130,112 @@ bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result&
   return false;
 }
 
+// Goes on from an unstable equilibrium to a stable one. It remains the answer where both ways from it lead to
+// none.
+void settle_down(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                 Result& result) {
+  int lost = 0;
+  for (int attempt = 0; attempt < kMostAttempts && lost < 2; ++attempt) {
+    Result unstable = result;
+    if (!leave_unstable(problem.objective, attempt, monitor, result)) break;
+    Outcome outcome;
+    outcome.status =
+        settle(solver, problem.objective, result.q, monitor, stop.tolerance, result.rounds, outcome.note);
+    if (outcome.status == Status::NoEquilibrium) {
+      ++lost;
+      result = std::move(unstable);
+      Vector g;  // noise is measured where the run stands again
+      monitor.begin_round(monitor.round() + 1, stop.tolerance);
+      monitor.accept(result.q, monitor.gradient(result.q, g), g);
+      result.iterations = monitor.iterations();
+      continue;
+    }
+    lost = 0;
+    if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
+    judge(outcome, solver, problem, stop, monitor, result);
+  }
+  if (lost > 0) result.message += "; once left, no equilibrium was found";
+}
+
+// What a run found, and whether it ends there although the state is unstable.
+struct Found {
+  Outcome outcome;
+  bool is_only_unstable = false;
+};
+
+// The same along lines that are turned to the normals of films found elsewhere.
+StationarySearch reach_stationary_film(Objective& objective, Vector& q, Monitor& monitor, double tolerance) {
+  StationarySearch search = reach_stationary_point(objective, q, monitor, tolerance);
+  for (int turn = 0; turn < kMostTurns && search.is_found && objective.turn_films(q); ++turn)
+    search = reach_stationary_point(objective, q, monitor, tolerance);
+  return search;
+}
+
+// A film whose size tension and pressure alone decide has none but unstable equilibria, which no minimiser
+// comes to.
+bool find_free_film(const Problem& problem, const StopRule& stop, Monitor& monitor, Vector& q) {
+  Objective& objective = problem.objective;
+  if (problem.motion.positions || problem.continuation.load_steps > 1 ||
+      problem.continuation.stiffness_steps > 1)
+    return false;
+  const auto films = free_films(objective, objective.positions(q));
+  if (!films || films->balanced.size() == 0) return false;
+  Vector film = objective.unknowns(films->balanced);
+  if (!reach_stationary_film(objective, film, monitor, stop.tolerance).is_found) return false;
+  q = std::move(film);
+  return true;
+}
+
+// A minimiser may pass an equilibrium and run away: it is looked for where the forces were least, and at the
+// start.
+bool find_passed(const Problem& problem, const StopRule& stop, Monitor& monitor,
+                 const EquilibriumWatch& watch, const Vector& start, Found& found, Vector& q) {
+  double least = kInfinity;
+  for (const Vector* from : {&watch.nearest(), &start}) {
+    if (from->size() == 0 || monitor.is_out_of_time()) continue;
+    Vector film = *from;
+    const StationarySearch search = reach_stationary_film(problem.objective, film, monitor, stop.tolerance);
+    least = std::min(least, search.least_residual);
+    if (!search.is_found) continue;
+    q = std::move(film);
+    found.outcome = {Status::Converged, "the solver had left it: " + watch.reason()};
+    return true;
+  }
+  if (least < kInfinity)
+    found.outcome.note += "; on the way no residual below " + residual_text(least) + " was found" +
+                          (least < kNear ? ", so little that a finer mesh may have one" : "");
+  return false;
+}
+
+Found run_solver(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                 EquilibriumWatch& watch, Result& result) {
+  Objective& objective = problem.objective;
+  Found found;
+  if (find_free_film(problem, stop, monitor, result.q)) {
+    found.outcome.note =
+        "tension and pressure alone decide the size of the film, which grows without bound "
+        "or shrinks to nothing once it leaves this one";
+    found.is_only_unstable = true;
+    return found;
+  }
+  const Vector start = result.q;
+  Outcome& outcome = found.outcome;
+  outcome = follow_path(solver, problem, stop, monitor, result);
+  for (int turn = 0;
+       turn < kMostTurns && outcome.status != Status::NoEquilibrium && outcome.status != Status::Cancelled &&
+       !monitor.is_out_of_time() && objective.turn_films(result.q);
+       ++turn) {
+    monitor.begin_round(monitor.round() + 1, stop.tolerance);
+    outcome.status = solver.minimize(objective, result.q, monitor);
+  }
+  if (outcome.status == Status::NoEquilibrium) {
+    outcome.note = watch.reason();
+    if (watch.sees_films()) find_passed(problem, stop, monitor, watch, start, found, result.q);
+  }
+  if (outcome.note.empty()) outcome.note = solver.remark();
+  return found;
+}
+
 }  // namespace
 
 std::string_view status_name(Status status) {
@@ -169,33 +278,15 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   objective.turn_films(result.q);
   EquilibriumWatch watch(objective, result.q);
   monitor.set_watch(&watch);
-  Outcome outcome{Status::NoEquilibrium, watch.obstacle()};
-  if (outcome.note.empty()) {
-    outcome = follow_path(solver, problem, stop, monitor, result);
-    for (int turn = 0;
-         turn < kMostTurns && outcome.status != Status::NoEquilibrium &&
-         outcome.status != Status::Cancelled && !monitor.is_out_of_time() && objective.turn_films(result.q);
-         ++turn) {
-      monitor.begin_round(monitor.round() + 1, stop.tolerance);
-      outcome.status = solver.minimize(objective, result.q, monitor);
-    }
-    if (outcome.status == Status::NoEquilibrium) outcome.note = watch.reason();
-    if (outcome.note.empty()) outcome.note = solver.remark();
-  }
+  Found found{{Status::NoEquilibrium, watch.obstacle()}};
+  if (found.outcome.note.empty()) found = run_solver(solver, problem, stop, monitor, watch, result);
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
                        ? "exact force, with its work along the path as merit"
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
                              std::to_string(result.rounds) + " rounds";
-  judge(outcome, solver, problem, stop, monitor, result);
-  for (int attempt = 0; attempt < kMostAttempts && leave_unstable(objective, attempt, monitor, result);
-       ++attempt) {
-    outcome = {};
-    outcome.status =
-        settle(solver, objective, result.q, monitor, stop.tolerance, result.rounds, outcome.note);
-    if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
-    judge(outcome, solver, problem, stop, monitor, result);
-  }
+  judge(found.outcome, solver, problem, stop, monitor, result);
+  if (!found.is_only_unstable) settle_down(solver, problem, stop, monitor, result);
 
   result.evaluations = {objective.counts().value - counts_before.value,
                         objective.counts().gradient - counts_before.gradient,

@@ -1,8 +1,7 @@
 // Rows D1, D2, D5 and D6 of the verification table, by newton: shapes that tension alone finds. And films on
 // which newton used to find no equilibrium, as their nodes slid together: each in no more than 30 iterations.
-#include "energy/kernels/surface_tension.hpp"
 #include "energy/load_pressure.hpp"
-#include "support/meshes.hpp"
+#include "support/films.hpp"
 #include "support/sanitized.hpp"
 #include "support/sheets.hpp"
 
@@ -14,11 +13,6 @@
 
 namespace coapt {
 namespace {
-
-std::unique_ptr<EnergyTerm> film_term(const Triangles& triangles, double tension = 1) {
-  return std::make_unique<ElementTerm<SurfaceTension>>(
-      "film", triangle_nodes(triangles), std::vector<SurfaceTension::Rest>(triangles.cols(), {tension}));
-}
 
 // Nodes of the rim of an n x n grid.
 FixedMask fixed_rim(int n, Eigen::Index node_count) {
@@ -64,28 +58,8 @@ struct Catenoid {
 
 // Soap film between two rings, from the cylinder; 2 n triangles around, n rows.
 Catenoid found_catenoid(int around, int rows, double height) {
-  TriangleMesh mesh;
-  mesh.vertices.resize(3, around * (rows + 1));
-  mesh.triangles.resize(3, 2 * around * rows);
-  std::vector<int> rings;
-  int t = 0;
-  for (int j = 0; j <= rows; ++j)
-    for (int i = 0; i < around; ++i) {
-      const double angle = 2 * std::numbers::pi * i / around;
-      const int a = i + around * j, b = (i + 1) % around + around * j, c = b + around, d = a + around;
-      mesh.vertices.col(a) =
-          Vec3(kRing * std::cos(angle), kRing * std::sin(angle), height * (1.0 * j / rows - 0.5));
-      if (j == 0 || j == rows) rings.push_back(a);
-      if (j == rows) continue;
-      if ((i + j) % 2 == 0) {
-        mesh.triangles.col(t++) << a, b, c;
-        mesh.triangles.col(t++) << a, c, d;
-      } else {
-        mesh.triangles.col(t++) << a, b, d;
-        mesh.triangles.col(t++) << b, c, d;
-      }
-    }
-  const Equilibrium found = find_equilibrium(mesh.vertices, fixed_nodes(mesh.vertex_count(), rings),
+  const TriangleMesh mesh = cylinder_mesh(around, rows, kRing, height);
+  const Equilibrium found = find_equilibrium(mesh.vertices, fixed_boundary(mesh),
                                              terms_of(film_term(mesh.triangles)), {.tolerance = 1e-8});
   EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
   Catenoid catenoid;
@@ -173,13 +147,6 @@ TEST(SoapFilm, D5InASkewQuadrilateralIsSchwarzsSurface) {
 // ------------------------------------------------------------------------
 
 constexpr int kMostIterations = 30;
-
-FixedMask fixed_boundary(const TriangleMesh& mesh) {
-  std::vector<int> rim;
-  for (const Edge& edge : edges(mesh.triangles))
-    if (edge.triangles.size() == 1) rim.insert(rim.end(), {edge.a, edge.b});
-  return fixed_nodes(mesh.vertex_count(), rim);
-}
 
 // Greatest distance of the nodes from where a film is.
 template <typename... Load>
