@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares the error that `coapt solve --accuracy` estimates with a later truth and prints a Markdown table.
 
-    bench/estimates.py [path of coapt] [--further N]
+    bench/estimates.py [path of coapt] [--further N] [--only SHAPE ...]
 
-For each generated shape: the estimate for 95 % of the surface on the mesh that was chosen, and the distance of
+For each shape, generated or of estimate_scenes.py: the estimate for 95 % of the surface on the mesh that was chosen, and the distance of
 the equilibrium on a mesh N cuts (default 2) beyond the finest that the estimate saw to it, from points all over
 the finer one. "not reached" is an answer, too. The truth has some 3 % of its own error at N = 2.
 """
@@ -15,13 +15,19 @@ import random
 import subprocess
 import tempfile
 
-SHAPES = [  # shape, triangles, accuracy
+from estimate_scenes import SCENES
+
+SHAPES = [  # shape, triangles (0: as it comes), accuracy
     ("disc", 96, "0.02mm"),
     ("square", 64, "1mm"),
     ("strip", 64, "1mm"),
     ("sphere", 80, "1mm"),
     ("tent", 64, "10mm"),
     ("airbag", 64, "1mm"),
+    ("cylinder", 0, "0.1mm"),
+    ("pane", 0, "0.5mm"),
+    ("catenoid", 0, "0.05mm"),
+    ("sail", 0, "5mm"),
 ]
 SAMPLES = 1000
 
@@ -73,8 +79,13 @@ def p95(finer, coarser):
 
 def row(coapt, shape, triangles, accuracy, further, folder):
     scene, result = folder / "scene.json", folder / "result"
-    subprocess.run([coapt, "generate", shape, "--triangles", str(triangles), "-o", folder], check=True,
-                   capture_output=True)
+    if shape in SCENES:
+        mesh, text = SCENES[shape]()
+        (folder / "mesh.obj").write_text(mesh)
+        scene.write_text(text)
+    else:
+        subprocess.run([coapt, "generate", shape, "--triangles", str(triangles), "-o", folder], check=True,
+                       capture_output=True)
     subprocess.run([coapt, "solve", scene, "-o", result, "--accuracy", accuracy, "--no-report",
                     "--max-seconds", "60"], capture_output=True)
     report = json.loads((result / "result.json").read_text())
@@ -86,6 +97,8 @@ def row(coapt, shape, triangles, accuracy, further, folder):
     levels = len(meshes) - 1 + further
     subprocess.run([coapt, "mesh-study", scene, "--levels", str(levels), "--tolerance", "1e-9", "-o",
                     folder / "study"], capture_output=True)
+    if not json.loads((folder / "study" / "mesh_study.json").read_text())["converged"]:
+        return f"| {shape} | {meshes[0]:,} to {meshes[-1]:,} | {estimate:.3g} | not converged | |"
     chosen, finest = meshes[0] * 4 ** known["cuts"], meshes[0] * 4 ** levels
     truth = p95(*(read_obj(folder / "study" / f"closed_{count}.obj") for count in (finest, chosen)))
     return f"| {shape} | {chosen:,} of up to {meshes[-1]:,} | {estimate:.3g} | {truth:.3g} | {estimate / truth:.2f} |"
@@ -95,9 +108,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("coapt", nargs="?", default="build/release/bin/coapt")
     parser.add_argument("--further", type=int, default=2)
+    parser.add_argument("--only", nargs="+", default=[shape for shape, _, _ in SHAPES])
     arguments = parser.parse_args()
     print("| shape | triangles | estimate [mm] | later [mm] | ratio |\n|---|---|---|---|---|")
     for shape, triangles, accuracy in SHAPES:
+        if shape not in arguments.only:
+            continue
         with tempfile.TemporaryDirectory() as folder:
             print(row(arguments.coapt, shape, triangles, accuracy, arguments.further, pathlib.Path(folder)), flush=True)
 
