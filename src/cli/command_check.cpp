@@ -28,10 +28,11 @@ void print_table(const std::vector<DerivativeReport>& reports) {
   std::printf("  %-20s %-18s %10s %10s %12s %12s  %s\n", "term", "type", "gradient", "Hessian", "diff. grad.",
               "diff. Hess.", "verdict");
   for (const DerivativeReport& report : reports) {
-    const char* verdict = !report.is_active() ? "not active here" : report.has_passed() ? "passed" : "FAILED";
+    std::string verdict = !report.is_active() ? "not active here" : report.has_passed() ? "passed" : "FAILED";
+    if (report.kinks > 0) verdict += ", " + std::to_string(report.kinks) + " directions at a kink";
     std::printf("  %-20s %-18s %10s %10s %12.1e %12.1e  %s\n", report.name.c_str(), report.type.c_str(),
                 slope_text(report.gradient_slope).c_str(), slope_text(report.hessian_slope).c_str(),
-                report.gradient_error, report.hessian_error, verdict);
+                report.gradient_error, report.hessian_error, verdict.c_str());
   }
 }
 

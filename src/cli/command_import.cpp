@@ -15,7 +15,7 @@ namespace {
 struct ImportArguments : SceneArguments {
   std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
   std::string bulk = "none";
-  bool is_incompressible = false, keeps_mesh = false;
+  bool is_incompressible = false, keeps_mesh = false, takes_any_size = false;
 };
 
 void import_file(const ImportArguments& arguments) {
@@ -23,6 +23,7 @@ void import_file(const ImportArguments& arguments) {
   ImportOptions options = import_options(arguments);
   options.keeps_bulk = arguments.bulk == "stated";
   options.repairs = !arguments.keeps_mesh;
+  options.takes_any_size = arguments.takes_any_size;
   options.young = arguments.young;
   options.chord_young = arguments.chord_young;
   options.annulus_closed = arguments.annulus_closed;
@@ -55,6 +56,9 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
       ->excludes(bulk);
   command->add_flag("--no-repair", arguments->keeps_mesh,
                     "Keep slivers of the mesh, which are otherwise flipped, cut off or collapsed");
+  command->add_flag(
+      "--any-size", arguments->takes_any_size,
+      "Take a valve of a size, thickness or pressure that no heart has, which is otherwise refused");
   command->add_option("--young", arguments->young,
                       "Linear leaflets of this modulus (\"1 MPa\") in the place of the laws of the file");
   command->add_option("--chord-young", arguments->chord_young,

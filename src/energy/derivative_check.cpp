@@ -73,6 +73,62 @@ double energy_noise(const Subject& subject, const Vector& q, const Vector& d, do
   return noise;
 }
 
+// What the Hessian is asked again where a direction does not pass: how far its product with the direction
+// changes within each step. At a jump, as where a chord comes to pull, the change does not vanish with the
+// step; and where the Hessian is right on either side, the remainder and the differences err by no more than
+// it.
+struct KinkSearch {
+  const Subject& subject;
+  const Vector& q;
+  const Vector& d;
+  const Vector& hd;
+  double noise;  // of the energy
+
+  Vector change(double h) const {
+    return (subject.hessian_times(q + h * d, d) - hd)
+        .cwiseAbs()
+        .cwiseMax((subject.hessian_times(q - h * d, d) - hd).cwiseAbs());
+  }
+
+  // Are the remainders of the finest decade above the noise bounded by what the curvature changes?
+  bool explains_slope(const std::vector<Rung>& ladder) const {
+    constexpr double kMargin = 1.1;
+    size_t count = 0;
+    while (count < ladder.size() && ladder[count].second > noise) ++count;
+    double greatest = 0;  // change of curvature within the step so far, from the finest up
+    for (size_t i = ladder.size(); i-- > 0 && i + 3 >= count;) {
+      const double h = ladder[i].step, curvature = d.dot(hd);
+      for (const double side : {h, -h})
+        greatest = std::max(greatest, std::abs(d.dot(subject.hessian_times(q + side * d, d)) - curvature));
+      if (i < count && ladder[i].second > kMargin * 0.5 * h * h * greatest + noise) return false;
+    }
+    return true;
+  }
+
+  // The error of the Hessian in all components but a few at which it jumps.
+  double error_beside_kinks(const std::vector<Rung>& ladder, double scale) const {
+    constexpr double kMostJumps = 0.05, kJump = 1e-6;  // of the components; of the scale
+    double least = kInfinity;
+    for (auto rung = ladder.rbegin(); rung != ladder.rend() && least > kMostHessianError; ++rung) {
+      const double h = rung->step;
+      if (h > 1e-4) break;  // beyond it all components change
+      const Vector error =
+          ((subject.gradient(q + h * d) - subject.gradient(q - h * d)) / (2 * h) - hd).cwiseAbs();
+      const Vector changed = change(h);
+      double worst = 0;
+      Eigen::Index jumps = 0;
+      for (Eigen::Index i = 0; i < error.size(); ++i) {
+        const bool is_jump = changed[i] > kJump * scale && changed[i] >= error[i];
+        jumps += is_jump;
+        if (!is_jump) worst = std::max(worst, error[i]);
+      }
+      if (static_cast<double>(jumps) <= kMostJumps * static_cast<double>(error.size()))
+        least = std::min(least, worst / scale);
+    }
+    return least;
+  }
+};
+
 void check_direction(const Subject& subject, const Vector& q, const Vector& g, const Vector& d,
                      const DerivativeOptions& options, DerivativeReport& report) {
   const Vector hd = subject.hessian_times(q, d);
@@ -106,8 +162,18 @@ void check_direction(const Subject& subject, const Vector& q, const Vector& g, c
     }
   }
   report.gradient_slope = std::min(report.gradient_slope, finest_slope(ladder, &Rung::first, noise));
-  report.hessian_slope = std::min(report.hessian_slope, finest_slope(ladder, &Rung::second, noise));
   if (slope_scale > 0) report.gradient_error = std::max(report.gradient_error, gradient_error);
+  double hessian_slope = finest_slope(ladder, &Rung::second, noise);
+  if (hd_scale > 0 && (hessian_slope < kLeastHessianSlope || hessian_error > kMostHessianError)) {
+    const KinkSearch kinks{subject, q, d, hd, noise};
+    const double beside = kinks.error_beside_kinks(ladder, hd_scale);
+    if (beside <= kMostHessianError && kinks.explains_slope(ladder)) {
+      ++report.kinks;
+      hessian_error = beside;
+      hessian_slope = kInfinity;  // says nothing here
+    }
+  }
+  report.hessian_slope = std::min(report.hessian_slope, hessian_slope);
   report.hessian_error = std::max(report.hessian_error, hessian_error);
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/formats/utf8.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
+#include "mesh/valve_check.hpp"
 #include "mesh/valve_import.hpp"
 #include "scene/detail/import_repair.hpp"
 #include "scene/detail/json_text.hpp"
@@ -248,6 +249,14 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
   return std::move(read.valve);
 }
 
+// Sizes of a valve that only a misread unit explains, and how to insist.
+void refuse_sizes(const std::string& file, const Valve& valve) {
+  std::vector<std::string> defects;
+  for (const std::string& doubt : size_doubts(valve))
+    defects.push_back(file + ": " + doubt + " --any-size imports it as it is.");
+  if (!defects.empty()) throw InputError(defects);
+}
+
 }  // namespace
 
 void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
@@ -268,7 +277,12 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   Valve valve = read_any(file, options, warnings);
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
+  // Any mesh has a longest rim; an annulus has been named.
+  const bool is_bare_mesh = !is_model_file(file) && formats::lower_extension(file) != ".json";
+  bool is_valve = !is_bare_mesh && !valve.annulus.empty();
   detail::apply_curves(options, file.string(), valve, warnings);
+  is_valve |=
+      !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
   if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
   take_moduli(options, valve);
   if (complete_thickness(options, valve))
@@ -278,9 +292,15 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
     warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
   if (valve.annulus.empty() && valve.supports.empty())
     warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
+  const double pressure = quantity_value(pressure_text(valve, options), kPressure);
+  if (is_valve && !options.takes_any_size) {
+    Valve loaded = valve;
+    loaded.pressure = pressure;
+    refuse_sizes(file.string(), loaded);
+  }
   const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
   Valve loaded = valve;
-  loaded.pressure = quantity_value(pressure_text(valve, options), kPressure);
+  loaded.pressure = pressure;
   append(warnings, valve_doubts(loaded, file.string()));
   write_valve_scene(valve, out_dir, options);
   detail::write_repairs(out_dir / "repairs.csv", repair);

@@ -24,7 +24,8 @@ struct ImportOptions {
   bool bends = true;                // false: no term `bending`, whatever the membrane
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
-  bool repairs = true;  // slivers of the leaflets (mesh/repair_valve.hpp)
+  bool takes_any_size = false;  // also a valve whose sizes no heart has: a unit misread
+  bool repairs = true;          // slivers of the leaflets (mesh/repair_valve.hpp)
   // Whether membranes keep the bulk modulus that the file states. Without it they are incompressible.
   bool keeps_bulk = false;
   std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
@@ -36,7 +37,9 @@ struct ImportOptions {
 // papillary gives a valve without chords tips, and chords to the free edge
 // (mesh/generators/leaflet_chords.hpp). Slivers are repaired, and the steps listed in repairs.csv; what is
 // doubtful about mesh, chords, sizes and pressure is among the warnings. Throws InputError, also for slivers
-// that no step repairs.
+// that no step repairs, and, before anything is written, for a valve (what has chords, tips, or an annulus
+// that the file names) of a size, thickness or pressure that no heart has; of other membranes that is a
+// warning.
 std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
                                       const ImportOptions& options = {});
 

@@ -82,6 +82,29 @@ class RepairTest(CommandCase):
         self.assert_bad_input(coapt("import", mesh, "-o", self.folder / "none"), "sheet.obj", "triangle 0", "--no-repair")
         self.assertFalse((self.folder / "none").exists())
 
+    def test_import_refuses_a_valve_of_impossible_size_but_no_tent(self):
+        scene = coapt("generate", "mitral", "--triangles", 300, "-o", self.folder / "valve")
+        self.assertEqual(scene.returncode, 0, scene.stderr)
+        valve = json.loads((self.folder / "valve/valve.json").read_text())
+        file, out = self.folder / "valve/misread.json", self.folder / "out"
+        for unit, size in [("m", "e+04 mm across"), ("um", "mm across")]:
+            file.write_text(json.dumps({**valve, "units": unit}))
+            run = coapt("import", file, "-o", out)
+            self.assert_bad_input(run, "misread.json", size, "Check the unit of the mesh", "--any-size")
+            self.assertFalse(out.exists())
+        file.write_text(json.dumps({**valve, "units": "m"}))
+        run = coapt("import", file, "-o", out, "--any-size")
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("Check the unit of the mesh", run.stdout)
+        run = coapt("import", self.folder / "valve/valve.json", "-o", out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        tent = self.folder / "tent.obj"
+        tent.write_text("".join(f"v {6000 * i} {6000 * j} 0\n" for j in range(4) for i in range(4)) + "".join(
+            f"f {c} {c + 1} {c + 5}\nf {c} {c + 5} {c + 4}\n" for c in (1 + i + 4 * j for j in range(3) for i in range(3))))
+        run = coapt("import", tent, "-o", self.folder / "tent")
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("mm across", run.stdout)
+
     def test_repair_cannot_move_what_is_held(self):
         path, scene = self.two_sheets(lambda i, j: (i + 0.3, j + 0.2, 0))
         scene["boundary"][0]["nodes"] = "all"

@@ -71,6 +71,67 @@ TEST(DerivativeCheck, CatchesAHessianThatIsOnePerMilleOff) {
   EXPECT_GE(report.gradient_slope, 1.95);
 }
 
+// 0 up to `at`, then k/2 (x - at)^2 in the length of a line: the Hessian jumps. With a fault of the Hessian
+// on request.
+template <int hessian_permille>
+struct Onset {
+  static constexpr int kNodes = 2;
+  static constexpr std::string_view kType = "onset";
+  static constexpr TermRole kRole = TermRole::Internal;
+  struct Rest {
+    double at;
+  };
+  static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
+                         Eigen::Matrix<double, 6, 6>* H) {
+    const Vec3 d = x.tail<3>() - x.head<3>();
+    const double l = d.norm(), e = l - rest.at;
+    // Some stiffness before the onset, so that lines have a curvature of their own there.
+    const double k = e > 0 ? 3 : 1;
+    if (g != nullptr) {
+      g->tail<3>() = k * e / l * d;
+      g->head<3>() = -g->tail<3>();
+    }
+    if (H != nullptr) {
+      const Eigen::Matrix3d along = d * d.transpose() / (l * l);
+      const Eigen::Matrix3d block =
+          (k * along + k * e / l * (Eigen::Matrix3d::Identity() - along)) * (hessian_permille / 1000.0);
+      *H << block, -block, -block, block;
+    }
+    return 0.5 * k * e * e;
+  }
+};
+
+// A chain of 100 lines, every tenth of them `off` away from its onset.
+template <typename Kernel>
+DerivativeReport check_chain(double off) {
+  constexpr int kLines = 100;
+  Points x(3, kLines + 1);
+  for (int i = 0; i <= kLines; ++i) x.col(i) = Vec3(i, 0.3 * std::sin(i), 0.2 * std::cos(3 * i));
+  std::vector<int> nodes;
+  std::vector<typename Kernel::Rest> rest;
+  for (int i = 0; i < kLines; ++i) {
+    nodes.insert(nodes.end(), {i, i + 1});
+    rest.push_back({(x.col(i + 1) - x.col(i)).norm() - (i % 50 == 0 ? off : 0.3)});
+  }
+  ElementTerm<Kernel> term("chain", nodes, rest);
+  return check_derivatives(term, x, random_directions(FixedMask::Constant(3, kLines + 1, false), 6, 0.5, 1));
+}
+
+TEST(DerivativeCheck, TellsAKinkFromAWrongHessian) {
+  for (const double off : {0.0, 1e-9, 1e-6, 1e-5, 1e-4}) {
+    SCOPED_TRACE(off);
+    const DerivativeReport right = check_chain<Onset<1000>>(off);
+    EXPECT_TRUE(right.has_passed()) << right.hessian_slope << " " << right.hessian_error;
+    EXPECT_GT(right.kinks, 0);
+    for (const DerivativeReport& wrong :
+         {check_chain<Onset<1001>>(off), check_chain<Onset<999>>(off), check_chain<Onset<500>>(off)}) {
+      EXPECT_FALSE(wrong.has_passed());
+      EXPECT_EQ(wrong.kinks, 0);
+    }
+  }
+  EXPECT_EQ(check_chain<Onset<1000>>(0.2).kinks, 0);
+}
+
 TEST(DerivativeCheck, GivesALinearTermInfiniteSlopes) {
   Points forces = Points::Zero(3, 3);
   forces(2, 1) = 4;

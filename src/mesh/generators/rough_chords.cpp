@@ -1,127 +1,60 @@
 #include "mesh/generators/rough_chords.hpp"
 
+#include "mesh/generators/rough_chord_plan.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace coapt {
 namespace {
 
-struct RoughInsertion {
-  double u = 0, t = 1;
-};
-
-// Insertions that one branch point serves; one alone has none.
-using RoughFan = std::vector<RoughInsertion>;
-
-// Fans that hang on one tip: one, or two behind a common branch point.
-struct RoughTree {
-  int group = 0;
-  std::string material;
-  double area = 0;  // of a strand that ends at a leaflet; others bear several [mm^2]
-  std::vector<RoughFan> fans;
-};
-
-// Half of a leaflet, beside one of its commissures.
-struct LeafletHalf {
-  int group;
-  double from, to;  // u, from the commissure to mid-leaflet
-  double length;    // of its margin [mm]
-};
-
-std::vector<LeafletHalf> halves(const RoughSurface& surface) {
-  std::vector<LeafletHalf> all;
-  const int leaflets = static_cast<int>(surface.begins.size());
-  for (int k = 0; k < leaflets; ++k) {
-    const double begin = surface.begins[k], end = surface.end(k), middle = 0.5 * (begin + end);
-    all.push_back({k, begin, middle, 0});
-    all.push_back({(k + 1) % leaflets, end, middle, 0});
-  }
-  for (LeafletHalf& half : all)
-    for (int i = 0; i < 40; ++i) {
-      auto at = [&](int step) { return surface.open(half.from + (half.to - half.from) * step / 40, 1); };
-      half.length += (at(i + 1) - at(i)).norm();
-    }
-  return all;
-}
-
-// Fans of `least` to `most` neighbours.
-std::vector<RoughFan> in_fans(const std::vector<RoughInsertion>& insertions, int least, int most,
-                              RandomSource& random) {
-  std::vector<RoughFan> fans;
-  for (size_t i = 0; i < insertions.size();) {
-    const size_t left = insertions.size() - i;
-    const size_t count = std::min(left, static_cast<size_t>(least + random.below(most - least + 1)));
-    fans.emplace_back(insertions.begin() + static_cast<long>(i),
-                      insertions.begin() + static_cast<long>(i + count));
-    i += count;
-  }
-  return fans;
-}
-
-std::vector<RoughTree> planned_trees(const RoughSurface& surface, RandomSource& random) {
-  const double spacing = random.log_between(0.8, 4.5), belly_share = random.between(0.25, 0.5);
-  const double scale = random.between(0.8, 1.3);
-  const int widest = 3 + random.below(8);  // fan
-  std::vector<RoughTree> trees;
-  for (const LeafletHalf& half : halves(surface)) {
-    const int count = std::max(3, static_cast<int>(std::lround(half.length / spacing)));
-    const int belly_count = std::max(1, static_cast<int>(std::lround(belly_share * count)));
-    auto placed = [&](int i, int of) {
-      return half.from + (half.to - half.from) * (i + random.between(0.2, 0.8)) / of;
-    };
-    std::vector<RoughInsertion> margin, belly;
-    for (int i = 0; i < count; ++i) margin.push_back({placed(i, count), 1});
-    for (int i = 0; i < belly_count; ++i) {
-      const double u = placed(i, belly_count);
-      belly.push_back({u, random.between(0.5, 0.8)});
-    }
-    const std::vector<RoughFan> fans = in_fans(margin, 1, widest, random);
-    for (size_t i = 0; i < fans.size(); ++i) {
-      RoughTree tree{half.group, "primary", scale * random.between(0.08, 0.16), {fans[i]}};
-      const bool is_joined = i + 1 < fans.size() && random.chance(0.4);
-      if (is_joined) tree.fans.push_back(fans[++i]);
-      trees.push_back(tree);
-    }
-    for (const RoughFan& fan : in_fans(belly, 1, 3, random))
-      trees.push_back({half.group, "secondary", scale * random.between(0.2, 0.4), {fan}});
-  }
-  return trees;
-}
-
-// A strand while it is built: its rest length is that of the closed valve.
+// Strands while they are built: their rest lengths are those of the closed valve.
 class RoughChordBuilder {
  public:
   RoughChordBuilder(const RoughSurface& surface, const RoughMesh& mesh, RandomSource& random)
-      : surface_(surface), mesh_(mesh), random_(random) {
+      : surface_(surface),
+        mesh_(mesh),
+        random_(random),
+        tight_share_(random.between(0.3, 1)),
+        short_share_(random.between(0.01, 0.06)),
+        foresight_(random.chance(0.3) ? 0 : random.between(0.3, 1)) {
     network_.papillary = surface.tips;
     network_.papillary_closed = surface.tips_closed;
-    // Lengths that take no account of how the tips move leave chords pulling.
-    foreseen_tips_ = surface.tips + random.unit() * (surface.tips_closed - surface.tips);
-    is_rim_.resize(static_cast<size_t>(mesh.leaflets.vertex_count()), false);
+    const auto count = static_cast<size_t>(mesh.leaflets.vertex_count());
+    strands_at_.resize(count, 0);
+    is_rim_.resize(count, false);
     for (int v = 0; v < mesh.leaflets.vertex_count(); ++v)
       is_rim_[v] = mesh.coordinates(1, v) <= 0 || mesh.coordinates(1, v) >= 1;
   }
 
-  void add(const RoughTree& tree) {
+  // Leaves out each insertion with the probability 1 - kept.
+  void add(const RoughTree& tree, double kept) {
     std::vector<std::vector<int>> fans;
+    std::set<int> taken;
     Vec3 closed_sum = Vec3::Zero(), open_sum = Vec3::Zero();
     int count = 0;
     for (const RoughFan& fan : tree.fans) {
       fans.emplace_back();
       for (const RoughInsertion& insertion : fan) {
-        const int v = free_vertex(insertion);
+        if (!random_.chance(kept)) continue;
+        const int v = near_vertex(insertion, taken);
         if (v < 0) continue;
+        taken.insert(v);
         fans.back().push_back(v);
         closed_sum += closed(v), open_sum += open(v), ++count;
       }
       if (fans.back().empty()) fans.pop_back();
     }
     if (count == 0) return;
+    for (const int v : taken) ++strands_at_[v];
     const int tip = chosen_tip(tree.group, open_sum / count);
-    const Place from{{ChordEnd::Kind::Papillary, tip}, surface_.tips.col(tip), foreseen_tips_.col(tip)};
+    // Lengths take no account of how the tips move: on that way chords pull.
+    const Vec3 at = surface_.tips.col(tip);
+    const Place from{{ChordEnd::Kind::Papillary, tip}, at, at};
     if (fans.size() == 1) return add_fan(from, fans[0], tree, 1);
     const Place fork = add_junction(from, closed_sum / count, open_sum / count, random_.between(0.3, 0.45));
     add_strand(from, fork, tree, count, 1);
@@ -130,6 +63,7 @@ class RoughChordBuilder {
 
   ChordNetwork finished() {
     settle();
+    tighten();
     cut_lengths();
     reach_leaflets();
     network_.junctions.resize(3, static_cast<int>(junctions_.size()));
@@ -147,18 +81,19 @@ class RoughChordBuilder {
   Vec3 open(int v) const { return mesh_.leaflets.vertices.col(v); }
   Vec3 closed(int v) const { return surface_.closed(mesh_.coordinates(0, v), mesh_.coordinates(1, v)); }
 
-  // The nearest vertex (of the margin for t = 1, else of the inside) that no chord has yet; -1: it is far.
-  int free_vertex(const RoughInsertion& insertion) {
+  // The nearest vertex (of the margin for t = 1, else of the inside) that is not in `taken`; -1: it is far.
+  int near_vertex(const RoughInsertion& insertion, const std::set<int>& taken) const {
     constexpr double kFar = 3;  // [mm]
+    constexpr int kMostStrands = 5;
     const Vec3 point = surface_.open(insertion.u, insertion.t);
     int best = -1;
+    double least = kFar * kFar;
     for (int v = 0; v < mesh_.leaflets.vertex_count(); ++v) {
       const bool fits = insertion.t < 1 ? !is_rim_[v] : mesh_.coordinates(1, v) >= 1;
-      if (!fits || taken_.contains(v)) continue;
-      if (best < 0 || (open(v) - point).squaredNorm() < (open(best) - point).squaredNorm()) best = v;
+      if (!fits || strands_at_[v] >= kMostStrands || taken.contains(v)) continue;
+      const double distance = (open(v) - point).squaredNorm();
+      if (distance < least) best = v, least = distance;
     }
-    if (best < 0 || (open(best) - point).norm() > kFar) return -1;
-    taken_.insert(best);
     return best;
   }
 
@@ -193,7 +128,10 @@ class RoughChordBuilder {
     Place root = from;
     if (count > 1) {
       root = add_junction(from, closed_sum / count, open_sum / count, random_.between(0.45, 0.65));
+      fans_.push_back({network_.chords.size(), vertices.size(), from.closed});
       add_strand(from, root, tree, count, level++);
+    } else if (!lone_.insert({from.end.kind, from.end.index, vertices[0]}).second) {
+      return;
     }
     for (const int v : vertices)
       add_strand(root, {{ChordEnd::Kind::Leaflet, v}, open(v), closed(v)}, tree, 1, level);
@@ -223,58 +161,96 @@ class RoughChordBuilder {
       }
   }
 
+  double open_length(const Chord& chord) const { return (position(chord.to) - position(chord.from)).norm(); }
+
+  // Gives some fans what measured valves have: strands as long as they are in the open valve, to the last
+  // digit, and all slack in the trunk, which is as long as the farthest insertion asks for.
+  void tighten() {
+    for (const Fan& fan : fans_) {
+      if (!random_.chance(tight_share_)) continue;
+      Chord& trunk = network_.chords[fan.trunk];
+      trunk.rest_length = 0;
+      for (size_t i = fan.trunk + 1; i <= fan.trunk + fan.strands; ++i) {
+        Chord& strand = network_.chords[i];
+        strand.rest_length = open_length(strand);
+        const double needed = (closed(strand.to.index) - fan.root_closed).norm() - strand.rest_length;
+        trunk.rest_length = std::max(trunk.rest_length, needed);
+      }
+    }
+  }
+
   void cut_lengths() {
     for (Chord& chord : network_.chords) {
-      const double length = (position(chord.to) - position(chord.from)).norm();
-      chord.rest_length = std::clamp(chord.rest_length, length, (1 + kMostSlack) * length);
-      const bool is_short = random_.chance(0.04);
+      const double length = open_length(chord);
+      const double slack = std::clamp(chord.rest_length - length, 0.0, kMostSlack * length);
+      chord.rest_length = length + foresight_ * slack;
+      const bool is_short = random_.chance(short_share_);
       const double shortage = random_.between(0.01, kMostShortage);
       if (is_short) chord.rest_length = (1 - shortage) * length;
     }
   }
 
   // Lengthens strands between a tip and a vertex that could not reach it in the closed valve, not even with
-  // the leaflet drawn straight from the annulus.
+  // the leaflet drawn straight from the annulus: first those at the tip.
   void reach_leaflets() {
     constexpr int kPlaces = 60;  // of the annulus
-    std::map<std::pair<ChordEnd::Kind, int>, Chord*> to;
-    for (Chord& chord : network_.chords) to[{chord.to.kind, chord.to.index}] = &chord;
-    for (const Chord& last : network_.chords) {
+    Points rim_open(3, kPlaces), rim_closed(3, kPlaces);
+    for (int i = 0; i < kPlaces; ++i) {
+      rim_open.col(i) = surface_.open(double(i) / kPlaces, 0);
+      rim_closed.col(i) = surface_.closed(double(i) / kPlaces, 0);
+    }
+    std::map<int, Chord*> to;  // each junction
+    for (Chord& chord : network_.chords)
+      if (chord.to.kind == ChordEnd::Kind::Junction) to[chord.to.index] = &chord;
+    for (Chord& last : network_.chords) {
       if (last.to.kind != ChordEnd::Kind::Leaflet) continue;
-      std::vector<Chord*> path = {to.at({last.to.kind, last.to.index})};
+      std::vector<Chord*> path = {&last};
       while (path.back()->from.kind == ChordEnd::Kind::Junction)
-        path.push_back(to.at({path.back()->from.kind, path.back()->from.index}));
-      const Vec3 tip = network_.papillary_closed.col(path.back()->from.index);
-      double needed = 0, length = 0;
-      for (int i = 0; i < kPlaces; ++i) {
-        const double u = double(i) / kPlaces, leaflet = (surface_.open(u, 0) - open(last.to.index)).norm();
-        needed = std::max(needed, (surface_.closed(u, 0) - tip).norm() - leaflet);
-      }
-      for (const Chord* chord : path) length += chord->rest_length;
-      if (length >= needed) continue;
-      for (Chord* chord : path) {
-        const double most = (1 + kMostSlack) * (position(chord->to) - position(chord->from)).norm();
-        chord->rest_length =
-            std::max(chord->rest_length, std::min(most, chord->rest_length * needed / length));
+        path.push_back(to.at(path.back()->from.index));
+      const Vec3 tip = network_.papillary_closed.col(path.back()->from.index), end = open(last.to.index);
+      double missing =
+          ((rim_closed.colwise() - tip).colwise().norm() - (rim_open.colwise() - end).colwise().norm())
+              .maxCoeff();
+      for (const Chord* chord : path) missing -= chord->rest_length;
+      for (auto chord = path.rbegin(); chord != path.rend() && missing > 0; ++chord) {
+        const double most = (1 + kMostSlack) * open_length(**chord);
+        const double more = std::clamp(most - (*chord)->rest_length, 0.0, missing);
+        (*chord)->rest_length += more;
+        missing -= more;
       }
     }
   }
 
+  // A trunk and the strands behind its branch point, which follow it in the list of chords.
+  struct Fan {
+    size_t trunk, strands;
+    Vec3 root_closed;  // the trunk's other end
+  };
+
   const RoughSurface& surface_;
   const RoughMesh& mesh_;
   RandomSource& random_;
+  double tight_share_, short_share_;  // of fans; of strands
+  double foresight_;                  // share of the slack that closing asks for
   ChordNetwork network_;
-  Points foreseen_tips_;  // closed, as lengths take them
+  std::vector<Fan> fans_;
   std::vector<Vec3> junctions_;
   std::vector<bool> is_rim_;
-  std::set<int> taken_;
+  std::vector<int> strands_at_;                          // each vertex
+  std::set<std::tuple<ChordEnd::Kind, int, int>> lone_;  // strands without a branch point: from, vertex
 };
 
 }  // namespace
 
 ChordNetwork rough_chords(const RoughSurface& surface, const RoughMesh& mesh, RandomSource& random) {
+  constexpr double kMostPerVertex = 0.43;  // as in the coarse mesh of the human tricuspid valve
+  const std::vector<RoughTree> plan = rough_chord_plan(surface, random);
+  double planned = 0;
+  for (const RoughTree& tree : plan)
+    for (const RoughFan& fan : tree.fans) planned += static_cast<double>(fan.size());
+  const double kept = std::min(1.0, kMostPerVertex * mesh.leaflets.vertex_count() / planned);
   RoughChordBuilder builder(surface, mesh, random);
-  for (const RoughTree& tree : planned_trees(surface, random)) builder.add(tree);
+  for (const RoughTree& tree : plan) builder.add(tree, kept);
   return builder.finished();
 }
 

@@ -98,10 +98,10 @@ double mean_chord_stress(const Valve& valve) {
   return 0.5 * 800 * valve.pressure / area;
 }
 
-// Chords by what the mean strand is strained once it is straight; the strand that bears most is strained some
-// five times as much.
+// Chords by what the mean strand is strained once it is straight. Few strands of many bear the load, so that
+// those are strained some twenty times as much: up to a tenth and a little more.
 double chord_young(double stress, RandomSource& random) {
-  return rounded(stress / random.log_between(0.003, 0.008));
+  return rounded(stress / random.log_between(0.0005, 0.005));
 }
 
 Material linear_chord(double stress, RandomSource& random) {
