@@ -7,8 +7,11 @@
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 namespace coapt {
 namespace {
@@ -70,6 +73,92 @@ TEST_F(BranchesOfAScene, FindsTheShallowPyramidTurnedInsideOut) {
     }
   EXPECT_EQ(branches_message(branches).find("1 other near by, from 12 perturbed starts"), 0u)
       << branches_message(branches);
+}
+
+TEST_F(BranchesOfAScene, TellsNodeByNodeWhatIsNotDetermined) {
+  const Branches branches = found(pyramid(), {.starts = 12, .kick = 0.5, .seed = 1});
+  ASSERT_EQ(branches.spread_mm.size(), 5);
+  for (int corner = 0; corner < 4; ++corner) EXPECT_EQ(branches.spread_mm[corner], 0) << corner;
+  EXPECT_NEAR(branches.spread_mm[4], branches.equilibria[1].greatest_mm, 1e-12);
+  EXPECT_EQ(undetermined_flags({}, branches, 5), (std::vector<char>{0, 0, 0, 0, 2}));
+  // What costs nothing is free, whatever the branches say of it.
+  EXPECT_EQ(undetermined_flags({1, 4}, branches, 5), (std::vector<char>{0, 1, 0, 0, 1}));
+  EXPECT_EQ(undetermined_nodes({1}, branches).total(), 2);
+  EXPECT_EQ(undetermined_nodes({1}, branches).free, 1);
+  EXPECT_EQ(undetermined_nodes({1}, std::nullopt).total(), 1);
+  EXPECT_EQ(undetermined_nodes({}, std::nullopt).total(), 0);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST_F(BranchesOfAScene, WritesThemIntoEveryFileOfTheResult) {
+  const Scene scene = pyramid();
+  RunOptions options;
+  options.folder = folder_.path() / "result";
+  RunReport report = run(scene, built_in_solvers(), options);
+  EXPECT_EQ(text_of(options.folder / "metrics.csv").find("others_lowest"), std::string::npos);
+  EXPECT_EQ(text_of(options.folder / "closed.vtp").find("branch_spread"), std::string::npos);
+  search_branches(scene, built_in_solvers(), options, {.starts = 12, .kick = 0.5, .seed = 1}, report);
+  ASSERT_TRUE(report.report.branches.has_value());
+  const BranchRange* range = range_of(report.report.branches, "max_displacement_mm");
+  ASSERT_NE(range, nullptr);
+  EXPECT_EQ(range_of(report.report.branches, "no such metric"), nullptr);
+  EXPECT_EQ(range_of(std::nullopt, "max_displacement_mm"), nullptr);
+
+  const std::string table = text_of(options.folder / "metrics.csv");
+  EXPECT_EQ(table.find("metric,value,unit,others_lowest,others_highest\n"), 0u) << table;
+  std::ostringstream row;
+  row.precision(10);
+  row << ",mm," << range->lowest << ',' << range->highest << '\n';
+  EXPECT_NE(table.find(row.str()), std::string::npos) << table;
+  const std::string surface = text_of(options.folder / "closed.vtp");
+  for (const char* name : {"branch_spread", "undetermined"})
+    EXPECT_NE(surface.find(name), std::string::npos) << name;
+  EXPECT_NE(text_of(options.folder / "report.html").find("Other equilibria near by"), std::string::npos);
+  const nlohmann::json result = nlohmann::json::parse(text_of(options.folder / "result.json"));
+  EXPECT_EQ(result["undetermined_nodes"]["differing"], 1);
+  EXPECT_EQ(result["branches"]["equilibria"].size(), 2u);
+}
+
+TEST_F(BranchesOfAScene, SaysWhereTheyWereNotLookedFor) {
+  const Scene scene = blown_disc();
+  RunOptions options;
+  options.writes = false;
+  RunReport report = run(scene, built_in_solvers(), options);
+  search_branches(scene, built_in_solvers(), options, {.starts = 0}, report);
+  EXPECT_FALSE(report.report.branches.has_value());
+  EXPECT_TRUE(report.report.warnings.empty());
+  report.report.result.status = Status::Stalled;
+  search_branches(scene, built_in_solvers(), options, {.starts = 1}, report);
+  EXPECT_FALSE(report.report.branches.has_value());
+  ASSERT_EQ(report.report.warnings.size(), 1u);
+  EXPECT_NE(report.report.warnings[0].find("No other equilibria"), std::string::npos);
+}
+
+TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {
+  Result result;
+  result.status = Status::Converged;
+  result.iterations = 39;
+  EXPECT_TRUE(check_neighbours("newton", result, {}).is_made);
+  EXPECT_FALSE(check_neighbours("newton", result, {}).is_suspected);
+  EXPECT_EQ(neighbour_warning(check_neighbours("newton", result, {})), "");
+  CascadeLevel coarse;
+  coarse.iterations = 62;
+  const NeighbourCheck by_level = check_neighbours("newton", result, {coarse});
+  EXPECT_TRUE(by_level.is_suspected);
+  EXPECT_NE(neighbour_warning(by_level).find("62 iterates"), std::string::npos);
+  EXPECT_NE(neighbour_warning(by_level).find("--branches 5"), std::string::npos);
+  result.iterations = 400;
+  EXPECT_TRUE(check_neighbours("newton", result, {}).is_suspected);
+  EXPECT_FALSE(check_neighbours("lbfgs", result, {}).is_made);  // its iterates are many everywhere
+  EXPECT_FALSE(check_neighbours("lbfgs", result, {}).is_suspected);
+  result.status = Status::Stalled;
+  EXPECT_FALSE(check_neighbours("newton", result, {}).is_suspected);
 }
 
 TEST_F(BranchesOfAScene, SeesOneStateWhereTheKickDoesNotReachAnother) {
