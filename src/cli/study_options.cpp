@@ -54,7 +54,8 @@ void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
 void add_branch_options(CLI::App& command, BranchSearch& search) {
   auto* starts = command
                      .add_option("--branches", search.starts,
-                                 "Look for other equilibria near by: solve again from N perturbed starts")
+                                 "Look for other equilibria: solve again from N perturbed starts near the "
+                                 "equilibrium, and N from the scene's own")
                      ->type_name("N")
                      ->check(CLI::Range(1, 1000));
   command

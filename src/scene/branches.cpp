@@ -54,6 +54,19 @@ void move_admissibly(Objective& objective, const Points& moves, Eigen::Index fro
   move_admissibly(objective, moves, middle, to, smallest, x);
 }
 
+// Every free node of x at a random place near by. Pre: the objective's prescribed coordinates are those of x.
+Points moved(Objective& objective, const Points& x, RandomSource& random, Branches& branches) {
+  const Points moves = random_moves(objective, branches.kick_mm, random);
+  Points there = x;
+  move_admissibly(objective, moves, 0, moves.cols(), std::max<Eigen::Index>(1, moves.cols() / kMostParts),
+                  there);
+  const double wanted = moves.colwise().norm().sum();
+  if (wanted > 0)
+    branches.least_moved_share =
+        std::min(branches.least_moved_share, (there - x).colwise().norm().sum() / wanted);
+  return there;
+}
+
 // An equilibrium as it is compared with others.
 struct KnownState {
   Points x;
@@ -138,19 +151,18 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
   branches.equilibria = {nearby(own, {}, run.report.metrics)};
   branches.spread_mm = Vector::Zero(objective.node_count());
-  const Eigen::Index smallest_part = std::max<Eigen::Index>(1, objective.node_count() / kMostParts);
-  for (int start = 0; start < search.starts; ++start) {
+  const bool goes_the_way = search.goes_the_way && run.report.levels.empty();
+  for (int start = 0; start < (goes_the_way ? 2 : 1) * search.starts; ++start) {
+    const bool is_from_own_start = start >= search.starts;
+    const Points from = is_from_own_start ? model.X : states.front().x;
+    objective.prescribe(from);
     RandomSource random(search.seed, static_cast<std::uint64_t>(start));
-    const Points moves = random_moves(objective, branches.kick_mm, random);
-    objective.prescribe(states.front().x);
-    Points x = states.front().x;
-    move_admissibly(objective, moves, 0, moves.cols(), smallest_part, x);
-    const double wanted = moves.colwise().norm().sum();
-    const double share = wanted > 0 ? (x - states.front().x).colwise().norm().sum() / wanted : 1;
-    const Result result = solve_again(x, model, setup);
+    const Points x = moved(objective, from, random, branches);
+    const Result result =
+        is_from_own_start ? solve_along_path(scene, x, model, setup) : solve_again(x, model, setup);
     if (result.status == Status::Cancelled) break;
     ++branches.starts;
-    branches.least_moved_share = std::min(branches.least_moved_share, share);
+    if (is_from_own_start) ++branches.starts_of_the_way;
     if (result.status == Status::Converged)
       sort_in(result, model, options.judge, states, branches);
     else

@@ -5,8 +5,8 @@
 namespace coapt {
 namespace {
 
-// Iterates from which a way counts as long: of 28 valves those with more have neighbours in 9 of 11 cases,
-// those with fewer in 2 of 17.
+// Iterates from which a way counts as long: of 28 valves those with more have others in 9 of 11 cases,
+// those with fewer in 6 of 17.
 constexpr int kLongWay = 40;
 
 }  // namespace

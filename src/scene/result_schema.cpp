@@ -213,7 +213,8 @@ OrderedJson branches() {
       object({{"lowest", number("of them")}, {"highest", number("of them")}}, "one metric");
   return object({{"message", text("the outcome in one sentence")},
                  {"starts", count("perturbed starts that were made")},
-                 {"not_converged", count("of them")},
+                 {"starts_of_the_way", count("of them, from the scene's own start along its whole way")},
+                 {"not_converged", count("of all")},
                  {"kick_mm", number("greatest move of a node of a start [mm]")},
                  {"least_moved_share",
                   number("of the starts: length of all moves that contact admitted, over that wanted")},

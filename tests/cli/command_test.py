@@ -92,8 +92,8 @@ class CommandTest(CommandCase):
         result = self.result()
         branches = result["branches"]
         self.assertIn(branches["message"], run.stdout)
-        self.assertEqual(branches["starts"], 2)
-        self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 2)
+        self.assertEqual((branches["starts"], branches["starts_of_the_way"]), (4, 2))
+        self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 4)
         self.assertEqual(branches["equilibria"][0]["energy"], result["energy"])
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)

@@ -103,7 +103,7 @@ class CompareTest(command_case.CommandCase):
         scene = self.valve()
         text, found, _ = self.compare(scene, "--methods", "newton,lbfgs", "--branches", 1)
         for method in found["methods"]:
-            self.assertEqual(method["branches"]["starts"], 1)
+            self.assertEqual(method["branches"]["starts"], 2)
             self.assertIn("; other equilibria: " + method["branches"]["message"], method["message"])
             self.assertIn(method["message"], text)
             result = json.loads((self.out / method["name"] / "result.json").read_text())

@@ -54,14 +54,15 @@ class BranchesOfAScene : public testing::Test {
 
 TEST_F(BranchesOfAScene, FindsTheShallowPyramidTurnedInsideOut) {
   const Branches branches = found(pyramid(), {.starts = 12, .kick = 0.5, .seed = 1});
-  EXPECT_EQ(branches.starts, 12);
+  EXPECT_EQ(branches.starts, 24);
+  EXPECT_EQ(branches.starts_of_the_way, 12);
   EXPECT_EQ(branches.not_converged, 0);
   ASSERT_EQ(branches.equilibria.size(), 2u) << branches_message(branches);
   const NearbyEquilibrium &own = branches.equilibria[0], &other = branches.equilibria[1];
   EXPECT_EQ(own.greatest_mm, 0);
   EXPECT_GT(own.found, 0);
   EXPECT_GT(other.found, 0);
-  EXPECT_EQ(own.found + other.found, 12);
+  EXPECT_EQ(own.found + other.found, 24);
   EXPECT_NEAR(other.greatest_mm, 2, 0.02);  // from one millimetre above to one below
   EXPECT_EQ(other.stability, Stability::StrictMinimum);
   EXPECT_NEAR(own.energy - other.energy, 0.002, 2e-5);  // what the load does on the way
@@ -71,7 +72,7 @@ TEST_F(BranchesOfAScene, FindsTheShallowPyramidTurnedInsideOut) {
       EXPECT_NEAR(range.lowest, 2, 0.02);
       EXPECT_EQ(range.lowest, range.highest);  // there is one other
     }
-  EXPECT_EQ(branches_message(branches).find("1 other near by, from 12 perturbed starts"), 0u)
+  EXPECT_EQ(branches_message(branches).find("1 other near by, from 24 perturbed starts"), 0u)
       << branches_message(branches);
 }
 
@@ -164,18 +165,18 @@ TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {
 TEST_F(BranchesOfAScene, SeesOneStateWhereTheKickDoesNotReachAnother) {
   const Branches branches = found(pyramid(), {.starts = 4});
   EXPECT_EQ(branches.equilibria.size(), 1u);
-  EXPECT_EQ(branches.equilibria[0].found, 4);
+  EXPECT_EQ(branches.equilibria[0].found, 8);
   EXPECT_TRUE(branches.others.empty());
 }
 
 TEST_F(BranchesOfAScene, ComesBackToTheOneStateOfABlownDisc) {
   const Branches branches = found(blown_disc(), {.starts = 3, .kick = 0.2, .seed = 7});
   ASSERT_EQ(branches.equilibria.size(), 1u) << branches_message(branches);
-  EXPECT_EQ(branches.equilibria[0].found, 3);
+  EXPECT_EQ(branches.equilibria[0].found, 6);
   EXPECT_GT(branches.greatest_return_mm, 0);  // the starts were others
   EXPECT_LT(branches.greatest_return_mm, branches.tolerance_mm);
   EXPECT_NEAR(branches.least_moved_share, 1, 1e-12);  // no contact in the way
-  EXPECT_EQ(branches_message(branches).find("3 perturbed starts came back to the same state"), 0u)
+  EXPECT_EQ(branches_message(branches).find("6 perturbed starts came back to the same state"), 0u)
       << branches_message(branches);
 }
 
@@ -185,6 +186,15 @@ TEST_F(BranchesOfAScene, DoesTheSameForTheSameSeed) {
                  c = found(blown_disc(), {.starts = 1, .seed = 4});
   EXPECT_EQ(a.greatest_return_mm, b.greatest_return_mm);
   EXPECT_NE(a.greatest_return_mm, c.greatest_return_mm);
+}
+
+TEST_F(BranchesOfAScene, GoesTheWayAgainWhereItIsToldTo) {
+  const Branches alone = found(pyramid(), {.starts = 3, .kick = 1e-3, .goes_the_way = false});
+  EXPECT_EQ(alone.starts, 3);
+  EXPECT_EQ(alone.starts_of_the_way, 0);
+  const Branches both = found(pyramid(), {.starts = 3, .kick = 1e-3});
+  EXPECT_EQ(both.starts, 6);
+  EXPECT_EQ(both.equilibria[0].found, 6);
 }
 
 TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
