@@ -57,6 +57,27 @@ py::object lost_branch_of(const Settling& settling) {
   return dict;
 }
 
+py::object anchor_check_of(const std::optional<AnchorCheck>& check) {
+  if (!check) return py::none();
+  py::dict dict;
+  dict["status"] = py::str(std::string(status_name(check->status)));
+  dict["is_same_branch"] = check->is_same_branch;
+  dict["back"] = check->back;
+  dict["here"] = check->here;
+  dict["travel"] = check->travel;
+  dict["message"] = check->message;
+  return dict;
+}
+
+py::object check_anchor(Followed& followed) {
+  const AnchorCheck check = followed.at_work([&] { return followed.equilibrium().check_anchor(); });
+  return anchor_check_of(check);
+}
+
+void anchor_here(Followed& followed) {
+  followed.at_work([&] { followed.equilibrium().anchor_here(); });
+}
+
 // What the reports of both kinds of solve have.
 template <typename Report>
 py::dict outcome_of(const Report& report, double seconds) {
@@ -81,6 +102,7 @@ py::dict settle(Followed& followed) {
   dict["travel"] = settling.travel;
   dict["jump"] = settling.jump;
   dict["lost_branch"] = lost_branch_of(settling);
+  dict["anchor"] = anchor_check_of(settling.anchor);
   dict["switched"] = switch_list(settling.switched);
   return dict;
 }
@@ -208,6 +230,8 @@ void define_equilibrium(py::module_& module) {
   type.def(
           "add", [](Followed& self, const std::string& name) { self.add({name}); }, py::arg("name"))
       .def("settle", &settle)
+      .def("check_anchor", &check_anchor)
+      .def("anchor_here", &anchor_here)
       .def(
           "set", [](Followed& self, const Numbers& value) { self.set(vector_in(value)); }, py::arg("value"))
       .def("value", idle([](Followed& self) { return vector_array(self.value()); }))

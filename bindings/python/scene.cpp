@@ -3,8 +3,8 @@
 #include "core/timing.hpp"
 #include "input.hpp"
 #include "mesh/generators/mitral.hpp"
+#include "scene/branches.hpp"
 #include "scene/import.hpp"
-#include "scene/run.hpp"
 #include "scene/schema.hpp"
 #include "solution.hpp"
 
@@ -19,7 +19,8 @@ namespace {
 std::unique_ptr<Solution> run(const Input& input, const py::object& callback, const std::string& solver,
                               std::optional<double> tolerance, std::optional<double> max_seconds,
                               std::optional<int> modes, const std::optional<std::string>& folder,
-                              std::optional<int> frames, std::optional<bool> page) {
+                              std::optional<int> frames, std::optional<bool> page, int branches,
+                              double branch_kick, std::uint64_t branch_seed) {
   RunOptions options;
   options.solver = solver;
   options.tolerance = tolerance;
@@ -33,13 +34,20 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
   options.judge = cli::intersection_judge();
   Failure failure;
   Given given = input.given(failure);
+  const bool is_from_given_start = given.start.has_value();
   given.observer = [callback = py::handle(callback), &failure](const Model& model) {
     return observer_of(callback, failure, model);
   };
   return failure.guarding([&] {
     const double start = wall_seconds();
-    return std::make_unique<Solution>(
-        coapt::run(input.scene(), std::move(given), cli::all_solvers(), options), start);
+    const Scene scene = input.scene();
+    RunReport report = coapt::run(scene, std::move(given), cli::all_solvers(), options);
+    if (branches > 0 && !failure.is_set()) {
+      options.observer = observer_of(callback, failure, report.model);
+      search_branches(scene, cli::all_solvers(), options,
+                      {branches, branch_kick, branch_seed, !is_from_given_start}, report);
+    }
+    return std::make_unique<Solution>(std::move(report), start);
   });
 }
 
@@ -64,7 +72,8 @@ void define_scene(py::module_& module) {
   module.def("scene_schema", &json_schema, "JSON Schema of the scene file, as text.");
   module.def("run", &run, py::arg("input"), py::kw_only(), py::arg("callback"), py::arg("solver"),
              py::arg("tolerance"), py::arg("max_seconds"), py::arg("modes"), py::arg("folder"),
-             py::arg("frames"), py::arg("page"), "Solves what is handed over, without the interpreter lock.");
+             py::arg("frames"), py::arg("page"), py::arg("branches"), py::arg("branch_kick"),
+             py::arg("branch_seed"), "Solves what is handed over, without the interpreter lock.");
 }
 
 }  // namespace coapt::python

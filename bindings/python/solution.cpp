@@ -75,6 +75,11 @@ py::dict fields(const py::object& self) {
   return all;
 }
 
+py::array undetermined(const py::object& self) {
+  const std::vector<char>& found = in(self).run.report.fields.undetermined;
+  return py::array(py::dtype("b"), {found.size()}, found.data(), self);
+}
+
 py::array history(const py::object& self) {
   const std::vector<Iteration>& trace = in(self).run.report.result.trace;
   return py::array_t<Iteration>({static_cast<py::ssize_t>(trace.size())}, trace.data(), self);
@@ -94,6 +99,8 @@ Solution::Solution(RunReport report, double start) : run(std::move(report)) {
   gradient = free_gradient(*model.objective, q);
   reactions = support_forces(model, run.report.fields.x);
   document = result_json(model, run.report);
+  run.report.fields.undetermined = undetermined_flags(run.report.result.certificate.free_nodes,
+                                                      run.report.branches, model.objective->node_count());
   seconds = wall_seconds() - start;
   model.objective.reset();
 }
@@ -109,6 +116,10 @@ void define_solution(py::module_& module) {
           "faces", [](const py::object& self) { return rows<int>(self, in(self).run.model.mesh.triangles); })
       .def_property_readonly("lines", &lines)
       .def_property_readonly("fields", &fields)
+      .def_property_readonly("undetermined", &undetermined)
+      .def_property_readonly(
+          "branch_spread",
+          [](const py::object& self) { return numbers(self, in(self).run.report.fields.branch_spread); })
       .def_property_readonly("history", &history)
       .def_property_readonly("evaluations", &evaluations)
       .def_readonly("document", &Solution::document)

@@ -22,6 +22,7 @@ struct BenchArguments : StudyArguments {
   int levels = 1, repeats = 3;
   double truth_seconds = 0;  // 0: not given
   bool prints_json = false;
+  BranchSearch branches = {.starts = 0};
 };
 
 std::vector<double> tolerance_list(const std::string& text) {
@@ -92,6 +93,7 @@ void print_summary(const Benchmark& bench) {
   std::printf("\n");
   for (const std::string& missing : missing_equilibria(bench))
     std::printf("  warning: %s\n", missing.c_str());
+  for (const std::string& other : other_equilibria(bench)) std::printf("  %s\n", other.c_str());
   for (const BenchMesh& mesh : bench.meshes)
     if (mesh.order) std::printf("  observed order at %s: %.2f\n", mesh_text(mesh).c_str(), *mesh.order);
   for (size_t method = 0; method < bench.methods.size(); ++method)
@@ -113,6 +115,7 @@ void bench_scene(const BenchArguments& arguments, int& exit_code) {
   options.levels = arguments.levels;
   options.repeats = arguments.repeats;
   options.closed = arguments.closed;
+  options.branches = arguments.branches;
   if (arguments.truth_seconds > 0) options.truth_seconds = arguments.truth_seconds;
   options.report = [&](const Benchmark& bench, const BenchRun& done) {
     end_progress();
@@ -166,6 +169,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
           "Of each solve that errors are measured to: on the finest mesh, and on to 1e-12 (default: as "
           "--max-seconds)")
       ->check(positive_defect);
+  add_branch_options(*command, arguments->branches);
   command->add_flag("--json", arguments->prints_json, "Print bench.json instead of the tables");
   command->callback([arguments, &exit_code] { bench_scene(*arguments, exit_code); });
 }

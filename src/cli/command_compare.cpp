@@ -18,6 +18,7 @@ namespace {
 struct CompareArguments : StudyArguments {
   std::string methods, reference, closed;
   bool prints_json = false;
+  BranchSearch branches = {.starts = 0};
 };
 
 // Of those that are usually compared what this build has.
@@ -81,6 +82,7 @@ void compare(const CompareArguments& arguments, int& exit_code) {
       arguments.methods.empty() ? usual_methods(known_methods(solvers)) : comma_list(arguments.methods);
   options.reference = arguments.reference;
   options.closed = arguments.closed;
+  options.branches = arguments.branches;
   const bool has_closed = scene.closed_surface.has_value() || !arguments.closed.empty();
   bool has_header = false;
   options.report = [&](const ComparedMethod& method) {
@@ -118,6 +120,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
                       "first)");
   command->add_option("--closed", arguments->closed,
                       "Given closed surface, in the unit of the scene's mesh (default: the scene's)");
+  add_branch_options(*command, arguments->branches);
   command->add_flag("--json", arguments->prints_json, "Print compare.json instead of the table");
   command->callback([arguments, &exit_code] { compare(*arguments, exit_code); });
 }

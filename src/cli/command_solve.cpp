@@ -32,15 +32,13 @@ struct SolveArguments {
 
 // " (other equilibria: 8.16 to 10.20)" for a metric; nothing where there are none.
 void print_others(const std::optional<Branches>& branches, const char* metric, const char* format) {
-  if (!branches) return;
-  for (const BranchRange& range : branches->others) {
-    if (range.name != metric) continue;
-    std::printf(" (other equilibria: ");
-    std::printf(format, range.lowest);
-    std::printf(" to ");
-    std::printf(format, range.highest);
-    std::printf(")");
-  }
+  const BranchRange* range = range_of(branches, metric);
+  if (range == nullptr) return;
+  std::printf(" (other equilibria: ");
+  std::printf(format, range->lowest);
+  std::printf(" to ");
+  std::printf(format, range->highest);
+  std::printf(")");
 }
 
 // Prints one metric with its range over the other equilibria, if any were found.
@@ -104,14 +102,29 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
   print("greatest displacement", m.max_displacement_mm, "mm", "%.4g", "max_displacement_mm");
 }
 
-void print_summary(const RunReport& run, const std::optional<Branches>& branches) {
+// What figures do not hold for, before they are read.
+void print_undetermined(const Report& report) {
+  const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
+  if (nodes.total() == 0) return;
+  std::printf("  %-22s %d (%d can move at no cost", "undetermined nodes", nodes.total(), nodes.free);
+  if (report.branches)
+    std::printf(", %d stand more than %.2g mm elsewhere in other equilibria", nodes.differing,
+                report.branches->tolerance_mm);
+  std::printf(")\n");
+}
+
+void print_summary(const RunReport& run) {
   const Report& report = run.report;
+  const std::optional<Branches>& branches = report.branches;
   const Result& result = report.result;
   const Metrics& m = report.metrics;
   std::printf("%s\n", result.message.c_str());
+  for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
   std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
   print_certificate(result.certificate);
+  if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());
+  print_undetermined(report);
   std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh",
               run.model.mesh.vertex_count(), run.model.mesh.triangle_count(), run.model.lines.size());
   std::printf("  %-22s %s, %d iterations, %ld gradients, %.2f s\n", "solver", report.solver.c_str(),
@@ -119,10 +132,8 @@ void print_summary(const RunReport& run, const std::optional<Branches>& branches
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
   print_metrics(run.model, m, branches);
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
-  if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());
   if (report.reference) print_reference(both_directions(*report.reference));
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
-  for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::string files;
   for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;
   std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
@@ -133,34 +144,6 @@ RunIdentity identity(const Scene& scene, const RunOptions& options,
                      const std::optional<double>& accuracy_mm) {
   return {version(), scene_fingerprint(scene), options.solver.empty() ? scene.solver.type : options.solver,
           options.tolerance.value_or(scene.solver.tolerance), accuracy_mm};
-}
-
-// Where they were asked for and there is an equilibrium to begin from; adds them to result.json.
-std::optional<Branches> search_branches(const Scene& scene, RunOptions options, const BranchSearch& search,
-                                        RunReport& run) {
-  if (search.starts == 0) return std::nullopt;
-  if (run.report.result.status != Status::Converged) {
-    run.report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
-    return std::nullopt;
-  }
-  options.tolerance = run.report.tolerance;
-  Branches branches = find_branches(scene, all_solvers(), options, search, run);
-  add_to_result(run.folder / "result.json", branches);
-  return branches;
-}
-
-void add_branch_options(CLI::App& command, BranchSearch& search) {
-  auto* starts = command
-                     .add_option("--branches", search.starts,
-                                 "Look for other equilibria near by: solve again from N perturbed starts")
-                     ->type_name("N")
-                     ->check(CLI::Range(1, 1000));
-  command
-      .add_option("--branch-kick", search.kick,
-                  "Greatest move of a node of these starts, over the mean edge length (default: 0.001)")
-      ->check(positive_defect)
-      ->needs(starts);
-  command.add_option("--branch-seed", search.seed, "Of their random moves (default: 1)")->needs(starts);
 }
 
 }  // namespace
@@ -222,9 +205,9 @@ void add_solve_command(CLI::App& app, int& exit_code) {
         accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
     RunOptions again = options;
     again.observer = make_observer();
-    const std::optional<Branches> branches = search_branches(scene, again, arguments->branches, report);
+    search_branches(scene, all_solvers(), again, arguments->branches, report);
     end_progress();
-    print_summary(report, branches);
+    print_summary(report);
     if (checkpointing) checkpointing->finish(arguments->scene);
     const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
     const Result& result = report.report.result;

@@ -133,6 +133,8 @@ void print_found(const ChordTuning& found) {
   std::printf("  cost %.4e before, %.4e after", found.tuning.cost_before, found.tuning.cost_after);
   if (std::isfinite(found.misfit_before()))
     std::printf("; rms distance %.4f mm before, %.4f mm after", found.misfit_before(), found.misfit_after());
+  if (found.tuning.anchor && !found.tuning.anchor->is_same_branch)
+    std::printf("\n  warning: the best shape %s", found.tuning.anchor->message.c_str());
   std::printf("\n  %d solves (%d rejected, %d on another branch of equilibria), %.2f s\n", found.solves,
               found.tuning.failed, found.tuning.lost_branches, found.seconds);
   std::printf("written to %s (tuning.json, tuning.csv, report.html%s and the folders before and after)\n",

@@ -51,6 +51,21 @@ void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
       ->check(positive_defect);
 }
 
+void add_branch_options(CLI::App& command, BranchSearch& search) {
+  auto* starts = command
+                     .add_option("--branches", search.starts,
+                                 "Look for other equilibria: solve again from N perturbed starts near the "
+                                 "equilibrium, and N from the scene's own")
+                     ->type_name("N")
+                     ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--branch-kick", search.kick,
+                  "Greatest move of a node of these starts, over the mean edge length (default: 0.01)")
+      ->check(positive_defect)
+      ->needs(starts);
+  command.add_option("--branch-seed", search.seed, "Of their random moves (default: 1)")->needs(starts);
+}
+
 void add_study_arguments(CLI::App& command, StudyArguments& arguments) {
   add_run_arguments(command, arguments);
   command.add_option("--solver", arguments.solver, "Solver (default: the scene's)");

@@ -1,7 +1,7 @@
 // Options that every command with many solves has.
 #pragma once
 
-#include "scene/run.hpp"
+#include "scene/branches.hpp"
 
 #include <string>
 #include <vector>
@@ -32,5 +32,8 @@ void add_run_arguments(CLI::App& command, StudyArguments& arguments);
 
 // The same and --solver.
 void add_study_arguments(CLI::App& command, StudyArguments& arguments);
+
+// --branches, --branch-kick, --branch-seed.
+void add_branch_options(CLI::App& command, BranchSearch& search);
 
 }  // namespace coapt::cli

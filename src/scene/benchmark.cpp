@@ -171,7 +171,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
   }
   estimate_meshes(grounds, equilibria, found);
   add_totals(found);
-  if (run.writes && !found.is_cancelled) {
+  if ((run.writes || options.branches.starts > 0) && !found.is_cancelled) {
     const std::optional<TriangleMesh> finest = finest_shape(grounds, equilibria, found);
     found.shown = bench_shown(course, grounds.front(), finest ? &*finest : nullptr, found);
   }

@@ -105,6 +105,7 @@ struct Benchmark {
   // The reference method on the scene's own mesh, solved once more beside the clock for the page: its way,
   // where on the mesh its error is (where that is known), and its account. Empty where nothing is written.
   std::optional<ShownSolve> shown = {};
+  std::optional<Branches> branches = {};  // around the equilibrium of that solve, where they were wanted
   bool is_cancelled = false;
   std::filesystem::path folder;  // empty: nothing was written
 
@@ -125,6 +126,8 @@ struct BenchOptions {
   // [s].
   std::optional<double> truth_seconds = {};
   std::filesystem::path closed;  // given closed surface; empty: the scene's
+  // Around the equilibrium of the reference method on the scene's own mesh, beside the clock.
+  BranchSearch branches = {.starts = 0};
   std::function<void(const Benchmark&, const BenchRun&)>
       report;  // after each run, errors still to come; may be empty
 };

@@ -92,6 +92,7 @@ PageSection recommendation_section(const Benchmark& bench) {
   }
   for (const std::string& missing : missing_equilibria(bench))
     list.items.push_back({"Warning: " + missing, Tone::Caution});
+  for (const std::string& other : other_equilibria(bench)) list.items.push_back({other, Tone::Caution});
   PageSection section{.title = "Which method on which mesh"};
   section.blocks.emplace_back(list);
   return section;

@@ -3,6 +3,7 @@
 #include "core/components.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "scene/benchmark_summary.hpp"
+#include "scene/detail/branches_json.hpp"
 #include "scene/detail/comparison_json.hpp"
 #include "scene/detail/csv_row.hpp"
 #include "scene/detail/json_text.hpp"
@@ -147,6 +148,8 @@ OrderedJson benchmark_as_json(const Benchmark& bench) {
   for (const BenchEnd& end : bench.ends) json["ends"].push_back(end_json(bench, end));
   json["time_to"] = times_json(bench);
   json["growth"] = growth_json(bench);
+  json["other_equilibria"] = other_equilibria(bench);
+  json["branches"] = bench.branches ? branches_json(*bench.branches) : OrderedJson(nullptr);
   json["warnings"] = missing_equilibria(bench);
   json["recommendations"] = OrderedJson::array();
   for (const double mm : kTotalAccuracies) json["recommendations"].push_back(recommendation(bench, mm));

@@ -121,6 +121,20 @@ std::vector<std::string> missing_equilibria(const Benchmark& bench) {
   return all;
 }
 
+std::vector<std::string> other_equilibria(const Benchmark& bench) {
+  std::vector<std::string> all;
+  for (const BenchEnd& end : bench.ends)
+    if (end.verdict == Verdict::AnotherBranch)
+      all.push_back(bench.methods[end.method].name + " on " + mesh_text(bench.meshes[end.mesh]) +
+                    " ends in another equilibrium than " + bench.methods.front().name +
+                    (end.gap ? ", up to " + page_number(end.gap->same_vertex.max, 3) + " mm apart" : "") +
+                    ": its method error is that of the branch");
+  if (bench.branches)
+    all.push_back("around the equilibrium of " + bench.methods.front().name + " on " +
+                  mesh_text(bench.meshes.front()) + ": " + branches_message(*bench.branches));
+  return all;
+}
+
 std::string recommendation(const Benchmark& bench, double mm) {
   const std::string begin = "for " + page_number(mm) + " mm on this scene: ";
   if (const BenchRun* run = fastest_run(bench, ErrorKind::Total, mm))

@@ -58,4 +58,8 @@ std::vector<std::string> missing_equilibria(const Benchmark& bench);
 // "2,500 triangles", or nodes in a scene without a mesh.
 std::string mesh_text(const BenchMesh& mesh);
 
+// Methods that ended in another equilibrium than the reference method, and what a search around that one
+// found.
+std::vector<std::string> other_equilibria(const Benchmark& bench);
+
 }  // namespace coapt

@@ -1,13 +1,10 @@
 #include "scene/branches.hpp"
 
-#include "mesh/formats/whole_file.hpp"
 #include "mesh/generators/random_source.hpp"
-#include "scene/detail/json_text.hpp"
 #include "scene/solve_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -55,6 +52,19 @@ void move_admissibly(Objective& objective, const Points& moves, Eigen::Index fro
   const Eigen::Index middle = from + (to - from) / 2;
   move_admissibly(objective, moves, from, middle, smallest, x);
   move_admissibly(objective, moves, middle, to, smallest, x);
+}
+
+// Every free node of x at a random place near by. Pre: the objective's prescribed coordinates are those of x.
+Points moved(Objective& objective, const Points& x, RandomSource& random, Branches& branches) {
+  const Points moves = random_moves(objective, branches.kick_mm, random);
+  Points there = x;
+  move_admissibly(objective, moves, 0, moves.cols(), std::max<Eigen::Index>(1, moves.cols() / kMostParts),
+                  there);
+  const double wanted = moves.colwise().norm().sum();
+  if (wanted > 0)
+    branches.least_moved_share =
+        std::min(branches.least_moved_share, (there - x).colwise().norm().sum() / wanted);
+  return there;
 }
 
 // An equilibrium as it is compared with others.
@@ -119,30 +129,10 @@ void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
     return;
   }
   states.push_back(state);
+  branches.spread_mm = branches.spread_mm.cwiseMax((state.x - states.front().x).colwise().norm().transpose());
   const Fields fields = compute_fields(model, state.x);
   branches.equilibria.push_back(nearby(result, from_own, measure(model, result.q, fields, judge)));
   branches.equilibria.back().found = 1;
-}
-
-nlohmann::ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json equilibrium_json(const NearbyEquilibrium& equilibrium) {
-  nlohmann::ordered_json metrics = nlohmann::ordered_json::object();
-  for (const MetricRow& row : metric_rows(equilibrium.metrics)) {
-    if (row.value && row.is_count)
-      metrics[row.name] = std::lround(*row.value);
-    else
-      metrics[row.name] = finite_or_null(row.value.value_or(kNaN));
-  }
-  return {{"found", equilibrium.found},
-          {"energy", finite_or_null(equilibrium.energy)},
-          {"stability", stability_name(equilibrium.stability)},
-          {"residual", finite_or_null(equilibrium.residual)},
-          {"greatest_distance_mm", finite_or_null(equilibrium.greatest_mm)},
-          {"mean_distance_mm", finite_or_null(equilibrium.mean_mm)},
-          {"metrics", metrics}};
 }
 
 }  // namespace
@@ -152,79 +142,54 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   Model& model = run.model;
   Objective& objective = *model.objective;
   const Result& own = run.report.result;
-  const SolveSetup setup = solve_setup(scene, solvers, options);
+  SolveSetup setup = solve_setup(scene, solvers, options);
+  if (!own.certificate.is_made) setup.stability = {};  // there are terms without Hessians
   const double edge = edge_scale(model);
   Branches branches;
   branches.kick_mm = search.kick * edge;
   branches.tolerance_mm = kSameState * edge;
   std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
   branches.equilibria = {nearby(own, {}, run.report.metrics)};
-  const Eigen::Index smallest_part = std::max<Eigen::Index>(1, objective.node_count() / kMostParts);
-  for (int start = 0; start < search.starts; ++start) {
+  branches.spread_mm = Vector::Zero(objective.node_count());
+  const bool goes_the_way = search.goes_the_way && run.report.levels.empty();
+  for (int start = 0; start < (goes_the_way ? 2 : 1) * search.starts; ++start) {
+    const bool is_from_own_start = start >= search.starts;
+    const Points from = is_from_own_start ? model.X : states.front().x;
+    objective.prescribe(from);
     RandomSource random(search.seed, static_cast<std::uint64_t>(start));
-    const Points moves = random_moves(objective, branches.kick_mm, random);
-    objective.prescribe(states.front().x);
-    Points x = states.front().x;
-    move_admissibly(objective, moves, 0, moves.cols(), smallest_part, x);
-    const double wanted = moves.colwise().norm().sum();
-    const double share = wanted > 0 ? (x - states.front().x).colwise().norm().sum() / wanted : 1;
-    const Result result = solve_again(x, model, setup);
+    const Points x = moved(objective, from, random, branches);
+    const Result result =
+        is_from_own_start ? solve_along_path(scene, x, model, setup) : solve_again(x, model, setup);
     if (result.status == Status::Cancelled) break;
     ++branches.starts;
-    branches.least_moved_share = std::min(branches.least_moved_share, share);
+    if (is_from_own_start) ++branches.starts_of_the_way;
     if (result.status == Status::Converged)
       sort_in(result, model, options.judge, states, branches);
     else
       ++branches.not_converged;
   }
   branches.others = ranges_of_others(branches.equilibria);
+  objective.prescribe(states.front().x);
   return branches;
 }
 
-std::string branches_message(const Branches& branches) {
-  const auto millimetres = [](double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.2g mm", value);
-    return std::string(text);
-  };
-  const std::string starts =
-      std::to_string(branches.starts) + " perturbed start" + (branches.starts == 1 ? "" : "s");
-  const std::string lost =
-      branches.not_converged == 0 ? "" : "; " + std::to_string(branches.not_converged) + " did not converge";
-  const size_t others = branches.equilibria.size() - 1;
-  if (others == 0) {
-    const int returned = branches.equilibria.front().found;
-    if (branches.starts == 0) return "interrupted before a perturbed start was solved";
-    if (returned == 0) return "none of " + starts + " converged";
-    return (lost.empty() ? starts : std::to_string(returned) + " of " + starts) +
-           " came back to the same state (greatest distance " + millimetres(branches.greatest_return_mm) +
-           ")" + lost;
+void search_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
+                     const BranchSearch& search, RunReport& run) {
+  if (search.starts == 0) return;
+  Report& report = run.report;
+  if (report.result.status != Status::Converged) {
+    report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
+  } else {
+    RunOptions again = options;
+    again.solver = report.solver;
+    again.tolerance = report.tolerance;
+    report.branches = find_branches(scene, solvers, again, search, run);
+    std::erase(report.warnings, neighbour_warning(report.neighbours));  // the search says more
+    report.fields.branch_spread = report.branches->spread_mm;
+    report.fields.undetermined = undetermined_flags(report.result.certificate.free_nodes, report.branches,
+                                                    run.model.objective->node_count());
   }
-  double farthest = 0;
-  for (const NearbyEquilibrium& equilibrium : branches.equilibria)
-    farthest = std::max(farthest, equilibrium.greatest_mm);
-  return std::to_string(others) + (others == 1 ? " other" : " others") + " near by, from " + starts +
-         "; nodes differ by up to " + millimetres(farthest) + lost;
-}
-
-void add_to_result(const std::filesystem::path& result_file, const Branches& branches) {
-  nlohmann::ordered_json result = nlohmann::ordered_json::parse(formats::read_whole(result_file));
-  nlohmann::ordered_json equilibria = nlohmann::ordered_json::array();
-  for (const NearbyEquilibrium& equilibrium : branches.equilibria)
-    equilibria.push_back(equilibrium_json(equilibrium));
-  nlohmann::ordered_json others = nlohmann::ordered_json::object();
-  for (const BranchRange& range : branches.others)
-    others[range.name] = {{"lowest", range.lowest}, {"highest", range.highest}};
-  result["branches"] = {{"message", branches_message(branches)},
-                        {"starts", branches.starts},
-                        {"not_converged", branches.not_converged},
-                        {"kick_mm", branches.kick_mm},
-                        {"least_moved_share", branches.least_moved_share},
-                        {"tolerance_mm", branches.tolerance_mm},
-                        {"greatest_return_mm", branches.greatest_return_mm},
-                        {"equilibria", equilibria},
-                        {"others", others}};
-  formats::write_whole(result_file, json_text(result, 2) + "\n");
+  if (!run.folder.empty()) write_results(run.folder, run.model, report);
 }
 
 }  // namespace coapt

@@ -284,6 +284,8 @@ PageList messages(const ChordTuning& found) {
                               (found.tuning.lost_branches == 1 ? " trial" : " trials") +
                               " ended on another branch of equilibria than the shape it came from",
                           Tone::Caution});
+  if (found.tuning.anchor && !found.tuning.anchor->is_same_branch)
+    list.items.push_back({"the best shape " + found.tuning.anchor->message, Tone::Caution});
   if (found.determinacy && !found.is_explained)
     list.items.push_back({"a target that is off by " + page_number(found.noise) +
                               " mm does not explain what the fit leaves: it is trapped, or the model is "
@@ -299,6 +301,15 @@ PageList messages(const ChordTuning& found) {
   add("before", found.before);
   if (found.after) add("after", *found.after);
   return list;
+}
+
+OrderedJson anchor_json(const std::optional<AnchorCheck>& anchor) {
+  if (!anchor) return nullptr;
+  return {{"same_branch", anchor->is_same_branch},
+          {"message", anchor->message},
+          {"back_mm", number_json(anchor->back)},
+          {"here_mm", number_json(anchor->here)},
+          {"travel_mm", number_json(anchor->travel)}};
 }
 
 }  // namespace
@@ -324,6 +335,7 @@ std::string chord_tuning_json(const ChordTuning& found) {
       {"solves", found.solves},
       {"failed_solves", tuning.failed},
       {"lost_branches", tuning.lost_branches},
+      {"anchor", anchor_json(tuning.anchor)},
       {"seconds", number_json(found.seconds)},
       {"tuned_scene", found.tuned_scene.empty() ? OrderedJson(nullptr) : OrderedJson(found.tuned_scene)},
       {"before", state_json(found.before)},

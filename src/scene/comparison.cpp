@@ -24,13 +24,17 @@ double extent_of(const Model& model) {
 
 // Solves, measures and writes as `run` does for any scene.
 RunReport run_method(const Scene& scene, const std::string& method, const SolverTable& solvers,
-                     RunOptions options) {
+                     RunOptions options, const BranchSearch& branches) {
   options.solver = solver_of(method);
   options.folder /= method;
   std::error_code ignored;
   // Where this one fails, that of an earlier comparison would be taken for its own.
   if (options.writes) fs::remove(options.folder / "result.json", ignored);
-  return run(scene_of(method, scene), solvers, options);
+  const Scene own = scene_of(method, scene);
+  RunReport report = run(own, solvers, options);
+  if (report.report.result.status == Status::Converged)
+    search_branches(own, solvers, options, branches, report);
+  return report;
 }
 
 // How newton goes on from two shapes that a loose tolerance may have kept apart.
@@ -110,12 +114,14 @@ Comparison compare_methods(const Scene& given, const SolverTable& solvers, const
     found.methods.push_back({.name = name, .model = model_of(name, scene)});
     ComparedMethod &method = found.methods.back(), &reference = found.methods.front();
     try {
-      method.run = run_method(scene, name, solvers, run);
+      method.run = run_method(scene, name, solvers, run, options.branches);
       if (&method != &reference && reference.run) measure_gap(reference, method);
       if (method.gap && run.writes)
         write_vtp(method.run->folder / "closed.vtp",
                   closed_surface(method.run->model, method.run->report.fields));
       judge_method(reference, method, kSameShape * found.extent_mm, refining);
+      if (method.run && method.run->report.branches)
+        method.message += "; other equilibria: " + branches_message(*method.run->report.branches);
     } catch (const InputError& error) {
       method.message = in_one_line(error);
     } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 // between models.
 #pragma once
 
+#include "scene/branches.hpp"
 #include "scene/reference_distance.hpp"
 #include "scene/run.hpp"
 
@@ -84,6 +85,7 @@ struct ComparisonOptions {
   std::vector<std::string> methods;  // each once; see known_methods
   std::string reference;             // one of them; empty: "newton" where it is among them, else the first
   std::filesystem::path closed;  // given closed surface, in the unit of the scene's mesh; empty: the scene's
+  BranchSearch branches = {.starts = 0};              // around the equilibrium of each method
   std::function<void(const ComparedMethod&)> report;  // called after each method; may be empty
 };
 

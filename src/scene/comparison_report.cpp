@@ -2,6 +2,7 @@
 
 #include "core/components.hpp"
 #include "mesh/formats/whole_file.hpp"
+#include "scene/detail/branches_json.hpp"
 #include "scene/detail/comparison_json.hpp"
 #include "scene/detail/csv_row.hpp"
 #include "scene/detail/json_text.hpp"
@@ -56,6 +57,7 @@ void add_result(const RunReport& run, OrderedJson& json) {
   json["metrics"] = metrics_json(report.metrics);
   json["judge"] = report.metrics.intersection_judge;
   json["warnings"] = report.warnings;
+  json["branches"] = report.branches ? branches_json(*report.branches) : OrderedJson(nullptr);
 }
 
 OrderedJson method_json(const ComparedMethod& method) {

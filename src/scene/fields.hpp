@@ -22,9 +22,11 @@ struct Fields {
   double contact_distance = 0;         // [mm]
   double gap_reach = 0;                // how far gaps were looked for [mm]
   Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
-  Vector method_distance;  // per mesh vertex to the shape that the reference method of a comparison
-                           // found [mm]; empty outside of one
-  Vector line_force;       // tension of each line of the model [N]; negative for compression
+  Vector method_distance;          // per mesh vertex to the shape that the reference method of a comparison
+                                   // found [mm]; empty outside of one
+  Vector branch_spread;            // per node, Branches::spread_mm [mm]; empty where nothing was looked for
+  std::vector<char> undetermined;  // per node, see undetermined_flags; empty before that is known
+  Vector line_force;               // tension of each line of the model [N]; negative for compression
 };
 
 // Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that

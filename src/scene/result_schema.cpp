@@ -183,6 +183,21 @@ OrderedJson branch_changes() {
               "equilibria; told from the third step on");
 }
 
+OrderedJson neighbours() {
+  return object({{"judged", flag("the iterates of the method tell; those of newton do")},
+                 {"suspected", flag("there may be other equilibria near by: --branches looks for them")},
+                 {"iterates", count("of the longest way on one mesh, which the suspicion is drawn from")}},
+                "whether the way to the result suggests other equilibria; no proof either way");
+}
+
+OrderedJson undetermined_nodes_schema() {
+  return object(
+      {{"total", count("both together; `undetermined` in closed.vtp says which")},
+       {"free", count("by the certificate: they can be moved at no cost")},
+       {"differing", count("others, that stand elsewhere in an equilibrium that --branches found")}},
+      "nodes whose place the result does not determine");
+}
+
 OrderedJson branches() {
   const OrderedJson equilibrium =
       object({{"found", count("by how many perturbed starts")},
@@ -198,7 +213,8 @@ OrderedJson branches() {
       object({{"lowest", number("of them")}, {"highest", number("of them")}}, "one metric");
   return object({{"message", text("the outcome in one sentence")},
                  {"starts", count("perturbed starts that were made")},
-                 {"not_converged", count("of them")},
+                 {"starts_of_the_way", count("of them, from the scene's own start along its whole way")},
+                 {"not_converged", count("of all")},
                  {"kick_mm", number("greatest move of a node of a start [mm]")},
                  {"least_moved_share",
                   number("of the starts: length of all moves that contact admitted, over that wanted")},
@@ -304,6 +320,8 @@ std::string result_schema() {
               {"levels", levels(statuses), Need::Optional},
               {"files", list({{"type", "string"}}, "names of the files beside this one, and its own")},
               {"warnings", list({{"type", "string"}}, "whole sentences")},
+              {"neighbours", neighbours()},
+              {"undetermined_nodes", undetermined_nodes_schema()},
               {"branches", branches(), Need::Optional}},
              "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";

@@ -86,6 +86,10 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
   if (fields.method_distance.size() > 0)
     surface.point_arrays.push_back(
         {"distance_to_reference_method", over_nodes(fields.method_distance, nodes), false});
+  if (fields.branch_spread.size() > 0)
+    surface.point_arrays.push_back({"branch_spread", fields.branch_spread.transpose(), false});
+  if (!fields.undetermined.empty())
+    surface.point_arrays.push_back({"undetermined", row_of(fields.undetermined, nodes), true});
 
   surface.triangle_arrays = {{"principal_strain_1", fields.principal_strain.row(0), false},
                              {"principal_strain_2", fields.principal_strain.row(1), false}};

@@ -5,6 +5,7 @@
 #include "energy/kernels/spring.hpp"
 #include "mesh/formats/whole_file.hpp"
 #include "mesh/mesh_io.hpp"
+#include "scene/detail/branches_json.hpp"
 #include "scene/detail/csv_text.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/result_surfaces.hpp"
@@ -190,6 +191,11 @@ OrderedJson branch_changes_json(const std::vector<BranchChange>& changes) {
   return json;
 }
 
+OrderedJson undetermined_json(const Certificate& certificate, const std::optional<Branches>& branches) {
+  const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, branches);
+  return {{"total", nodes.total()}, {"free", nodes.free}, {"differing", nodes.differing}};
+}
+
 // Iterates at which a round begins, but for the first.
 OrderedJson potential_changes_json(const std::vector<Iteration>& trace) {
   OrderedJson json = OrderedJson::array();
@@ -208,15 +214,23 @@ std::string trace_csv(const Result& result) {
   return out.str();
 }
 
+// The range over other equilibria stands in two more columns where there are such; leaflets have none.
 std::string metrics_csv(const Report& report) {
   std::ostringstream out;
   out.precision(10);
-  out << "metric,value,unit\n";
-  const auto write = [&out](const std::string& prefix, const std::vector<MetricRow>& rows) {
+  const bool has_others = report.branches && !report.branches->others.empty();
+  out << "metric,value,unit" << (has_others ? ",others_lowest,others_highest" : "") << '\n';
+  const auto write = [&](const std::string& prefix, const std::vector<MetricRow>& rows) {
     for (const MetricRow& row : rows) {
       out << csv_text(prefix + row.name) << ',';
       if (row.value && std::isfinite(*row.value)) out << *row.value;
-      out << ',' << row.unit << '\n';
+      out << ',' << row.unit;
+      const BranchRange* others = prefix.empty() ? range_of(report.branches, row.name) : nullptr;
+      if (others != nullptr)
+        out << ',' << others->lowest << ',' << others->highest;
+      else if (has_others)
+        out << ",,";
+      out << '\n';
     }
   };
   write("", metric_rows(report.metrics));
@@ -296,6 +310,11 @@ std::string result_json(const Model& model, const Report& report) {
   if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
   json["files"] = result_files(model, report);
   json["warnings"] = report.warnings;
+  json["neighbours"] = {{"judged", report.neighbours.is_made},
+                        {"suspected", report.neighbours.is_suspected},
+                        {"iterates", report.neighbours.iterates}};
+  json["undetermined_nodes"] = undetermined_json(result.certificate, report.branches);
+  if (report.branches) json["branches"] = branches_json(*report.branches);
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
   return json_text(json, 2) + "\n";
 }

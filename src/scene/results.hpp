@@ -3,8 +3,10 @@
 #pragma once
 
 #include "scene/accuracy_estimate.hpp"
+#include "scene/branch_report.hpp"
 #include "scene/cascade.hpp"
 #include "scene/metrics.hpp"
+#include "scene/neighbour_check.hpp"
 #include "scene/reference_distance.hpp"
 #include "scene/shape_record.hpp"
 
@@ -27,6 +29,8 @@ struct Report {
   Metrics metrics;
   std::optional<ReferenceDistance> reference;
   std::optional<AccuracyEstimate> accuracy;  // where one was wanted
+  NeighbourCheck neighbours;
+  std::optional<Branches> branches;  // where they were looked for
   std::vector<std::string> warnings;
   bool has_frames = false;              // of an animation, in the result folder
   bool has_page = false;                // report.html is written

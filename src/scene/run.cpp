@@ -56,6 +56,9 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   const Result& result = report.result;
   report.pressure_route = pressure_route(model, result);
   report.fields = compute_fields(model, model.objective->positions(result.q));
+  if (!result.certificate.free_nodes.empty())
+    report.fields.undetermined =
+        undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
   report.metrics = measure(model, result.q, report.fields, options.judge);
   report.reference = compare_with_reference(model, report.fields);
   if (setup.stability.modes > 0 && !has_smallest_modes())
@@ -67,6 +70,9 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");
+  report.neighbours = check_neighbours(report.solver, result, report.levels);
+  if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
+    report.warnings.insert(report.warnings.begin(), warning);
   if (options.writes) write_results(run.folder, model, report);
 }
 

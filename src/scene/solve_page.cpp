@@ -53,13 +53,24 @@ PageList warning_list(const Report& report) {
   return list;
 }
 
+// A figure, with its range over other equilibria in small print.
+PageCell value_cell(double value, const BranchRange* others) {
+  PageCell cell{page_number(value, 6)};
+  if (others != nullptr)
+    cell.remark =
+        "other equilibria: " + page_number(others->lowest, 6) + " to " + page_number(others->highest, 6);
+  return cell;
+}
+
 PageTable metric_table(const Report& report) {
   PageTable table{.caption = "All figures of the result",
                   .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
   for (const MetricRow& row : metric_rows(report.metrics))
     if (row.value)
-      table.rows.push_back(
-          {{in_words(row)}, {page_number(*row.value, 6)}, {unit_sign(row.unit)}, {row.meaning}});
+      table.rows.push_back({{in_words(row)},
+                            value_cell(*row.value, range_of(report.branches, row.name)),
+                            {unit_sign(row.unit)},
+                            {row.meaning}});
   table.note = "Intersections were counted by: " + report.metrics.intersection_judge +
                ". Figures that the scene does not define are left out.";
   return table;
@@ -114,6 +125,51 @@ PageSection figures(const Report& report) {
   if (report.metrics.closure && !report.metrics.closure->orifices.empty())
     section.blocks.emplace_back(orifice_table(report.metrics.closure->orifices));
   if (report.reference) section.blocks.emplace_back(distance_table(*report.reference));
+  return section;
+}
+
+// Energies and the figures that differ, equilibrium by equilibrium.
+PageTable branch_table(const Branches& branches) {
+  PageTable table{.caption = "Equilibria, that of this result first",
+                  .columns = {{"equilibrium", true},
+                              {"perturbed starts"},
+                              {"energy [mJ]"},
+                              {"stability", true},
+                              {"greatest distance [mm]"}}};
+  std::vector<size_t> shown;
+  const std::vector<MetricRow> own = metric_rows(branches.equilibria.front().metrics);
+  for (size_t row = 0; row < own.size(); ++row)
+    for (const char* name : {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
+                             "tenting_height_mm", "max_chord_force_n"})
+      if (own[row].name == name && own[row].value) {
+        shown.push_back(row);
+        table.columns.push_back(
+            {in_words(own[row]) + (own[row].unit.empty() ? "" : " [" + unit_sign(own[row].unit) + "]")});
+      }
+  for (const NearbyEquilibrium& equilibrium : branches.equilibria) {
+    table.rows.push_back({{table.rows.empty() ? "this result" : std::to_string(table.rows.size() + 1)},
+                          {std::to_string(equilibrium.found)},
+                          {page_number(equilibrium.energy, 8)},
+                          {std::string(stability_name(equilibrium.stability))},
+                          {page_number(equilibrium.greatest_mm)}});
+    const std::vector<MetricRow> rows = metric_rows(equilibrium.metrics);
+    for (const size_t row : shown)
+      table.rows.back().push_back({rows[row].value ? page_number(*rows[row].value, 5) : "–"});
+  }
+  return table;
+}
+
+PageSection other_equilibria(const Report& report) {
+  const Branches& branches = *report.branches;
+  const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
+  PageSection section{"Other equilibria near by", {}};
+  section.blocks.emplace_back(PageText{branches_message(branches) + ".",
+                                       branches.equilibria.size() > 1 ? Tone::Caution : Tone::Plain});
+  section.blocks.emplace_back(PageText{std::to_string(nodes.total()) +
+                                       " nodes are not determined: " + std::to_string(nodes.free) +
+                                       " can be moved at no cost, " + std::to_string(nodes.differing) +
+                                       " others stand elsewhere in another equilibrium."});
+  section.blocks.emplace_back(branch_table(branches));
   return section;
 }
 
@@ -231,7 +287,9 @@ PageSection what_was_solved(const Model& model, const Report& report) {
 }
 
 std::vector<PageSection> solve_account(const Model& model, const Report& report) {
-  return {figures(report), convergence(report), what_was_solved(model, report)};
+  std::vector<PageSection> account = {figures(report), convergence(report), what_was_solved(model, report)};
+  if (report.branches) account.insert(account.begin() + 1, other_equilibria(report));
+  return account;
 }
 
 std::string solve_page(const Model& model, const Report& report) {

@@ -91,6 +91,14 @@ CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& 
   return outcome;
 }
 
+Result solve_along_path(const Scene& scene, const Points& x, Model& model, const SolveSetup& setup) {
+  Objective& objective = *model.objective;
+  objective.prescribe(model.X);
+  return solve(*setup.make_solver(model),
+               {objective, objective.unknowns(x), model.motion, scene.solver.continuation, setup.stability},
+               setup.stop, setup.observer);
+}
+
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup) {
   Problem problem = problem_at(x, model);
   problem.stability = setup.stability;

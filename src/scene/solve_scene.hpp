@@ -24,6 +24,10 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
 CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
                            const SolveSetup& setup);
 
+// Along the scene's own motion and continuation on this mesh alone, from the free coordinates of x
+// (3 x node_count) and the supports where their motion begins.
+Result solve_along_path(const Scene& scene, const Points& x, Model& model, const SolveSetup& setup);
+
 // From x (3 x node_count), with the supports where their motion ends.
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup);
 

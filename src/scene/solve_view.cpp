@@ -42,6 +42,8 @@ void add_distances(const Fields& fields, std::vector<ViewField>& all) {
                    .values = {fields.reference_distance}});
   if (fields.method_distance.size() > 0)
     all.push_back({.title = kMethodDistance, .unit = "mm", .values = {fields.method_distance}});
+  if (fields.branch_spread.size() > 0 && fields.branch_spread.maxCoeff() > 0)
+    all.push_back({.title = "Distance to other equilibria", .unit = "mm", .values = {fields.branch_spread}});
 }
 
 void add_strains(const Fields& fields, std::vector<ViewField>& all) {

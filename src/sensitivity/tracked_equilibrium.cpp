@@ -21,7 +21,6 @@ constexpr int kStaleFactor =
 constexpr double kSuspicious = 1;  // jump over the predicted travel
 constexpr double kNotBack = 0.1;   // of the jump, that a shape may miss its start by when it comes back
 constexpr double kNoise = 1e-7;    // of the extent: jumps below say nothing
-constexpr double kLoose = 1e-9;    // of the mean stiffness of a node: what is below does not hold it
 constexpr int kHalvings = 6;
 
 double greatest(const Points& v) {
@@ -192,20 +191,10 @@ Settling TrackedEquilibrium::settle() {
 Settling TrackedEquilibrium::settle_at(const Vector& now) {
   const double start = wall_seconds();
   Place from{q_, positions(), settled_value_, system_.negative_modes()};
-  Points predicted = Points::Zero(3, from.x.cols());
   const bool is_followed = is_settled_ && is_tangent_ready_;
-  if (is_followed && now != from.value) {
-    // The prediction needs the derivatives by the numbers as they were.
-    assign(from.value);
-    try {
-      predicted = predict(now - from.value, kPrediction);
-    } catch (const InputError&) {
-      predicted = prescribed() - from.x;
-    }
-    assign(now);
-  }
-  // Prescribed nodes go all the way, whatever the prediction's rounding.
-  predicted = objective_.fixed().select(prescribed() - from.x, predicted);
+  const Points none = Points::Zero(3, from.x.cols());
+  const Points predicted =
+      is_followed ? predicted_change(from, now) : objective_.fixed().select(prescribed() - from.x, none);
   Settling report = move_to(from, predicted);
   if (report.status == Status::Converged && is_followed && options_.checks_branch)
     report.lost_branch = check_branch(from, report);
@@ -219,6 +208,7 @@ Settling TrackedEquilibrium::settle_at(const Vector& now) {
     if (states_) report.switched = switches_between(objective_, *states_, states);
     states_ = std::move(states);
   }
+  if (report.status == Status::Converged) check_anchor_in_time(report);
   report.seconds = wall_seconds() - start;
   return report;
 }
@@ -316,21 +306,8 @@ std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, co
   }  // from where it stands, then
   assign(from.value);
   const Settling back = move_to(now, objective_.fixed().select(home, predicted));
-  // Junctions of slack chords, which nothing holds, need not come back.
-  const Points stiffness = nodal_motion(objective_, system_.diagonal()).cwiseAbs(),
-               missed = positions() - from.x;
-  double distance = 0;
-  for (Eigen::Index node = 0; node < missed.cols(); ++node)
-    if (stiffness.col(node).maxCoeff() > kLoose * stiffness.mean())
-      distance = std::max(distance, missed.col(node).norm());
-  assign(now.value);
-  objective_.prescribe(now.x);
-  q_ = now.q;
-  is_tangent_ready_ = false;
-  is_settled_ = true;
-  settled_value_ = now.value;
-  residual_at(q_);
-  ready_tangent();
+  const double distance = held_distance(from.x);
+  take_up(now);
   if (back.status != Status::Converged || distance > std::max(kNotBack * report.jump, kNoise * extent))
     return LostBranch{distance, report.jump, from.negative, negative};
   return std::nullopt;

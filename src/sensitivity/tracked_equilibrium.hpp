@@ -41,6 +41,7 @@ struct TrackingOptions {
   int max_iterations = 2000;  // of the whole method (newton, with all its safeguards)
   double max_seconds = kInfinity;
   bool checks_branch = true;
+  int anchor_steps = 20;   // warm steps from one comparison with the anchor to the next; 0: none is made
   Observer observer = {};  // sees the shape at every step; returning false ends settle() with Cancelled, and
                            // jacobian() with an InputError
 };
@@ -53,6 +54,17 @@ struct LostBranch {
   int negative_before = 0, negative_after = 0;  // eigenvalues of the symmetric part of the tangent
 };
 
+// The present numbers and those of the anchor by two ways: step by step, as they were settled, and all at
+// once. Where the shapes differ, steps that each looked harmless have led to another branch of equilibria.
+struct AnchorCheck {
+  Status status = Status::Stalled;  // Converged: both ways could be gone at once
+  bool is_same_branch = false;      // false also where nothing could be compared
+  double back = 0;    // of the anchor's shape from where undoing all changes at once leads [length]
+  double here = 0;    // of the present shape from where all changes at once lead from the anchor [length]
+  double travel = 0;  // of the present shape from the anchor's [length]; each the greatest of a held node
+  std::string message;
+};
+
 struct Settling {
   Status status = Status::Stalled;  // Converged: the objective's exact residual is below the tolerance
   std::string message;              // one sentence
@@ -63,6 +75,7 @@ struct Settling {
   double travel = 0;     // greatest displacement of a node [length]
   double jump = 0;       // greatest distance of a node from the linear prediction [length]
   std::optional<LostBranch> lost_branch;
+  std::optional<AnchorCheck> anchor;  // where it was time for one
   // What has another state than in the shape that was settled before: on the way between the two derivatives
   // have a kink. Empty for the first shape, and for one that did not converge.
   std::vector<Switch> switched;
@@ -102,6 +115,13 @@ class TrackedEquilibrium {
   // that contact admits; where that does not converge, the whole method from the shape before. A shape that
   // did not converge is kept, and status says so; also one at which a term threw.
   Settling settle();
+
+  // The anchor: the shape that was settled first, or this one from now on. Pre: settled.
+  void anchor_here();
+  // Another one: numbers, and unknowns at or near their equilibrium. Throws InputError for wrong sizes.
+  void anchor_at(const Vector& value, const Vector& q);
+  // Two warm solves; the shape is then what it was. Pre: settled.
+  AnchorCheck check_anchor();
 
   const Vector& unknowns() const { return q_; }
   Points positions() const { return objective_.positions(q_); }
@@ -159,6 +179,10 @@ class TrackedEquilibrium {
   Settling move_to(const Place& from, const Points& predicted);
   bool move_quickly(const Points& predicted, Settling& report);
   std::optional<LostBranch> check_branch(const Place& from, const Settling& report);
+  void check_anchor_in_time(Settling& report);
+  Points predicted_change(const Place& from, const Vector& to);
+  void take_up(const Place& place);
+  double held_distance(const Points& x) const;
   double residual_at(const Vector& q);
 
   Objective& objective_;
@@ -170,6 +194,8 @@ class TrackedEquilibrium {
   Vector settled_value_;                      // numbers at the last settle()
   std::optional<ElementStates> states_;       // of the shape settled last
   std::optional<std::vector<Switch>> kinks_;  // of this shape, once they were looked for
+  std::optional<Place> anchor_;
+  int steps_since_anchor_check_ = 0;
   double adjoint_residual_ = 0;
   bool is_settled_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
   TangentSystem system_;

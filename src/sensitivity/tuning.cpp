@@ -122,6 +122,7 @@ Tuning tune(const EquilibriumMaker& make, const Vector& q, const TuningGoal& goa
   found.cost_before = found.best.history.front().cost;
   found.cost_after = trials.least();
   found.jacobian = trials.best_jacobian(found.residuals);
+  found.anchor = trials.check_anchor();
   found.seconds = trials.seconds();
   if (trials.end()) {
     found.status = *trials.end();

@@ -109,6 +109,10 @@ struct Tuning {
   int solves = 0, failed = 0, lost_branches = 0;  // over all sessions
   double seconds = 0;                             // likewise
 
+  // The best shape against the one that all changes at once lead to from the first: of trials that each
+  // looked harmless. None without a start, where the start is the best, or where the tuning was cancelled.
+  std::optional<AnchorCheck> anchor;
+
   // At the best numbers: the residuals and their derivatives by z (empty without residuals, or where the
   // tuning was cancelled first).
   Vector residuals;

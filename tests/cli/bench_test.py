@@ -65,6 +65,19 @@ class BenchTest(command_case.CommandCase):
         for word in ['src="http', 'href="http', "@import"]:
             self.assertNotIn(word, page)
 
+    def test_says_that_methods_end_in_different_equilibria(self):
+        scene = self.generate("mitral", "--triangles", 625, "--membrane", "stvk")
+        text, found, _ = self.bench(scene, "--methods", "lbfgs,newton", "--reference", "lbfgs", "--tolerances", "1e-6",
+                                    "--levels", 0, "--repeats", 1, "--branches", 1)
+        self.assertEqual([end["verdict"] for end in found["ends"]], ["reference", "another branch"])
+        self.assertEqual(len(found["other_equilibria"]), 2)
+        self.assertRegex(found["other_equilibria"][0], r"^newton on \d+ triangles ends in another equilibrium than lbfgs")
+        self.assertIn(found["branches"]["message"], found["other_equilibria"][1])
+        page = (self.out / "bench.html").read_text()
+        for line in found["other_equilibria"]:
+            self.assertIn(line, text)
+            self.assertIn(line, page)
+
     def test_json_on_request(self):
         scene = self.generate("disc", "--triangles", 100)
         run = coapt("bench", scene, "-o", self.out, "--methods", "newton", "--levels", 0, "--tolerances", "1e-4",

@@ -92,11 +92,16 @@ class CommandTest(CommandCase):
         result = self.result()
         branches = result["branches"]
         self.assertIn(branches["message"], run.stdout)
-        self.assertEqual(branches["starts"], 2)
-        self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 2)
+        self.assertEqual((branches["starts"], branches["starts_of_the_way"]), (4, 2))
+        self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 4)
         self.assertEqual(branches["equilibria"][0]["energy"], result["energy"])
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
+        self.assertEqual(result["neighbours"], {"judged": True, "suspected": False, "iterates": result["iterations"]})
+        nodes = result["undetermined_nodes"]
+        self.assertEqual(nodes["free"], len(result["certificate"]["free_nodes"]))
+        self.assertEqual(nodes["total"], nodes["free"] + nodes["differing"])
+        self.assertEqual("undetermined nodes" in run.stdout, nodes["total"] > 0)
         if jsonschema is not None:
             validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
             self.assertEqual([e.message for e in validator.iter_errors(result)], [])

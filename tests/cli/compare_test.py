@@ -99,6 +99,17 @@ class CompareTest(command_case.CommandCase):
         for energy in (method["energy_mj"], reference["energy_mj"]):
             self.assertIn(f"{energy:.9g} mJ", text)
 
+    def test_looks_for_other_equilibria_around_each_method(self):
+        scene = self.valve()
+        text, found, _ = self.compare(scene, "--methods", "newton,lbfgs", "--branches", 1)
+        for method in found["methods"]:
+            self.assertEqual(method["branches"]["starts"], 2)
+            self.assertIn("; other equilibria: " + method["branches"]["message"], method["message"])
+            self.assertIn(method["message"], text)
+            result = json.loads((self.out / method["name"] / "result.json").read_text())
+            self.assertEqual(result["branches"], method["branches"])
+        self.assertIsNone(self.compare(scene, "--methods", "newton")[1]["methods"][0]["branches"])
+
     def test_a_given_closed_surface_is_a_second_yardstick(self):
         scene = self.valve()
         self.compare(scene, "--methods", "newton")

@@ -327,6 +327,14 @@ def test_a_snap_is_a_lost_branch(tmp_path):
             break
     assert eq.x[0, 2] < 0 and not any(lost[:-1])
     assert lost[-1].distance > 1 and "another branch" in settling.message
+    # Its anchor, the first shape, is on the branch that it left.
+    here = np.array(eq.x)
+    check = eq.check_anchor()
+    assert check.status == coapt.Status.CONVERGED and not check.is_same_branch
+    assert check.back > 1 and "has left the branch" in check.message
+    assert np.array_equal(eq.x, here)
+    eq.anchor_here()
+    assert eq.check_anchor().is_same_branch
 
 
 @pytest.mark.parametrize(("call", "pieces"), [

@@ -24,6 +24,27 @@ def solved():
     return coapt.solve(DISC / "scene.json")
 
 
+def test_looks_for_other_equilibria():
+    # A shallow pyramid: at rest above its base, and turned inside out below.
+    V = np.array([[-5.0, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0], [0, 0, 1]])
+    F = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], dtype=np.int32)
+    terms = [{"type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.5 mm"},
+             {"type": "load_field", "nodes": [4], "force": "0.001 N", "direction": [0, 0, -1]}]
+    alone = coapt.minimize(V, F, terms, fixed="boundary")
+    assert alone.branches is None
+    assert alone.undetermined.tolist() == [0, 0, 0, 0, 0]
+    found = coapt.minimize(V, F, terms, fixed="boundary", branches=12, branch_kick=0.5)
+    assert found.success
+    assert found.branches["starts"] == 24
+    assert len(found.branches["equilibria"]) == 2
+    assert found.branches["spread"][4] == pytest.approx(found.branches["equilibria"][1]["greatest_distance_mm"])
+    assert found.undetermined.tolist() == [0, 0, 0, 0, 2]
+    assert found.x == pytest.approx(alone.x, abs=1e-12)
+    for wrong in [{"branches": -1}, {"branches": True}, {"branches": 1, "branch_kick": 0}]:
+        with pytest.raises(coapt.InputError, match="branch"):
+            coapt.minimize(V, F, terms, fixed="boundary", **wrong)
+
+
 def test_a_file_a_dict_and_a_mesh_in_memory_give_the_same_bits(solved):
     assert solved.success
     by_dict = coapt.solve(scene())

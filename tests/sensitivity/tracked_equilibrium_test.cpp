@@ -83,9 +83,9 @@ TEST(TrackedEquilibrium, SeveralAtOnceGiveTheSameBits) {
 
 // An apex between two supports, on springs that resist compression, under a dead load: von Mises' truss.
 struct Truss {
-  explicit Truss(double load)
+  explicit Truss(double load, TrackingOptions options = {})
       : objective(positions(), fixed(), terms(load)),
-        equilibrium(objective, objective.unknowns(positions()), {.tolerance = 1e-12}) {
+        equilibrium(objective, objective.unknowns(positions()), with_tolerance(std::move(options))) {
     const Points supports = positions().leftCols(2);
     equilibrium.add(make_prescribed_positions(
         "span", objective, {0, 1},
@@ -96,6 +96,10 @@ struct Truss {
           return Points(supports + (value[0] - 1) * by);
         },
         Vector::Ones(1)));
+  }
+  static TrackingOptions with_tolerance(TrackingOptions options) {
+    options.tolerance = 1e-12;
+    return options;
   }
   static FixedMask fixed() {
     FixedMask mask = fixed_nodes(3, {0, 1});
@@ -165,6 +169,65 @@ struct TwoCables {
 };
 
 // The slack cable becomes taut when it is shortened to the distance of its ends.
+TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
+  Truss truss(0.0015);
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);  // the anchor: above
+  const Vector q = truss.equilibrium.unknowns(), start = truss.equilibrium.value();
+  truss.equilibrium.set(Vector::Constant(1, 1.0005));
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  const AnchorCheck above = truss.equilibrium.check_anchor();
+  EXPECT_TRUE(above.is_same_branch) << above.message;
+  EXPECT_LT(above.back, 1e-6);
+  EXPECT_LT(above.here, 1e-6);
+  EXPECT_GT(above.travel, 0);
+
+  truss.equilibrium.set(Vector::Constant(1, 1.012));  // it snaps, and stays below when the change is undone
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  truss.equilibrium.set(Vector::Constant(1, 1.0005));
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  const Points here = truss.equilibrium.positions();
+  EXPECT_LT(here(2, 2), 0);
+  const AnchorCheck below = truss.equilibrium.check_anchor();
+  ASSERT_EQ(below.status, Status::Converged) << below.message;
+  EXPECT_FALSE(below.is_same_branch) << below.message;
+  EXPECT_GT(below.here, 0.1);  // the same number, reached from above
+  EXPECT_NE(below.message.find("has left the branch"), std::string::npos);
+  // The check leaves everything where it was.
+  EXPECT_EQ(truss.equilibrium.positions(), here);
+  EXPECT_EQ(truss.equilibrium.value()[0], 1.0005);
+  truss.equilibrium.set(Vector::Constant(1, 1.0004));
+  EXPECT_LE(truss.equilibrium.settle().iterations, 5);
+
+  // From an anchor below it is on its own branch.
+  truss.equilibrium.anchor_here();
+  truss.equilibrium.set(Vector::Constant(1, 1.0005));
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  EXPECT_TRUE(truss.equilibrium.check_anchor().is_same_branch);
+  truss.equilibrium.anchor_at(start, q);
+  EXPECT_FALSE(truss.equilibrium.check_anchor().is_same_branch);
+  EXPECT_THROW(truss.equilibrium.anchor_at(start, q.head(1)), InputError);
+}
+
+TEST(TrackedEquilibrium, ComparesWithItsAnchorEveryFewSteps) {
+  Truss truss(0.0015, {.anchor_steps = 3});
+  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  const double widths[] = {1.012, 1.0110, 1.0100, 1.0005};
+  std::vector<bool> compared;
+  bool has_left = false;
+  for (const double width : widths) {
+    truss.equilibrium.set(Vector::Constant(1, width));
+    const Settling settled = truss.equilibrium.settle();
+    ASSERT_EQ(settled.status, Status::Converged);
+    compared.push_back(settled.anchor.has_value());
+    if (settled.anchor) {
+      has_left = !settled.anchor->is_same_branch;
+      EXPECT_EQ(settled.message.find("has left") != std::string::npos, has_left);
+    }
+  }
+  EXPECT_EQ(compared, (std::vector<bool>{false, false, true, false}));
+  EXPECT_TRUE(has_left);
+}
+
 TEST(TrackedEquilibrium, ReportsAKink) {
   TwoCables two;
   TrackedEquilibrium& equilibrium = two.equilibrium;

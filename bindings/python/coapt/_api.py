@@ -13,7 +13,11 @@ from ._result import Result, result_of
 Callback = Callable[[_core.Iterate], Any]
 
 
-def _checked_options(tol: Any, max_seconds: Any, callback: Any, defects: list[str]) -> None:
+def _checked_options(tol: Any, max_seconds: Any, callback: Any, branches: Any, branch_kick: Any,
+                     defects: list[str]) -> None:
+    if isinstance(branches, bool) or not isinstance(branches, int) or not 0 <= branches <= 1000:
+        defects.append(f"branches: is {branches!r}; expected a number of starts, 0 to 1000")
+    _arguments.positive(branch_kick, "branch_kick", "", defects)
     if tol is not None:
         _arguments.positive(tol, "tol", "", defects)
     if max_seconds is not None:
@@ -24,16 +28,18 @@ def _checked_options(tol: Any, max_seconds: Any, callback: Any, defects: list[st
 
 def _run(given: _inputs.Given, *, callback: Callback | None, method: str | None, tol: float | None,
          max_seconds: float | None, modes: int | None, folder: _inputs.Path | None, frames: int | None,
-         report: bool | None) -> Result:
+         report: bool | None, branches: int, branch_kick: float, branch_seed: int) -> Result:
     return result_of(given.solve(
         _core.run, callback=callback, solver=method or "", tolerance=tol, max_seconds=max_seconds, modes=modes,
-        folder=None if folder is None else os.fsencode(folder), frames=frames, page=report))
+        folder=None if folder is None else os.fsencode(folder), frames=frames, page=report,
+        branches=branches, branch_kick=branch_kick, branch_seed=branch_seed))
 
 
 def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None, tol: float | None = None,
           x0: npt.ArrayLike | None = None, terms: Sequence[Any] = (), callback: Callback | None = None,
           max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
-          frames: int | None = None, report: bool | None = None) -> Result:
+          frames: int | None = None, report: bool | None = None,
+          branches: int = 0, branch_kick: float = 0.01, branch_seed: int = 1) -> Result:
     """Solves a scene, as `coapt solve` does.
 
     Args:
@@ -51,6 +57,11 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
         folder: result folder to write (closed.vtp, result.json, ...); default: nothing is written.
         frames: write every so-many-th iterate as a frame of an animation; needs `folder`.
         report: whether `report.html` is written; default: as the scene says.
+        branches: from how many perturbed starts of each kind, near the equilibrium and from the scene's own start, to
+            look for other equilibria once the solve has converged (docs/metrics.md); 0: not at all. With `x0` those
+            near the equilibrium alone.
+        branch_kick: greatest move of a node of these starts, over the mean edge length.
+        branch_seed: of their random moves.
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -61,16 +72,18 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
         Exception: whatever a callback or a term of one's own raised.
     """
     defects: list[str] = []
-    _checked_options(tol, max_seconds, callback, defects)
+    _checked_options(tol, max_seconds, callback, branches, branch_kick, defects)
     return _run(_inputs.of_scene(scene, terms, x0, defects), callback=callback, method=method, tol=tol,
-                max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report)
+                max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report, branches=branches,
+                branch_kick=branch_kick, branch_seed=branch_seed)
 
 
 def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed: Any = None,
              x0: npt.ArrayLike | None = None, method: str | None = None, tol: float | None = None,
              callback: Callback | None = None, regions: Any = None, scene: Mapping[str, Any] | None = None,
              max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
-             frames: int | None = None, report: bool | None = None) -> Result:
+             frames: int | None = None, report: bool | None = None, branches: int = 0, branch_kick: float = 0.01,
+             branch_seed: int = 1) -> Result:
     """Finds the equilibrium of a membrane whose mesh is in memory.
 
     Args:
@@ -85,7 +98,8 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         regions: name of each triangle's region, (m,), for terms with the key `region`.
         scene: other keys of the scene file (`boundary`, `sets`, `solver`, `obstacles`, `fibres`, `reference`, ...);
             entries of `boundary` win over `fixed`.
-        method, tol, callback, max_seconds, modes, folder, frames, report: as in `solve`.
+        method, tol, callback, max_seconds, modes, folder, frames, report, branches, branch_kick, branch_seed: as in
+            `solve`.
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -94,6 +108,7 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         As `solve`.
     """
     defects: list[str] = []
-    _checked_options(tol, max_seconds, callback, defects)
+    _checked_options(tol, max_seconds, callback, branches, branch_kick, defects)
     return _run(_inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects), callback=callback, method=method,
-                tol=tol, max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report)
+                tol=tol, max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report,
+                branches=branches, branch_kick=branch_kick, branch_seed=branch_seed)

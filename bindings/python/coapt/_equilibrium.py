@@ -28,6 +28,24 @@ class LostBranch:
     negative_after: int
 
 
+@dataclass(frozen=True)
+class AnchorCheck:
+    """The present parameters and those of the anchor by two ways: step by step, as they were settled, and all at once.
+    Where the shapes differ, steps that each looked harmless have led to another branch of equilibria."""
+    status: Status  #: CONVERGED: both ways could be gone at once
+    is_same_branch: bool  #: False also where nothing could be compared
+    back: float  #: of the anchor's shape from where undoing all changes at once leads, greatest of a held node [mm]
+    here: float  #: of the present shape from where all changes at once lead from the anchor, likewise [mm]
+    travel: float  #: of the present shape from the anchor's, likewise [mm]
+    message: str  #: one sentence
+
+
+def _anchor_check(found: dict[str, Any] | None) -> AnchorCheck | None:
+    if found is None:
+        return None
+    return AnchorCheck(status=Status[found.pop("status").upper()], **found)
+
+
 class Switch(NamedTuple):
     """An element whose law changes between two shapes."""
     term: str
@@ -55,6 +73,7 @@ class Settling:
     travel: float = 0.0  #: greatest displacement of a node [mm]
     jump: float = 0.0  #: greatest distance of a node from the linear prediction [mm]
     lost_branch: LostBranch | None = None
+    anchor: AnchorCheck | None = None  #: where it was time for one: every 20 warm steps
     #: what has another state than in the shape settled before: on the way between the two derivatives may have kinks
     switched: Sequence[Switch] = ()
 
@@ -62,9 +81,10 @@ class Settling:
 def _settling(found: dict[str, Any]) -> Settling:
     status = Status[found.pop("status").upper()]
     lost = found.pop("lost_branch", None)
+    anchor = _anchor_check(found.pop("anchor", None))
     switched = [Switch(*each) for each in found.pop("switched", [])]
     return Settling(success=status is Status.CONVERGED, status=status,
-                    lost_branch=None if lost is None else LostBranch(**lost), switched=switched, **found)
+                    lost_branch=None if lost is None else LostBranch(**lost), anchor=anchor, switched=switched, **found)
 
 
 class Equilibrium:
@@ -209,6 +229,26 @@ class Equilibrium:
             KeyboardInterrupt: Ctrl-C; the shape is where it got to, and settle() goes on from there.
         """
         return _settling(self._core.settle())
+
+    def check_anchor(self) -> AnchorCheck:
+        """Whether the shape is still on the branch of its anchor, the shape that was settled first: goes from here to
+        the anchor's parameters and from there to these, each at once, and compares shapes. Two warm solves; the shape
+        is then what it was. `settle()` does it by itself every 20 steps (`Settling.anchor`).
+
+        Raises:
+            InputError: the shape is not settled.
+        """
+        check = _anchor_check(self._core.check_anchor())
+        assert check is not None
+        return check
+
+    def anchor_here(self) -> None:
+        """Makes the present shape the anchor.
+
+        Raises:
+            InputError: it is not settled.
+        """
+        self._core.anchor_here()
 
     @property
     def first(self) -> Settling:

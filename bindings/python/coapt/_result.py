@@ -56,6 +56,10 @@ class Result(dict[str, Any]):
     fields: dict[str, npt.NDArray[Any]]  #: displacement (n, 3) [mm], principal_strain (m, 2), principal_stress (m, 2)
     #: [MPa], regime (m,) 0 slack, 1 wrinkled, 2 taut, gap (m_v,) [mm], is_contact (m_v,), reference_distance (m_v,) [mm],
     #: line_force (k,) [N]; those that the scene has
+    undetermined: npt.NDArray[np.int8]  #: of each node: 0 determined, 1 free by the certificate, 2 elsewhere in another equilibrium
+    branches: dict[str, Any] | None  #: other equilibria near by, where `branches` looked for them: `message`, `equilibria`
+    #: (energy, stability, metrics of each, this one first), `others` (range of each metric over the others), `spread`
+    #: (n,) greatest distance of each node from its place in them [mm]; else None
     warnings: list[str]  #: whole sentences
     seconds: float  #: wall time of the solver [s]
     library_seconds: float  #: wall time of reading, building, solving and measuring [s]
@@ -108,6 +112,9 @@ def result_of(solution: _core.Solution) -> Result:
     document: dict[str, Any] = json.loads(solution.document)
     values, gradients, hessians = solution.evaluations
     status = Status[document["status"].upper()]
+    branches: dict[str, Any] | None = document.get("branches")
+    if branches is not None:
+        branches = {**branches, "spread": solution.branch_spread}
     return Result(
         x=solution.x, fun=document["energy"], jac=solution.gradient, nit=document["iterations"],
         nfev=values + gradients + hessians, njev=gradients + hessians, nhev=hessians,
@@ -115,5 +122,5 @@ def result_of(solution: _core.Solution) -> Result:
         metrics=document["metrics"], certificate=document["certificate"], residual=document["residual"],
         reactions=solution.reactions, energies={term["name"]: term["energy"] for term in document["terms"]},
         vertex_count=document["mesh"]["vertices"], faces=solution.faces, lines=solution.lines, fields=solution.fields,
-        warnings=document["warnings"], seconds=document["time"]["wall_s"],
+        undetermined=solution.undetermined, branches=branches, warnings=document["warnings"], seconds=document["time"]["wall_s"],
         library_seconds=solution.seconds, document=document)

@@ -26,7 +26,7 @@ ViewField mesh_error(const Model& model, const Points& x, const TriangleMesh& fi
 }  // namespace
 
 std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
-                                      const TriangleMesh* finer, const Benchmark& found) {
+                                      const TriangleMesh* finer, Benchmark& found) {
   const std::string& method = found.methods.front().name;
   RunOptions options = course.run;
   options.solver = solver_of(method);
@@ -41,6 +41,9 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwor
     CascadeOutcome outcome = solve_recorded(scene, ground, once.model, setup, once.report);
     options.writes = false;
     finish_run(setup, std::move(outcome), options, once);
+    if (once.report.result.status == Status::Converged)
+      search_branches(scene, course.solvers, options, course.options.branches, once);
+    found.branches = once.report.branches;
   } catch (const std::exception&) {  // the end of the method says why
     return std::nullopt;
   }

@@ -10,6 +10,6 @@ namespace coapt {
 // finest mesh that it is known on, where that is not null. A solve of its own, so that keeping the way costs
 // no run that is timed any time. Nothing where the method cannot be run.
 std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
-                                      const TriangleMesh* finer, const Benchmark& found);
+                                      const TriangleMesh* finer, Benchmark& found);
 
 }  // namespace coapt

@@ -38,8 +38,17 @@ bool TuningTrials::begin() {
       return false;
     }
   }
+  anchor_value_ = best_.value;
+  anchor_q_ = best_.q;
   if (options_.start) take_up_start();
   return true;
+}
+
+std::optional<AnchorCheck> TuningTrials::check_anchor() {
+  if (end_ == TuningStatus::Cancelled || best_.value == anchor_value_) return std::nullopt;
+  if (!(is_at_best_ && is_current_) && !take_up_best()) return std::nullopt;
+  equilibrium_->anchor_at(anchor_value_, anchor_q_);
+  return equilibrium_->check_anchor();
 }
 
 // Where it is no better, or does not settle, the search begins at the first numbers.

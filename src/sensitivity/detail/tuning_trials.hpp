@@ -29,6 +29,8 @@ class TuningTrials final : public BoundedFunction {
   double seconds() const;  // of all sessions
   // Of the residuals alone by z, at the best, and these; empty where that cannot be had.
   Eigen::MatrixXd best_jacobian(Vector& residuals);
+  // The best shape against the first of this session, see Tuning::anchor.
+  std::optional<AnchorCheck> check_anchor();
 
  private:
   Vector scaled(const Vector& value) const { return value.cwiseProduct(options_.scales); }
@@ -47,6 +49,7 @@ class TuningTrials final : public BoundedFunction {
   Vector first_, low_, high_, change_weights_;
   std::unique_ptr<TrackedEquilibrium> equilibrium_;
   TuningRecord best_;
+  Vector anchor_value_, anchor_q_;  // where this session began
   double least_ = kInfinity;
   Vector z_, r_;              // of the last trial, and its residuals
   double cost_ = kInfinity;   // of the last trial
