@@ -190,7 +190,8 @@ TEST(Import, NamesWhatIsDoubtfulAboutAValveAsCheckDoes) {
   valve.chords.chords.push_back(valve.chords.chords.front());
   const std::string copy = "chord " + std::to_string(valve.chords.chords.size() - 1) + ": joins the same two";
   write_valve_scene(valve, folder.path() / "a");
-  const auto warnings = import_valve(folder.path() / "a" / "valve.json", folder.path() / "b");
+  const auto warnings =
+      import_valve(folder.path() / "a" / "valve.json", folder.path() / "b", {.takes_any_size = true});
   const auto checked = check(folder.path() / "b" / "scene.json").warnings;
   for (const char* part : {"wrong side", "the pressure is 1.2e+05 mmHg", copy.c_str()}) {
     EXPECT_TRUE(says(warnings, part)) << part;
