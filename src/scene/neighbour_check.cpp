@@ -5,7 +5,7 @@
 namespace coapt {
 namespace {
 
-// Iterates from which a way counts as long: of 28 valves those with more have others in 9 of 11 cases,
+// Iterations from which others are suspected: of 28 valves those with more have others in 9 of 11 cases,
 // those with fewer in 6 of 17.
 constexpr int kLongWay = 40;
 
@@ -24,8 +24,8 @@ NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
 
 std::string neighbour_warning(const NeighbourCheck& check) {
   if (!check.is_suspected) return "";
-  return "This shape may be one of several: the way to it took " + std::to_string(check.iterates) +
-         " iterates, and most valves with so long a way have other equilibria near by, with other figures. "
+  return "This shape may be one of several: the solve took " + std::to_string(check.iterates) +
+         " iterations, and most valves that take so many have other equilibria near by, with other figures. "
          "Look for them with --branches 5.";
 }
 
