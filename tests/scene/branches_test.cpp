@@ -152,7 +152,7 @@ TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {
   coarse.iterations = 62;
   const NeighbourCheck by_level = check_neighbours("newton", result, {coarse});
   EXPECT_TRUE(by_level.is_suspected);
-  EXPECT_NE(neighbour_warning(by_level).find("62 iterates"), std::string::npos);
+  EXPECT_NE(neighbour_warning(by_level).find("62 iterations"), std::string::npos);
   EXPECT_NE(neighbour_warning(by_level).find("--branches 5"), std::string::npos);
   result.iterations = 400;
   EXPECT_TRUE(check_neighbours("newton", result, {}).is_suspected);
