@@ -24,6 +24,98 @@ Triangles side_by_side(const Triangles& a, const Triangles& b) {
   return both;
 }
 
+PairCorners gather(const Points& x, const int* nodes) {
+  PairCorners corners;
+  for (int a = 0; a < 4; ++a) corners.col(a) = x.col(nodes[a]);
+  return corners;
+}
+
+double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, double most) {
+  return kind == PairKind::PointTriangle ? point_triangle_step(x, d, most, kKeptDistance)
+                                         : edge_edge_step(x, d, most, kKeptDistance);
+}
+
+// Pairs that may come within range.
+struct Candidates {
+  Stencils stencils{4, {}};
+  std::vector<BarrierRest> rest;  // per unit of pressure
+
+  void add(const FeaturePair& pair, const BarrierRest& data) {
+    rest.push_back(data);
+    stencils.nodes.insert(stencils.nodes.end(), pair.nodes.begin(), pair.nodes.end());
+  }
+
+  // Energy at x; counts the pairs that are within range.
+  double evaluate(const Points& x, double pressure, Sink& sink, long& active) const {
+    double energy = 0;
+    active = 0;
+    PairVector g;
+    PairMatrix H;
+    PairVector* wanted_g = sink.wants_gradient() ? &g : nullptr;
+    PairMatrix* wanted_h = sink.wants_hessian() ? &H : nullptr;
+    for (size_t k = 0; k < rest.size(); ++k) {
+      const int* nodes = &stencils.nodes[4 * k];
+      const PairCorners corners = gather(x, nodes);
+      const ClosestPair closest = closest_points(rest[k].kind, corners);
+      if (closest.distance >= rest[k].range) continue;
+      ++active;
+      energy += pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(), wanted_g, wanted_h);
+      if (wanted_g == nullptr) continue;
+      g *= pressure;
+      for (int a = 0; a < 4; ++a) sink.add_gradient(nodes[a], g.segment<3>(3 * a));
+      if (wanted_h == nullptr) continue;
+      H *= pressure;
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+          sink.add_block(16 * static_cast<long>(k), 4, a, b, H.block<3, 3>(3 * a, 3 * b));
+    }
+    return energy;
+  }
+};
+
+// The pairs that a part of the nodes can meet within its reach: no search while it moves.
+class ContactBarrierPart final : public EnergyTerm {
+ public:
+  ContactBarrierPart(std::string name, Candidates candidates, double pressure, Points start, double reach)
+      : EnergyTerm(std::move(name)),
+        candidates_(std::move(candidates)),
+        pressure_(pressure),
+        start_(std::move(start)),
+        reach_(reach) {}
+
+  std::string_view type() const override { return "contact_barrier"; }
+  TermRole role() const override { return TermRole::Contact; }
+  const Stencils& stencils() const override { return candidates_.stencils; }
+  double evaluate(const Points& x, Sink& sink) const override {
+    long active = 0;
+    return candidates_.evaluate(x, pressure_, sink, active);
+  }
+  bool limits_steps() const override { return true; }
+
+  // Not beyond the reach either: |x + s d - start| <= reach.
+  double step_limit(const Points& x, const Points& d, double most) const override {
+    double limit = most;
+    for (Eigen::Index k = 0; k < start_.cols(); ++k) {
+      const double a = d.col(k).squaredNorm();
+      if (a == 0) continue;
+      const Vec3 gone = x.col(k) - start_.col(k);
+      const double b = gone.dot(d.col(k)), c = gone.squaredNorm() - reach_ * reach_;
+      limit = std::min(limit, std::max(0.0, (-b + std::sqrt(std::max(0.0, b * b - a * c))) / a));
+    }
+    for (size_t k = 0; k < candidates_.rest.size(); ++k) {
+      const int* nodes = &candidates_.stencils.nodes[4 * k];
+      limit = std::min(limit, pair_step(candidates_.rest[k].kind, gather(x, nodes), gather(d, nodes), limit));
+    }
+    return limit;
+  }
+
+ private:
+  Candidates candidates_;
+  double pressure_;
+  Points start_;  // of the nodes that move, which are the first
+  double reach_;
+};
+
 class ContactBarrier final : public EnergyTerm {
  public:
   ContactBarrier(std::string name, const Points& X, const Triangles& triangles,
@@ -33,14 +125,12 @@ class ContactBarrier final : public EnergyTerm {
                  options.excluded),
         gap_(options.gap),
         skin_(kSkin * options.gap),
-        pressure_(options.pressure) {
-    stencils_.width = 4;
-  }
+        pressure_(options.pressure) {}
 
   std::string_view type() const override { return "contact_barrier"; }
   TermRole role() const override { return TermRole::Contact; }
-  const Stencils& stencils() const override { return stencils_; }
-  TermCounters counters() const override { return {active_pairs_, stencils_.count(), searches_}; }
+  const Stencils& stencils() const override { return candidates_.stencils; }
+  TermCounters counters() const override { return {active_pairs_, candidates_.stencils.count(), searches_}; }
 
   bool prepare(const Points& x) override {
     if (is_within_skin(x)) return false;
@@ -49,43 +139,33 @@ class ContactBarrier final : public EnergyTerm {
   }
 
   double evaluate(const Points& x, Sink& sink) const override {
-    double energy = 0;
-    active_pairs_ = 0;
-    PairVector g;
-    PairMatrix H;
-    PairVector* wanted_g = sink.wants_gradient() ? &g : nullptr;
-    PairMatrix* wanted_h = sink.wants_hessian() ? &H : nullptr;
-    for (size_t k = 0; k < rest_.size(); ++k) {
-      const int* nodes = &stencils_.nodes[4 * k];
-      const PairCorners corners = gather(x, nodes);
-      const ClosestPair closest = closest_points(rest_[k].kind, corners);
-      if (closest.distance >= rest_[k].range) continue;
-      ++active_pairs_;
-      energy +=
-          pressure_ * evaluate_barrier(rest_[k], corners, closest, sink.projection(), wanted_g, wanted_h);
-      if (wanted_g == nullptr) continue;
-      g *= pressure_;
-      for (int a = 0; a < 4; ++a) sink.add_gradient(nodes[a], g.segment<3>(3 * a));
-      if (wanted_h == nullptr) continue;
-      H *= pressure_;
-      for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < 4; ++b)
-          sink.add_block(16 * static_cast<long>(k), 4, a, b, H.block<3, 3>(3 * a, 3 * b));
-    }
-    return energy;
+    return candidates_.evaluate(x, pressure_, sink, active_pairs_);
+  }
+
+  std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override {
+    Candidates candidates;
+    const double ahead = 2 * moving.reach();
+    surface_.visit_near(moving.x(), gap_ + ahead, moving, [&](const FeaturePair& pair) {
+      if (moving.moves_any(pair.nodes)) add_candidate(pair, moving.x(), ahead, candidates);
+    });
+    for (int& node : candidates.stencils.nodes) node = moving.number(node);
+    Points start(3, moving.moving_count());
+    for (int k = 0; k < moving.moving_count(); ++k) start.col(k) = moving.x().col(moving.nodes()[k]);
+    return std::make_unique<ContactBarrierPart>(name(), std::move(candidates), pressure_, std::move(start),
+                                                moving.reach());
   }
 
   std::vector<BarrierContact> contacts(const Points& x) const {
     std::vector<BarrierContact> found;
-    for (size_t k = 0; k < rest_.size(); ++k) {
-      const int* nodes = &stencils_.nodes[4 * k];
-      const ClosestPair closest = closest_points(rest_[k].kind, gather(x, nodes));
-      if (closest.distance >= rest_[k].range) continue;
+    for (size_t k = 0; k < candidates_.rest.size(); ++k) {
+      const int* nodes = &candidates_.stencils.nodes[4 * k];
+      const ClosestPair closest = closest_points(candidates_.rest[k].kind, gather(x, nodes));
+      if (closest.distance >= candidates_.rest[k].range) continue;
       BarrierContact contact{{nodes[0], nodes[1], nodes[2], nodes[3]},
-                             rest_[k].kind == PairKind::EdgeEdge,
+                             candidates_.rest[k].kind == PairKind::EdgeEdge,
                              0,
                              closest.distance,
-                             rest_[k].range};
+                             candidates_.rest[k].range};
       for (int a = 0; a < 4; ++a)
         if (closest.weights[a] != 0) contact.inside |= 1 << a;
       found.push_back(contact);
@@ -106,30 +186,21 @@ class ContactBarrier final : public EnergyTerm {
   bool stiffen(const Points& x) override {
     prepare(x);
     bool is_too_soft = false;
-    for (size_t k = 0; k < rest_.size() && !is_too_soft; ++k)
-      is_too_soft = closest_points(rest_[k].kind, gather(x, &stencils_.nodes[4 * k])).distance <
-                    kTooClose * rest_[k].range;
+    for (size_t k = 0; k < candidates_.rest.size() && !is_too_soft; ++k)
+      is_too_soft =
+          closest_points(candidates_.rest[k].kind, gather(x, &candidates_.stencils.nodes[4 * k])).distance <
+          kTooClose * candidates_.rest[k].range;
     if (is_too_soft) pressure_ *= kStiffening;
     return is_too_soft;
   }
 
  private:
-  static PairCorners gather(const Points& x, const int* nodes) {
-    PairCorners corners;
-    for (int a = 0; a < 4; ++a) corners.col(a) = x.col(nodes[a]);
-    return corners;
-  }
-
-  static double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, double most) {
-    return kind == PairKind::PointTriangle ? point_triangle_step(x, d, most, kKeptDistance)
-                                           : edge_edge_step(x, d, most, kKeptDistance);
-  }
-
   // Visits the pairs that may collide while x moves to x + s d, 0 <= s <= most; `most` may fall meanwhile.
   template <class Visit>
   void visit_moving(const Points& x, const Points& d, const double& most, const Visit& visit) const {
     if (is_within_skin(x) && is_within_skin(x + most * d)) {
-      for (size_t k = 0; k < rest_.size(); ++k) visit(rest_[k].kind, &stencils_.nodes[4 * k]);
+      for (size_t k = 0; k < candidates_.rest.size(); ++k)
+        visit(candidates_.rest[k].kind, &candidates_.stencils.nodes[4 * k]);
     } else {
       surface_.visit_swept(x, d, 0, most,
                            [&](const FeaturePair& pair) { visit(pair.kind, pair.nodes.data()); });
@@ -145,26 +216,27 @@ class ContactBarrier final : public EnergyTerm {
   void search(const Points& x) {
     ++searches_;
     searched_at_ = x;
-    rest_.clear();
-    stencils_.nodes.clear();
-    surface_.visit_near(x, gap_ + skin_, [&](const FeaturePair& pair) {
-      const double distance = closest_points(pair.kind, gather(x, pair.nodes.data())).distance;
-      if (distance >= gap_ + skin_) return;
-      const PairCorners at_rest = gather(surface_.rest(), pair.nodes.data());
-      const double range = std::min(gap_, kShareOfRest * closest_points(pair.kind, at_rest).distance);
-      if (distance >= range + skin_) return;
-      const double lengths =
-          (at_rest.col(1) - at_rest.col(0)).squaredNorm() * (at_rest.col(3) - at_rest.col(2)).squaredNorm();
-      rest_.push_back({pair.kind, range, surface_.area(pair) * range, kParallel * lengths});
-      stencils_.nodes.insert(stencils_.nodes.end(), pair.nodes.begin(), pair.nodes.end());
-    });
+    candidates_ = {};
+    surface_.visit_near(x, gap_ + skin_,
+                        [&](const FeaturePair& pair) { add_candidate(pair, x, skin_, candidates_); });
+  }
+
+  // A pair that at x is less than `ahead` from its range.
+  void add_candidate(const FeaturePair& pair, const Points& x, double ahead, Candidates& candidates) const {
+    const double distance = closest_points(pair.kind, gather(x, pair.nodes.data())).distance;
+    if (distance >= gap_ + ahead) return;
+    const PairCorners at_rest = gather(surface_.rest(), pair.nodes.data());
+    const double range = std::min(gap_, kShareOfRest * closest_points(pair.kind, at_rest).distance);
+    if (distance >= range + ahead) return;
+    const double lengths =
+        (at_rest.col(1) - at_rest.col(0)).squaredNorm() * (at_rest.col(3) - at_rest.col(2)).squaredNorm();
+    candidates.add(pair, {pair.kind, range, surface_.area(pair) * range, kParallel * lengths});
   }
 
   ContactSurface surface_;
   double gap_, skin_;
   double pressure_;
-  Stencils stencils_;              // the candidates' nodes
-  std::vector<BarrierRest> rest_;  // of the candidates, per unit of pressure
+  Candidates candidates_;
   Points searched_at_;
   long searches_ = 0;
   mutable long active_pairs_ = 0;  // a counter for reports, never read by an evaluation

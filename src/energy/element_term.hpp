@@ -2,11 +2,13 @@
 #pragma once
 
 #include "core/parallel.hpp"
+#include "energy/moving_part.hpp"
 #include "energy/project_psd.hpp"
 #include "energy/term.hpp"
 
 #include <algorithm>
 #include <concepts>
+#include <span>
 #include <utility>
 
 namespace coapt {
@@ -106,6 +108,18 @@ class ElementTerm final : public EnergyTerm {
   }
 
   void release_stress_limits() override { limit_stress({kInfinity, kInfinity}); }
+
+  std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override {
+    std::vector<int> nodes;
+    std::vector<typename K::Rest> rest;
+    for (size_t e = 0; e < rest_.size(); ++e) {
+      const std::span<const int, K::kNodes> corners(stencils_.nodes.data() + e * K::kNodes, K::kNodes);
+      if (!moving.moves_any(corners)) continue;
+      for (const int node : corners) nodes.push_back(moving.number(node));
+      rest.push_back(rest_[e]);
+    }
+    return std::make_unique<ElementTerm>(name(), std::move(nodes), std::move(rest));
+  }
 
   double evaluate(const Points& x, Sink& sink) const override {
     if (sink.wants_hessian()) return evaluate_with_hessian(x, sink);

@@ -1,5 +1,6 @@
 #include "energy/load_dead.hpp"
 
+#include "energy/moving_part.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 namespace coapt {
@@ -20,6 +21,17 @@ double LoadDead::evaluate(const Points& x, Sink& sink) const {
     if (sink.wants_gradient()) sink.add_gradient(node, -forces_.col(k));
   }
   return energy;
+}
+
+std::unique_ptr<EnergyTerm> LoadDead::part(MovingPart& moving) const {
+  Points forces = Points::Zero(3, moving.moving_count()), reference = forces;
+  for (int k = 0; k < stencils_.count(); ++k) {
+    const int node = stencils_.nodes[static_cast<size_t>(k)];
+    if (!moving.moves(node)) continue;
+    forces.col(moving.number(node)) = forces_.col(k);
+    reference.col(moving.number(node)) = reference_.col(k);
+  }
+  return std::make_unique<LoadDead>(name(), type_, forces, reference);
 }
 
 Points frozen_pressure_forces(const Points& X, const Triangles& triangles, double p) {

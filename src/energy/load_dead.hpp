@@ -16,6 +16,7 @@ class LoadDead final : public EnergyTerm {
   TermRole role() const override { return TermRole::Load; }
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(const Points& x, Sink& sink) const override;
+  std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override;
 
   // Of the loaded nodes, in the order of the stencils [force].
   const Points& forces() const { return forces_; }

@@ -5,6 +5,7 @@
 #include "energy/kernels/cross_matrix.hpp"
 #include "energy/kernels/facet_volume.hpp"
 #include "energy/load_dead.hpp"
+#include "energy/moving_part.hpp"
 #include "energy/rim_fan.hpp"
 #include "mesh/triangle_mesh.hpp"
 
@@ -59,6 +60,13 @@ std::unique_ptr<EnergyTerm> volume_term(std::string name, const Triangles& trian
       std::vector<FacetVolume::Rest>(static_cast<size_t>(triangles.cols()), {p, origin}));
 }
 
+std::vector<std::array<int, 2>> rim_edges(const std::vector<std::vector<int>>& rims) {
+  std::vector<std::array<int, 2>> edges;
+  for (const auto& rim : rims)
+    for (size_t k = 0; k < rim.size(); ++k) edges.push_back({rim[k], rim[(k + 1) % rim.size()]});
+  return edges;
+}
+
 // The surface closed by fans over its moving rims carries the potential; the remainder lives on the rims.
 class LoadPressureFollower final : public EnergyTerm {
  public:
@@ -67,7 +75,15 @@ class LoadPressureFollower final : public EnergyTerm {
       : EnergyTerm(std::move(name)),
         triangles_(triangles),
         rims_(std::move(rims)),
+        edges_(rim_edges(rims_)),
         rest_{p, Vec3(X.rowwise().mean())} {
+    set_fans({});
+  }
+
+  // Some triangles and rim edges of another, without fans.
+  LoadPressureFollower(std::string name, Triangles triangles, std::vector<std::array<int, 2>> edges,
+                       const FacetVolume::Rest& rest)
+      : EnergyTerm(std::move(name)), triangles_(std::move(triangles)), edges_(std::move(edges)), rest_(rest) {
     set_fans({});
   }
 
@@ -84,13 +100,11 @@ class LoadPressureFollower final : public EnergyTerm {
   void add_circulatory_force(const Points& x, Points& force) const override {
     const Vec3& o = rest_.origin;
     const double sixth = rest_.pressure / 6;
-    for (const auto& rim : rims_)
-      for (size_t k = 0; k < rim.size(); ++k) {
-        const int a = rim[k], b = rim[(k + 1) % rim.size()];
-        const Vec3 remainder = sixth * (x.col(a) - o).cross(x.col(b) - o);
-        force.col(a) += remainder;
-        force.col(b) += remainder;
-      }
+    for (const auto& [a, b] : edges_) {
+      const Vec3 remainder = sixth * (x.col(a) - o).cross(x.col(b) - o);
+      force.col(a) += remainder;
+      force.col(b) += remainder;
+    }
     for (int t = 0; t < fans_.cols(); ++t)
       for (int k = 0; k < 3; ++k) {
         const int b = fans_((k + 1) % 3, t), c = fans_((k + 2) % 3, t);
@@ -102,16 +116,14 @@ class LoadPressureFollower final : public EnergyTerm {
     const Vec3& o = rest_.origin;
     const double sixth = rest_.pressure / 6;
     // d(u x v)/du = -[v x], d(u x v)/dv = [u x]
-    for (const auto& rim : rims_)
-      for (size_t k = 0; k < rim.size(); ++k) {
-        const int a = rim[k], b = rim[(k + 1) % rim.size()];
-        const Eigen::Matrix3d by_a = -sixth * cross_matrix(x.col(b) - o);
-        const Eigen::Matrix3d by_b = sixth * cross_matrix(x.col(a) - o);
-        for (const int row : {a, b}) {
-          blocks.push_back({row, a, by_a});
-          blocks.push_back({row, b, by_b});
-        }
+    for (const auto& [a, b] : edges_) {
+      const Eigen::Matrix3d by_a = -sixth * cross_matrix(x.col(b) - o);
+      const Eigen::Matrix3d by_b = sixth * cross_matrix(x.col(a) - o);
+      for (const int row : {a, b}) {
+        blocks.push_back({row, a, by_a});
+        blocks.push_back({row, b, by_b});
       }
+    }
     for (int t = 0; t < fans_.cols(); ++t)
       for (int k = 0; k < 3; ++k) {
         const int b = fans_((k + 1) % 3, t), c = fans_((k + 2) % 3, t);
@@ -137,6 +149,22 @@ class LoadPressureFollower final : public EnergyTerm {
     return true;
   }
 
+  std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override {
+    if (fans_.cols() != 0) return nullptr;
+    std::vector<int> corners;
+    for (int t = 0; t < triangles_.cols(); ++t) {
+      const Eigen::Vector3i triangle = triangles_.col(t);
+      if (!moving.moves_any(triangle)) continue;
+      for (const int node : triangle) corners.push_back(moving.number(node));
+    }
+    std::vector<std::array<int, 2>> touched;
+    for (const auto& edge : edges_)
+      if (moving.moves_any(edge)) touched.push_back({moving.number(edge[0]), moving.number(edge[1])});
+    Triangles triangles =
+        Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3));
+    return std::make_unique<LoadPressureFollower>(name(), std::move(triangles), std::move(touched), rest_);
+  }
+
   bool simplify() override {
     if (fans_.cols() == 0) return false;
     set_fans({});
@@ -153,7 +181,8 @@ class LoadPressureFollower final : public EnergyTerm {
   }
 
   Triangles triangles_;
-  std::vector<std::vector<int>> rims_;  // those that move, in the direction of the facets
+  std::vector<std::vector<int>> rims_;     // those that move, in the direction of the facets
+  std::vector<std::array<int, 2>> edges_;  // of the rims
   FacetVolume::Rest rest_;
   Triangles fans_;                                  // none until renew()
   std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans

@@ -274,6 +274,7 @@ double Objective::strained_force() const {
 }
 
 double Objective::reference_force() const {
+  if (given_scale_ > 0) return given_scale_;
   if (load_scale_ > 0) return std::max(load_scale_, reaction_scale_);
   return std::max({strained_scale_, reaction_scale_, reaction_scale_ > 0 ? 0 : first_scale_});
 }

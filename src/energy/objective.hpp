@@ -51,6 +51,7 @@ class Objective {
   const std::vector<std::unique_ptr<EnergyTerm>>& terms() const { return terms_; }
 
   Vector unknowns(const Points& x) const;
+  Vector unknowns() const { return unknowns(x_); }  // of the last evaluation, or of the start
   Points positions(const Vector& q) const;
   // Longest side of the box around all nodes [length], whatever the place and the unknowns are.
   double extent(const Vector& q) const;
@@ -148,6 +149,13 @@ class Objective {
   // the path is followed.
   void advance(const Vector& q);
 
+  // These blocks of unknowns by themselves, all others held where q has them: an objective whose energy
+  // differs by a constant, in the same order of unknowns, whose residual is measured against this one's
+  // reference force and whose laws are as they are now. Contact keeps each node within `reach` [length] of
+  // where it is. Null where a term cannot be divided, or the circulatory force is held dead. Pre: the last
+  // gradient evaluation was at q.
+  std::unique_ptr<Objective> part(const Vector& q, const std::vector<int>& blocks, double reach);
+
   // Residual with the exact load at q, never that of the potential. The final judge of convergence.
   double true_residual(const Vector& q);
 
@@ -194,6 +202,7 @@ class Objective {
   double work_ = 0;                 // of the circulatory force along the path so far
   Points nodal_gradient_;           // work space
   Points prestress_reaction_;       // of the reference state, at prescribed coordinates; empty: it has none
+  double given_scale_ = 0;          // of a part: the reference force of the whole
   double load_scale_ = 0, reaction_scale_ = 0, whole_reaction_scale_ = 0;
   double first_scale_ = 0, strained_scale_ = 0;
 

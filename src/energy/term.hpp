@@ -4,6 +4,7 @@
 #include "core/types.hpp"
 #include "energy/sink.hpp"
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ struct TensionScale {
   double membrane = 0;  // [force/length]
   double line = 0;      // [force]
 };
+
+class MovingPart;
 
 class EnergyTerm {
  public:
@@ -116,6 +119,11 @@ class EnergyTerm {
   // Makes the term stiffer where the state at x shows that it is too soft to be trusted. Returns whether it
   // did: then the energy is another one.
   virtual bool stiffen(const Points& /*x*/) { return false; }
+
+  // The elements that touch a node which moves, as a term of its own in the numbers of the part: its
+  // derivatives by these nodes are those of this term as it is now (rounded, limited) as long as only they
+  // move, and none farther than the part's reach. Null: this cannot be had.
+  virtual std::unique_ptr<EnergyTerm> part(MovingPart& /*moving*/) const { return nullptr; }
 
   virtual TermCounters counters() const { return {stencils().count(), 0, 0}; }
 

@@ -45,7 +45,7 @@ double cubic_minimiser(const Sample& a, const Sample& b) {
 }  // namespace
 
 bool search_line(Monitor& monitor, const LinePoint& from, const Vector& direction, double first,
-                 LinePoint& to) {
+                 LinePoint& to, const Replacement& replace) {
   const double noise = monitor.energy_noise(from.energy);
   // Below the noise an energy tells nothing: the slope must then have shrunk instead.
   const auto descends = [&](const Sample& p) {
@@ -64,6 +64,10 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
     if (monitor.is_out_of_time()) break;
     if (!(step > 0)) break;  // nothing may move
     const Sample now = evaluate(monitor, from, direction, step, to);
+    if (k == 0 && replace &&
+        now.energy > from.energy - kFewKept * from.promised(std::min(step, 1.0)) + noise &&
+        std::isfinite(now.energy) && replace(to))
+      return true;
     if (now.energy == kInfinity) {  // infeasible: come back quickly
       high = now;
       has_high = true;

@@ -27,6 +27,9 @@ class ShiftedHessian {
   // x = (K + shift)^-1 b. Pre: the last factorisation succeeded.
   void solve(const Vector& b, Vector& x) { factor_->solve(b, x); }
 
+  // Lower triangle, as it was factorised last.
+  const SparseMatrix& matrix() const { return h_; }
+
   bool is_exact() const { return is_exact_; }
 
   // product += K v with the exact Hessian of the last evaluation, unshifted.

@@ -1,5 +1,7 @@
 #include "support/term_suite.hpp"
 
+#include "energy/moving_part.hpp"
+
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -170,6 +172,38 @@ void examine_assembly(const TermCase& c, const TermValues& at, Findings& finding
   }
 }
 
+// A part of the nodes against the whole term, where they are and after a move within their reach.
+void examine_part(const TermCase& c, const TermValues& at, Findings& findings) {
+  const auto term = c.make({});
+  term->prepare(c.state);
+  for (const int stride : {1, 2, 3}) {
+    std::vector<int> nodes;
+    for (int node = static_cast<int>(c.state.cols()) - 1; node >= 0; node -= stride) nodes.push_back(node);
+    MovingPart moving(c.state, nodes, 0.1 * c.reach);
+    const auto part = term->part(moving);
+    if (part == nullptr) return;
+    for (const double share : {0.0, 0.9}) {
+      Points state = c.state;
+      const Points d = unit_direction(static_cast<Eigen::Index>(nodes.size()), 300);
+      for (int k = 0; k < moving.moving_count(); ++k)
+        state.col(moving.nodes()[k]) += share * moving.reach() * d.col(k);
+      const TermValues whole = share == 0 ? at : evaluate_term(*term, state);
+      const TermValues ours = evaluate_term(*part, state(Eigen::all, moving.nodes()));
+      double gradient = 0, hessian = 0;
+      for (int i = 0; i < moving.moving_count(); ++i) {
+        const int a = moving.nodes()[i];
+        gradient = std::max(gradient, (ours.gradient.col(i) - whole.gradient.col(a)).norm());
+        for (int j = 0; j < moving.moving_count(); ++j)
+          hessian = std::max(hessian, (ours.hessian.block<3, 3>(3 * i, 3 * j) -
+                                       whole.hessian.block<3, 3>(3 * a, 3 * moving.nodes()[j]))
+                                          .norm());
+      }
+      findings.require(gradient <= 1e-12 * whole.gradient.norm(), "gradient of a part differs", gradient);
+      findings.require(hessian <= 1e-12 * whole.hessian.norm(), "Hessian of a part differs", hessian);
+    }
+  }
+}
+
 void examine_rigid_motion(const TermCase& c, const TermValues& at, Findings& findings) {
   if (!c.ignores_rigid_motion) return;
   const auto term = c.make({});
@@ -254,6 +288,7 @@ std::string examine_derivatives(const TermCase& c) {
   examine_slopes(*term, c, at, findings);
   examine_differences(*term, c, at, findings);
   examine_assembly(c, at, findings);
+  examine_part(c, at, findings);
   return findings.text();
 }
 

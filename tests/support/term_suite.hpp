@@ -6,8 +6,9 @@
 // Derivatives: slopes of the Taylor remainders |E(x+hd) - E(x) - h g.d| ~ h^2 and
 // |... - h^2/2 d.Hd| ~ h^3, worst of 20 seeded directions (slope_of_remainder says how a slope is read);
 // central differences of E against g and of g against H; the same numbers from Objective::hessian.
-// Symmetries: rotation, translation, renumbering, units. State: purity along two histories, no energy or
-// force at rest where the law says so, and nothing is zero at the state under test.
+// Parts (EnergyTerm::part): the same derivatives by the nodes that move, where they are and within their
+// reach. Symmetries: rotation, translation, renumbering, units. State: purity along two histories, no energy
+// or force at rest where the law says so, and nothing is zero at the state under test.
 #pragma once
 
 #include "energy/objective.hpp"

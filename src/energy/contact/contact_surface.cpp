@@ -17,6 +17,17 @@ struct SweptBounds {
   }
 };
 
+// A box, and whether anything in it moves.
+struct PartBounds {
+  Bounds at;
+  bool moves = false;
+
+  void include(const PartBounds& other) {
+    at.include(other.at);
+    moves = moves || other.moves;
+  }
+};
+
 // Written out, as this is what a search spends its time on.
 bool overlap(const Bounds& a, const Bounds& b) {
   return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] && b.low[1] <= a.high[1] &&
@@ -50,6 +61,8 @@ bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double sl
   }
   return from <= to * (1 + 1e-12);
 }
+
+Bounds box_around(const Vec3& x, double width) { return {x.array() - 0.5 * width, x.array() + 0.5 * width}; }
 
 template <class Bound>
 Bound joined(Bound a, const Bound& b) {
@@ -146,11 +159,17 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
-  visit_pairs<Bounds>(
+  visit_pairs<Bounds>([&](int node) { return box_around(x.col(node), reach); }, overlap, visit);
+}
+
+void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
+                                const Visit& visit) const {
+  visit_pairs<PartBounds>(
       [&](int node) {
-        return Bounds{x.col(node).array() - 0.5 * reach, x.col(node).array() + 0.5 * reach};
+        return PartBounds{box_around(x.col(node), reach), moving.moves(node)};
       },
-      overlap, visit);
+      [](const PartBounds& a, const PartBounds& b) { return (a.moves || b.moves) && overlap(a.at, b.at); },
+      visit);
 }
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,
@@ -158,8 +177,7 @@ void ContactSurface::visit_swept(const Points& x, const Points& d, double reach,
   const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
   visit_pairs<SweptBounds>(
       [&](int node) {
-        return SweptBounds{{x.col(node).array() - 0.5 * reach, x.col(node).array() + 0.5 * reach},
-                           {d.col(node).array(), d.col(node).array()}};
+        return SweptBounds{box_around(x.col(node), reach), {d.col(node).array(), d.col(node).array()}};
       },
       [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit);
 }

@@ -4,6 +4,7 @@
 
 #include "energy/contact/box_hierarchy.hpp"
 #include "energy/contact/pair_barrier.hpp"
+#include "energy/moving_part.hpp"
 
 #include <array>
 #include <functional>
@@ -39,6 +40,9 @@ class ContactSurface {
   // Pairs whose boxes come within `reach` of each other at x, each once, in an order that does not depend on
   // x.
   void visit_near(const Points& x, double reach, const Visit& visit) const;
+
+  // The same, but only pairs of which some node is in a triangle with one that moves.
+  void visit_near(const Points& x, double reach, const MovingPart& moving, const Visit& visit) const;
 
   // Pairs whose boxes come within `reach` of each other while x moves to x + s d, 0 <= s <= most. `most` may
   // fall during the visit.
