@@ -19,7 +19,7 @@ constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrea
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
 constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
 constexpr double kForcing = 1e-3;                // GMRES, relative
-constexpr int kKrylovVectors = 30;
+constexpr int kKrylovVectors = 20;
 
 // Iterates in a row near an equilibrium that better neither the energy nor the residual, before the rest is
 // left to round-off. Towards a flat minimum, as after a saddle, 34 were seen; far from one the monitor
@@ -76,7 +76,7 @@ class Newton {
       if (is_at_round_off()) return Status::Stalled;
       if (unit_ == 0) start_shift();
       if (!hessian_.factorise(objective_, monitor_, at_.q, at_.g, shift_)) return Status::Stalled;
-      bool is_found = is_beyond_the_potential() && approach();
+      bool is_found = false;
       while (!is_found) {
         find_direction();
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
@@ -165,20 +165,36 @@ class Newton {
     PhaseTimer timer(monitor_.phases(), "direction");
     work_ = -at_.g;
     hessian_.solve(work_, symmetric_);
+    if (is_beyond_the_potential() && solve_by_gmres(true)) return;
     if (!hessian_.is_exact()) use_exact_curvature();
     direction_ = symmetric_;
-    if (objective_.has_skew_tangent())
-      gmres_.solve(
-          [this](const Vector& v, Vector& out) {
-            work_.setZero();
-            objective_.add_skew_product(v, work_);
-            hessian_.solve(work_, out);
-          },
-          symmetric_, kForcing, direction_);
     at_.slope = at_.g.dot(direction_);
-    if (at_.slope < 0) return;
+    if (!objective_.has_skew_tangent() || solve_by_gmres(false)) return;
     direction_ = symmetric_;  // GMRES stopped early
     at_.slope = at_.g.dot(direction_);
+  }
+
+  // Where the force has no potential the symmetric part of the tangent need not be positive definite at an
+  // equilibrium; steps that take it to be so approach it slowly.
+  bool is_beyond_the_potential() const {
+    return objective_.has_skew_tangent() && !hessian_.is_exact() &&
+           objective_.relative_residual(at_.g) < kNear;
+  }
+
+  // From symmetric_, with the skew part of the tangent; with the exact symmetric part too, unshifted, or with
+  // that which is factorised. Returns whether the direction descends.
+  bool solve_by_gmres(bool with_exact_curvature) {
+    gmres_.solve(
+        [&](const Vector& v, Vector& out) {
+          work_.setZero();
+          if (with_exact_curvature) hessian_.add_exact_product(v, work_);
+          objective_.add_skew_product(v, work_);
+          hessian_.solve(work_, out);
+          if (with_exact_curvature) out -= v;
+        },
+        symmetric_, kForcing, direction_);
+    at_.slope = at_.g.dot(direction_);
+    return at_.slope < 0;
   }
 
   // Projected elements are too stiff wherever contact or bending took part in a negative eigenvalue: the
@@ -210,37 +226,6 @@ class Newton {
       image_ = left_ + (next / square) * image_;
       square = next;
     }
-  }
-
-  // Where the force has no potential the symmetric part of the tangent need not be positive definite at an
-  // equilibrium; steps that take it to be so approach it slowly.
-  bool is_beyond_the_potential() const {
-    return objective_.has_skew_tangent() && !hessian_.is_exact() &&
-           objective_.relative_residual(at_.g) < kNear;
-  }
-
-  // Newton's step with the exact tangent, preconditioned by the projected one. No energy can judge it: it has
-  // to halve the out-of-balance force.
-  bool approach() {
-    {
-      PhaseTimer timer(monitor_.phases(), "direction");
-      work_ = -at_.g;
-      hessian_.solve(work_, symmetric_);
-      gmres_.solve(
-          [this](const Vector& v, Vector& out) {
-            work_.setZero();
-            hessian_.add_exact_product(v, work_);
-            objective_.add_skew_product(v, work_);
-            hessian_.solve(work_, out);
-            out -= v;
-          },
-          symmetric_, kForcing, direction_);
-    }
-    if (gmres_.residual() > kForcing || monitor_.step_limit(at_.q, direction_, 1) < 1) return false;
-    next_.step = 1;
-    next_.q = at_.q + direction_;
-    next_.energy = monitor_.gradient(next_.q, next_.g);
-    return std::isfinite(next_.energy) && next_.g.norm() < 0.5 * at_.g.norm();
   }
 
   bool search() {
