@@ -97,33 +97,41 @@ class Counted final : public Factorisation {
 };
 
 // From the second iterate on, whatever the iteration does (Hessian, factor, GMRES, line search, trace),
-// newton allocates the blocks that the library takes for each factorisation and nothing else.
+// newton allocates the blocks that the library takes for each factorisation and nothing else; save where it
+// brings a few nodes into balance by themselves, which is another, small problem with its own factorisation.
 void expect_nothing_allocated_but(long blocks, const FactorisationFactory& make) {
   const ValveScene scene{{}};
   Objective objective(scene.X, scene.fixed, scene.terms());
-  long factorised = 0;
+  long made = 0, factorised = 0;
   SolverOptions options;
-  options.factorisation = [&] { return std::make_unique<Counted>(make(), factorised); };
+  options.factorisation = [&] {
+    ++made;
+    return std::make_unique<Counted>(make(), factorised);
+  };
   const auto newton = built_in_solvers().at("newton")(options);
   struct Seen {
-    long allocations, factorised;
+    long allocations, made, factorised;
   };
   std::vector<Seen> seen;
   seen.reserve(1000);
   const Result result = solve(*newton, {objective, objective.unknowns(scene.X), scene.method().motion},
                               {.tolerance = 1e-8}, [&](const Iteration&, const Vector&) {
-                                seen.push_back({allocations().count, factorised});
+                                seen.push_back({allocations().count, made, factorised});
                                 return true;
                               });
   ASSERT_EQ(result.status, Status::Converged);
   ASSERT_GT(seen.size(), 5u);
   EXPECT_GT(seen[1].allocations, seen[0].allocations);  // the first iteration makes room
+  int whole = 0;
   for (size_t k = 2; k < seen.size(); ++k) {
+    if (seen[k].made > seen[k - 1].made) continue;
+    ++whole;
     EXPECT_GE(seen[k].factorised, seen[k - 1].factorised + 1) << "iteration " << k;
     EXPECT_EQ(seen[k].allocations - seen[k - 1].allocations,
               blocks * (seen[k].factorised - seen[k - 1].factorised))
         << "iteration " << k;
   }
+  EXPECT_GE(whole, 4);
 }
 
 TEST_F(Allocation, NewtonIteratesWithoutAny) { expect_nothing_allocated_but(0, make_eigen_factorisation); }

@@ -117,8 +117,9 @@ TEST(Chord, S5OfNoLengthOrWithCoincidentEndsGivesFiniteAnswers) {
 
 // --- S6 ---------------------------------------------------------------------------------------------------
 
-// Stretches the rim of a plane mesh by an affine map; the inner nodes must follow it.
-Vec3 affine_errors(const TriangleMesh& mesh, int nx, int ny) {
+// Stretches the rim of a plane mesh by an affine map; the inner nodes must follow it. With cells of 1e-6 a
+// residual of 1e-13 still leaves some of them 1e-6 of the size away.
+Vec3 affine_errors(const TriangleMesh& mesh, int nx, int ny, double tolerance = 1e-12) {
   Eigen::Matrix3d map = Eigen::Matrix3d::Identity();
   map.topLeftCorner<2, 2>() << 1.2, 0.1, 0.05, 1.1;
   const Points exact = map * mesh.vertices;
@@ -132,7 +133,7 @@ Vec3 affine_errors(const TriangleMesh& mesh, int nx, int ny) {
       }
   const Equilibrium found =
       find_equilibrium(start, fixed, terms_of(tension_field_term(mesh.vertices, mesh.triangles, {1, 0.3, 0})),
-                       {.tolerance = 1e-12, .max_iterations = 500});
+                       {.tolerance = tolerance, .max_iterations = 500});
   const Vec3 size = exact.rowwise().maxCoeff() - exact.rowwise().minCoeff();
   const Vec3 errors = (found.x - exact).cwiseAbs().rowwise().maxCoeff();
   std::printf("S6: %s, %d iterations, errors by width %.1e and by height %.1e\n",
@@ -149,7 +150,7 @@ TEST(Slivers, S6PassThePatchTest) {
   }
   TriangleMesh graded = grid_mesh(12, 6), obtuse = grid_mesh(6, 6, 1, 1, Diagonal::Same);
   for (auto x : graded.vertices.colwise()) x[0] = std::pow(10.0, 6 * (x[0] - 1));  // cells from 1 to 1e-6
-  EXPECT_LT(affine_errors(graded, 12, 6).maxCoeff(), 1e-6);
+  EXPECT_LT(affine_errors(graded, 12, 6, 1e-13).maxCoeff(), 1e-6);
   for (auto x : obtuse.vertices.colwise()) x[0] -= 2 * x[1];  // sheared against the diagonals
   EXPECT_LT(affine_errors(obtuse, 6, 6).maxCoeff(), 1e-6);
 }
