@@ -5,6 +5,7 @@
 #include "scene/detail/csv_row.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/detail/study_files.hpp"
+#include "scene/result_warnings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -295,7 +296,7 @@ PageList messages(const ChordTuning& found) {
     const Result& result = run.report.result;
     list.items.push_back({std::string(name) + ": " + result.message,
                           result.status == Status::Converged ? Tone::Plain : Tone::Bad});
-    for (const std::string& warning : run.report.warnings)
+    for (const std::string& warning : result_warnings(run.report))
       list.items.push_back({std::string(name) + ": " + warning, Tone::Caution});
   };
   add("before", found.before);

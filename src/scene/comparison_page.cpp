@@ -1,6 +1,7 @@
 // report.html of a comparison.
 #include "scene/compared_view.hpp"
 #include "scene/comparison_report.hpp"
+#include "scene/result_warnings.hpp"
 #include "scene/solve_page.hpp"
 #include "scene/suggestion.hpp"
 
@@ -126,7 +127,7 @@ PageList warnings(const Comparison& comparison) {
   for (const ComparedMethod& method : comparison.methods) {
     if (!method.run) continue;
     ++solved;
-    for (const std::string& text : method.run->report.warnings) {
+    for (const std::string& text : result_warnings(method.run->report)) {
       std::vector<std::string>& those = names[text];
       if (those.empty()) texts.push_back(text);
       if (those.empty() || those.back() != method.name) those.push_back(method.name);
@@ -188,9 +189,9 @@ std::string comparison_page(const Comparison& comparison) {
   Page page{.title = "Comparison of methods on " + comparison.scene_title};
   page.lead = comparison.has_converged() ? "every method converged" : "not every method converged";
   page.tone = comparison.has_converged() ? Tone::Good : Tone::Bad;
-  page.sections.push_back({"Distances", {distance_table(comparison), messages(comparison)}});
   if (PageList said = warnings(comparison); !said.items.empty())
-    page.sections.back().blocks.emplace_back(std::move(said));
+    page.sections.push_back({"Warnings", {std::move(said)}});
+  page.sections.push_back({"Distances", {messages(comparison), distance_table(comparison)}});
   if (const std::optional<ShapeView> view = shapes(comparison))
     page.sections.push_back({"Closed shapes", {shape_view_html(*view)}});
   page.sections.push_back({"Figures", {figure_table(comparison)}});

@@ -5,6 +5,7 @@
 #include "scene/detail/json_text.hpp"
 #include "scene/detail/study_files.hpp"
 #include "scene/intervene.hpp"
+#include "scene/result_warnings.hpp"
 
 #include <cmath>
 
@@ -78,7 +79,7 @@ PageList messages(const BeforeAfter& found) {
     const Result& result = run->report.result;
     list.items.push_back({std::string(name) + ": " + result.message,
                           result.status == Status::Converged ? Tone::Good : Tone::Bad});
-    for (const std::string& warning : run->report.warnings)
+    for (const std::string& warning : result_warnings(run->report))
       list.items.push_back({std::string(name) + ": " + warning, Tone::Caution});
   };
   add("before", found.before);

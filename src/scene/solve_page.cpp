@@ -3,6 +3,7 @@
 #include "core/components.hpp"
 #include "core/timing.hpp"
 #include "mesh/formats/xml_escaped.hpp"
+#include "scene/result_warnings.hpp"
 #include "scene/solve_view.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ PageMarkup tiles(const Report& report) {
 
 PageList warning_list(const Report& report) {
   PageList list;
-  for (const std::string& warning : report.warnings)
+  for (const std::string& warning : result_warnings(report))
     list.items.push_back({"Warning: " + warning, Tone::Caution});
   return list;
 }
@@ -161,16 +162,7 @@ PageTable branch_table(const Branches& branches) {
 
 PageSection other_equilibria(const Report& report) {
   const Branches& branches = *report.branches;
-  const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
-  PageSection section{"Other equilibria near by", {}};
-  section.blocks.emplace_back(PageText{branches_message(branches) + ".",
-                                       branches.equilibria.size() > 1 ? Tone::Caution : Tone::Plain});
-  section.blocks.emplace_back(PageText{std::to_string(nodes.total()) +
-                                       " nodes are not determined: " + std::to_string(nodes.free) +
-                                       " can be moved at no cost, " + std::to_string(nodes.differing) +
-                                       " others stand elsewhere in another equilibrium."});
-  section.blocks.emplace_back(branch_table(branches));
-  return section;
+  return {"Other equilibria near by", {PageText{branches_message(branches) + "."}, branch_table(branches)}};
 }
 
 PageSection convergence(const Report& report) {
@@ -297,13 +289,13 @@ std::string solve_page(const Model& model, const Report& report) {
   Page page;
   page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
   page.lead = result.message;
-  page.tone = result.status == Status::Converged ? Tone::Good : Tone::Bad;
-  PageSection shape{"Shape", {tiles(report)}};
+  page.tone = result.status != Status::Converged            ? Tone::Bad
+              : stability_doubt(result.certificate).empty() ? Tone::Good
+                                                            : Tone::Caution;
   if (PageList warnings = warning_list(report); !warnings.items.empty())
-    shape.blocks.emplace_back(std::move(warnings));
-  shape.blocks.emplace_back(shape_view_html(solved_view(model, report)));
-  page.sections = solve_account(model, report);
-  page.sections.insert(page.sections.begin(), std::move(shape));
+    page.sections.push_back({"Warnings", {std::move(warnings)}});
+  page.sections.push_back({"Shape", {tiles(report), shape_view_html(solved_view(model, report))}});
+  for (PageSection& section : solve_account(model, report)) page.sections.push_back(std::move(section));
   return report_page(page);
 }
 

@@ -325,6 +325,34 @@ await run("a chain without a sheet is drawn too, in the dark", async () => {
   await looksLike(browser, "chain", result, await shot(), scratch);
   await chain.closed();
 });
+// A shallow pyramid, pushed at its apex, which is also at rest turned inside out.
+function pyramidResult() {
+  const folder = join(scratch, "pyramid");
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, "pyramid.obj"), "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+  writeFileSync(join(folder, "scene.json"), JSON.stringify({
+    mesh: { file: "pyramid.obj" }, boundary: [{ nodes: "boundary", fix: true }],
+    terms: [{ type: "cst_stvk", young: "1 MPa", poisson: 0.3, thickness: "0.5 mm" },
+            { type: "load_field", nodes: [4], force: "0.001 N", direction: [0, 0, -1] }] }));
+  finished("solve", join(folder, "scene.json"), "--branches", "12", "--branch-kick", "0.5");
+  return { solve: join(folder, "result"), compare: written("report.html", join(folder, "scene.json"), "compare", "--methods", "newton,lbfgs", "--branches", "12", "--branch-kick", "0.5") };
+}
+await run("every warning stands above the figures, in sight", async () => {
+  for (const place of Object.values(pyramidResult())) {
+    const { page, closed } = await opened(place);
+    const list = page.getByRole("region", { name: "Warnings" }).getByRole("listitem");
+    const texts = (await list.allTextContents()).join("\n");
+    assert.match(texts, /one of several equilibria: 1 other near by/);
+    assert.match(texts, /not determined: 1 /);
+    const figures = await page.locator("dl.tiles, table").first().boundingBox();
+    for (const warning of await page.locator("p.caution, p.bad, li.caution, li.bad").all()) {
+      const box = await warning.boundingBox();
+      assert.ok(box && box.y + box.height <= figures.y, await warning.textContent());
+    }
+    for (const warning of await list.all()) assert.ok((await warning.boundingBox()).y < 760, "seen without scrolling");
+    await closed();
+  }
+});
 await run("plots look as they did, in light and dark", async () => {
   const folder = join(scratch, "sample");
   mkdirSync(folder, { recursive: true });

@@ -120,7 +120,14 @@ TEST_F(BranchesOfAScene, WritesThemIntoEveryFileOfTheResult) {
   const std::string surface = text_of(options.folder / "closed.vtp");
   for (const char* name : {"branch_spread", "undetermined"})
     EXPECT_NE(surface.find(name), std::string::npos) << name;
-  EXPECT_NE(text_of(options.folder / "report.html").find("Other equilibria near by"), std::string::npos);
+  const std::string page = text_of(options.folder / "report.html");
+  EXPECT_NE(page.find("Other equilibria near by"), std::string::npos);
+  const size_t figures = page.find("<dl class=\"tiles\">");
+  ASSERT_NE(figures, std::string::npos);
+  for (const char* warning : {"one of several equilibria: 1 other near by",
+                              "not determined: 1 (0 can be moved at no cost, 1 others differ"})
+    EXPECT_LT(page.find(warning), figures) << warning;
+  EXPECT_EQ(page.find("Warning: ", figures), std::string::npos);
   const nlohmann::json result = nlohmann::json::parse(text_of(options.folder / "result.json"));
   EXPECT_EQ(result["undetermined_nodes"]["differing"], 1);
   EXPECT_EQ(result["branches"]["equilibria"].size(), 2u);
