@@ -1,37 +1,108 @@
-"""Fails when a file includes a room further down the data path, or a public header includes more than
-Eigen and the standard library.
+"""Fails when an include of src is against tools/layers.toml: against its table of rooms, of a private header of another
+room, or in a circle; when a public header includes more than Eigen and the standard library; and when the table allows
+what no file needs.
 
-The rooms, in order: core, mesh, energy, optim, sensitivity, scene, cli.
+    check_layers.py [FOLDER]     the repository, or another tree with src and tools/layers.toml in it
 """
 import pathlib
 import re
 import sys
+import tomllib
 
-ROOMS = ["core", "mesh", "energy", "optim", "sensitivity", "scene", "cli"]
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
+PRIVATE = re.compile(r"\bprivate to this (room|folder)\b", re.IGNORECASE)
 ALLOWED_IN_HEADERS = ("Eigen/", "unsupported/Eigen/")
 
 
-def defects(root: pathlib.Path) -> list[str]:
+def room_of(name: str) -> str:
+    folders = name.split("/")[:-1]
+    return "/".join(folders[:-1] if folders[-1:] == ["detail"] else folders)
+
+
+def is_private(name: str, text: str) -> bool:
+    return "/detail/" in name or bool(PRIVATE.search(text.split("#pragma once")[0]))
+
+
+def circle(follows: dict[str, list[str]]) -> list[str]:
+    """Names each of which is followed by the next, the last by the first; none where there is no circle."""
+    finished: set[str] = set()
+
+    def search(name: str, path: list[str]) -> list[str]:
+        if name in path:
+            return path[path.index(name):]
+        if name in finished:
+            return []
+        for other in follows.get(name, []):
+            if found := search(other, [*path, name]):
+                return found
+        finished.add(name)
+        return []
+
+    return next((found for name in sorted(follows) if (found := search(name, []))), [])
+
+
+def third_party_defects(texts: dict[str, str]) -> list[str]:
     found = []
-    for path in sorted(root.rglob("*.[ch]pp")):
-        here = path.relative_to(root)
-        room = here.parts[0]
-        for bracket, name in INCLUDE.findall(path.read_text(encoding="utf-8")):
-            if bracket == '"':
-                target = name.split("/")[0]
-                if target not in ROOMS:
-                    found.append(f'{here}: include "{name}" from the src root, by room')
-                elif ROOMS.index(target) > ROOMS.index(room):
-                    found.append(f'{here}: includes "{name}", against the data path')
-            elif path.suffix == ".hpp" and ("." in name or "/" in name):
-                is_private = "detail" in here.parts or room == "cli"
-                if not name.startswith(ALLOWED_IN_HEADERS) and not is_private:
-                    found.append(f"{here}: a public header includes <{name}>; keep it in a source file")
+    for name, text in texts.items():
+        if not name.endswith(".hpp") or "/detail/" in name or room_of(name) == "cli":
+            continue
+        for bracket, included in INCLUDE.findall(text):
+            if bracket == "<" and ("." in included or "/" in included) and not included.startswith(ALLOWED_IN_HEADERS):
+                found.append(f"{name}: a public header includes <{included}>; keep it in a source file")
+    return found
+
+
+def include_defects(includes: dict[str, list[str]], private: set[str], table: dict) -> list[str]:
+    """What the table and the sources do not agree on, in both directions."""
+    allowed, exceptions = table["may_include"], table["exceptions"]["includes"]
+    found, used, excepted = [], set(), set()
+    for name, names in includes.items():
+        here = room_of(name)
+        for included in names:
+            there = room_of(included)
+            if here == there:
+                continue
+            against = ""
+            if there not in allowed.get(here, []):
+                against = f"{here} may not include {there}"
+            elif included in private:
+                against = f"that header is private to {there}"
+            used.add((here, there))
+            line = f"{name} -> {included}"
+            if against and line in exceptions:
+                excepted.add(line)
+            elif against:
+                found.append(f'{name}: includes "{included}"; {against}')
+    rooms = {room_of(name) for name in includes}
+    found += [f"src/{room}: has no line in tools/layers.toml" for room in sorted(rooms - set(allowed))]
+    found += [f"tools/layers.toml: there is no folder src/{room}" for room in sorted(set(allowed) - rooms)]
+    found += [f"tools/layers.toml: no file of {here} includes {there}; take the permission out"
+              for here in allowed for there in allowed[here] if here in rooms and (here, there) not in used]
+    found += [f"tools/layers.toml: the exception {line} is needed no more; take it out"
+              for line in exceptions if line not in excepted]
+    return found
+
+
+def defects(root: pathlib.Path) -> list[str]:
+    table = tomllib.loads((root / "tools/layers.toml").read_text(encoding="utf-8"))
+    src = root / "src"
+    texts = {p.relative_to(src).as_posix(): p.read_text(encoding="utf-8") for p in sorted(src.rglob("*.[ch]pp"))}
+    private = {name for name, text in texts.items() if name.endswith(".hpp") and is_private(name, text)}
+    includes: dict[str, list[str]] = {}
+    found = []
+    for name, text in texts.items():
+        own = [included for bracket, included in INCLUDE.findall(text) if bracket == '"' or included in texts]
+        found += [f'{name}: include "{i}" from the src root, by room' for i in own if i not in texts]
+        includes[name] = [i for i in own if i in texts]
+    found += include_defects(includes, private, table)
+    found += third_party_defects(texts)
+    for of, what in ((table["may_include"], "the table allows"), (includes, "files include")):
+        if around := circle(of):
+            found.append(f"a circle of what {what}: {' -> '.join([*around, around[0]])}")
     return found
 
 
 if __name__ == "__main__":
-    problems = defects(pathlib.Path(__file__).resolve().parent.parent / "src")
+    problems = defects(pathlib.Path(sys.argv[1]) if sys.argv[1:] else pathlib.Path(__file__).resolve().parent.parent)
     print("\n".join(problems) if problems else "layers: in order")
     sys.exit(1 if problems else 0)

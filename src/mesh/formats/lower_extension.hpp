@@ -1,4 +1,4 @@
-// What a file's name says of its format. Private to this room.
+// What a file's name says of its format.
 #pragma once
 
 #include <algorithm>
