@@ -3,7 +3,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
-#include "scene/given.hpp"
+#include "scene/run.hpp"
 
 #include <exception>
 #include <memory>

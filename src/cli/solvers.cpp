@@ -1,5 +1,7 @@
 #include "cli/solvers.hpp"
 
+#include "scene/solve_scene.hpp"
+
 #ifdef COAPT_HAS_CGAL
 #include "mesh/cgal/intersections_cgal.hpp"
 #endif
@@ -18,7 +20,7 @@
 namespace coapt::cli {
 
 SolverTable all_solvers() {
-  SolverTable solvers = built_in_solvers();
+  SolverTable solvers = scene_solvers();
 #ifdef COAPT_HAS_CERES
   add_ceres_solver(solvers);
 #endif

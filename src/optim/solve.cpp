@@ -8,7 +8,6 @@
 #include "optim/path_following.hpp"
 #include "optim/solver.hpp"
 #include "optim/stationary_point.hpp"
-#include "optim/xpbd/solver_xpbd.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -303,8 +302,7 @@ SolverTable built_in_solvers() {
   return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
           {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
           {"dynamic", [](const SolverOptions& options) { return make_dynamic(options); }},
-          {"newton", [](const SolverOptions& options) { return make_newton(options); }},
-          {"xpbd", [](const SolverOptions& options) { return make_xpbd(options); }}};
+          {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
 }
 
 }  // namespace coapt

@@ -7,7 +7,6 @@
 #include "optim/certificate.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
 #include "optim/factorisation.hpp"
-#include "optim/xpbd/options.hpp"
 
 #include <functional>
 #include <map>
@@ -152,6 +151,7 @@ enum class Globalisation {
 };
 
 struct XpbdBody;
+struct XpbdOptions;
 
 // What solvers may be told; each takes what concerns it.
 struct SolverOptions {
@@ -162,7 +162,7 @@ struct SolverOptions {
   DynamicOptions dynamic = {};
   std::function<TriangleMesh()> surface =
       {};  // at rest, over all nodes; asked for by collisions of `dynamic`
-  XpbdOptions xpbd = {};
+  std::shared_ptr<const XpbdOptions> xpbd = {};  // null: its defaults
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
   std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
 };
@@ -170,8 +170,8 @@ struct SolverOptions {
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this library: "newton", "lbfgs", "bfgs", "dynamic", "xpbd". Adapters add themselves
-// (add_ceres_solver, ...).
+// The solvers of this room: "newton", "lbfgs", "bfgs", "dynamic". Others add themselves (add_xpbd_solver,
+// add_ceres_solver, ...).
 SolverTable built_in_solvers();
 
 }  // namespace coapt

@@ -2,12 +2,12 @@
 
 #include "core/error.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/finish_run.hpp"
 #include "scene/detail/method_list.hpp"
 #include "scene/discretisation.hpp"
 #include "scene/frames.hpp"
 #include "scene/refining.hpp"
 #include "scene/report_page.hpp"
+#include "scene/run_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

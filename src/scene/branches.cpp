@@ -1,6 +1,7 @@
 #include "scene/branches.hpp"
 
 #include "mesh/generators/random_source.hpp"
+#include "scene/run_parts.hpp"
 #include "scene/solve_scene.hpp"
 
 #include <algorithm>
@@ -189,7 +190,7 @@ void search_branches(const Scene& scene, const SolverTable& solvers, const RunOp
     report.fields.undetermined = undetermined_flags(report.result.certificate.free_nodes, report.branches,
                                                     run.model.objective->node_count());
   }
-  if (!run.folder.empty()) write_results(run.folder, run.model, report);
+  if (!run.folder.empty()) write_run(run);
 }
 
 }  // namespace coapt

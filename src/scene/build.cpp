@@ -1,7 +1,7 @@
 #include "scene/build.hpp"
 
 #include "core/error.hpp"
-#include "scene/detail/given_parts.hpp"
+#include "scene/build_parts.hpp"
 #include "scene/fibres.hpp"
 #include "scene/groundwork.hpp"
 #include "scene/supports.hpp"

@@ -1,30 +1,13 @@
 // Mesh cascade: the scene is solved on coarser meshes first, and each shape found starts the next.
 #pragma once
 
+#include "scene/cascade_level.hpp"
 #include "scene/groundwork.hpp"
 
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace coapt {
-
-struct CascadeLevel {
-  int triangles = 0;
-  int iterations = 0;
-  Status status = Status::Converged;
-  double residual = 0;           // relative, on its own mesh
-  double wall_s = 0, cpu_s = 0;  // of coarsening, building and solving
-};
-
-struct CascadeOutcome {
-  // On the scene's own mesh. Times and the seconds of the trace include all levels; iterations, evaluations
-  // and the trace are those of this mesh, and phase "coarse_levels" holds the time of the others.
-  Result result;
-  std::vector<CascadeLevel> levels;  // coarsest first, the scene's own mesh last; alone: none was coarser
-  std::vector<std::string> warnings;
-};
 
 // Makes a solver for a model; methods that move masses need to know what they are.
 using SolverMaker = std::function<std::unique_ptr<Solver>(const Model& model)>;

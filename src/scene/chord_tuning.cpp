@@ -6,7 +6,7 @@
 #include "scene/build.hpp"
 #include "scene/chord_tuning_approach.hpp"
 #include "scene/chord_tuning_goal.hpp"
-#include "scene/detail/finish_run.hpp"
+#include "scene/run_parts.hpp"
 #include "scene/scene_text.hpp"
 #include "scene/tracked_scene.hpp"
 #include "sensitivity/line_access.hpp"

@@ -2,7 +2,7 @@
 
 #include "core/timing.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/given_parts.hpp"
+#include "scene/build_parts.hpp"
 #include "sensitivity/target_attraction.hpp"
 
 #include <algorithm>

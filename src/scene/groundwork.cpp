@@ -4,7 +4,7 @@
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_io.hpp"
 #include "mesh/rim_order.hpp"
-#include "scene/detail/given_parts.hpp"
+#include "scene/build_parts.hpp"
 #include "scene/interventions/intervention.hpp"
 #include "scene/node_selection.hpp"
 #include "scene/supports.hpp"

@@ -1,7 +1,8 @@
 #include "core/error.hpp"
+#include "optim/xpbd/options.hpp"
 #include "scene/detail/read_json.hpp"
 #include "scene/detail/read_parameters.hpp"
-#include "scene/given.hpp"
+#include "scene/in_memory.hpp"
 #include "scene/interventions/intervention.hpp"
 #include "scene/scene.hpp"
 #include "scene/units.hpp"
@@ -253,8 +254,9 @@ SolverSpec solver_from(const Parameters& values) {
     solver.continuation.first_stiffness = continuation.number("first_stiffness");
   }
   if (values.has("dynamics")) solver.dynamic = dynamics_from(values.object("dynamics"));
-  if (values.has("xpbd")) solver.xpbd = xpbd_from(values.object("xpbd"));
-  solver.xpbd.threads = solver.threads;
+  XpbdOptions xpbd = values.has("xpbd") ? xpbd_from(values.object("xpbd")) : XpbdOptions{};
+  xpbd.threads = solver.threads;
+  solver.xpbd = std::make_shared<const XpbdOptions>(xpbd);
   solver.cascade = values.flag("cascade");
   if (values.has("certificate")) solver.modes = values.object("certificate").integer("modes");
   return solver;

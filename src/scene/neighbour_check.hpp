@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
-#include "scene/cascade.hpp"
+#include "scene/cascade_level.hpp"
 
 #include <string>
 #include <vector>

@@ -9,7 +9,6 @@
 #include "scene/detail/csv_text.hpp"
 #include "scene/detail/json_text.hpp"
 #include "scene/result_surfaces.hpp"
-#include "scene/solve_page.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -349,7 +348,7 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
   prepare_result_folder(folder);
   write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
   const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
-                 mesh = folder / "closed.obj", page = folder / "report.html";
+                 mesh = folder / "closed.obj";
   write_or_remove(has_line(report), line,
                   [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
   write_or_remove(has_orifice(report), orifice,
@@ -359,7 +358,6 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
     closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
     write_mesh(mesh, closed);
   });
-  write_or_remove(report.has_page, page, [&] { formats::write_whole(page, solve_page(model, report)); });
   formats::write_whole(folder / "trace.csv", trace_csv(report.result));
   formats::write_whole(folder / "metrics.csv", metrics_csv(report));
   // Last: where it is, the others are.

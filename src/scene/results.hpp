@@ -1,10 +1,10 @@
 // Writes what a solve found: result.json, closed.vtp, closed.obj, trace.csv, metrics.csv; for a valve also
-// coaptation_line.vtp and orifice.vtp; and report.html, where it is wanted.
+// coaptation_line.vtp and orifice.vtp.
 #pragma once
 
 #include "scene/accuracy_estimate.hpp"
 #include "scene/branch_report.hpp"
-#include "scene/cascade.hpp"
+#include "scene/cascade_level.hpp"
 #include "scene/metrics.hpp"
 #include "scene/neighbour_check.hpp"
 #include "scene/reference_distance.hpp"
@@ -43,16 +43,16 @@ std::string pressure_route(const Model& model, const Result& result);
 // The text of result.json; its schema is result_schema(). Numbers that are not finite become null.
 std::string result_json(const Model& model, const Report& report);
 
-// Names of the files that write_results makes of the report.
+// Names of all files of the report, with its page and its frames.
 std::vector<std::string> result_files(const Model& model, const Report& report);
 
 // Creates the folder where it is missing and throws InputError when nothing can be written into it; called
-// before a long solve, it saves the user the disappointment after.
+// before a long solve, so that an unwritable folder is found before it.
 void prepare_result_folder(const std::filesystem::path& folder);
 
-// Writes all files into the folder; each appears under its name only when it is whole. closed.vtp holds the
-// mesh and the lines in the coordinates of the input; positions are in mm.
-// Throws InputError when a file cannot be written.
+// Writes these files into the folder; each appears under its
+// name only when it is whole. closed.vtp holds the mesh and the lines in the coordinates of the input;
+// positions are in mm. Throws InputError when a file cannot be written.
 void write_results(const std::filesystem::path& folder, const Model& model, const Report& report);
 
 }  // namespace coapt

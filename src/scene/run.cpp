@@ -1,10 +1,11 @@
 #include "scene/run.hpp"
 
+#include "mesh/formats/whole_file.hpp"
 #include "optim/smallest_modes.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/finish_run.hpp"
 #include "scene/frames.hpp"
 #include "scene/groundwork.hpp"
+#include "scene/run_parts.hpp"
 #include "scene/shape_view.hpp"
 #include "scene/solve_page.hpp"
 #include "scene/solve_scene.hpp"
@@ -73,7 +74,17 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
     report.warnings.insert(report.warnings.begin(), warning);
-  if (options.writes) write_results(run.folder, model, report);
+  if (options.writes) write_run(run);
+}
+
+void write_run(const RunReport& run) {
+  write_results(run.folder, run.model, run.report);
+  const std::filesystem::path page = run.folder / "report.html";
+  std::error_code ignored;
+  if (run.report.has_page)
+    formats::write_whole(page, solve_page(run.model, run.report));
+  else
+    std::filesystem::remove(page, ignored);  // of an earlier solve
 }
 
 void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,

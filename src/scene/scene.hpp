@@ -84,9 +84,9 @@ struct SolverSpec {
   Continuation continuation;
   int threads = 1;  // that assemble the Hessian
   DynamicOptions dynamic;
-  double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
-  XpbdOptions xpbd;
-  int modes = 0;  // smallest eigenvalues in the certificate
+  double density = 1.06e-9;                 // of membrane and lines, for methods that move masses [t/mm3]
+  std::shared_ptr<const XpbdOptions> xpbd;  // null: its defaults
+  int modes = 0;                            // smallest eigenvalues in the certificate
 };
 
 struct Scene {

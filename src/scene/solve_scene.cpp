@@ -1,6 +1,7 @@
 #include "scene/solve_scene.hpp"
 
 #include "core/error.hpp"
+#include "optim/xpbd/solver_xpbd.hpp"
 #include "scene/build.hpp"
 #include "scene/masses.hpp"
 #include "scene/suggestion.hpp"
@@ -62,6 +63,12 @@ StopRule stop_rule(const Scene& scene, const RunOptions& options) {
 }
 
 }  // namespace
+
+SolverTable scene_solvers() {
+  SolverTable solvers = built_in_solvers();
+  add_xpbd_solver(solvers);
+  return solvers;
+}
 
 SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   SolveSetup setup;

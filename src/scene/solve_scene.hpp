@@ -2,9 +2,12 @@
 #pragma once
 
 #include "scene/cascade.hpp"
-#include "scene/run.hpp"
+#include "scene/run_options.hpp"
 
 namespace coapt {
+
+// The solvers that a scene may name without an adapter: built_in_solvers() and "xpbd".
+SolverTable scene_solvers();
 
 // Method, stop rule and certificate, as the scene and the options together want them.
 struct SolveSetup {

@@ -1,9 +1,10 @@
 #include "scene/tracked_scene.hpp"
 
 #include "core/error.hpp"
+#include "scene/build_parts.hpp"
 #include "scene/chord_groups.hpp"
-#include "scene/detail/given_parts.hpp"
 #include "scene/detail/scene_numbers.hpp"
+#include "scene/run_parts.hpp"
 #include "scene/suggestion.hpp"
 #include "scene/term_types.hpp"
 #include "sensitivity/dead_load.hpp"

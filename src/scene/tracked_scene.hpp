@@ -1,7 +1,7 @@
 // A scene as an equilibrium that is followed while named parameters change.
 #pragma once
 
-#include "scene/given.hpp"
+#include "scene/in_memory.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 
 #include <memory>

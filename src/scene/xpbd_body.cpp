@@ -8,6 +8,7 @@
 #include "energy/kernels/spring.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/kernels/tether_cubic.hpp"
+#include "optim/xpbd/options.hpp"
 #include "scene/contact_pairs.hpp"
 
 #include <algorithm>
@@ -207,7 +208,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
 }
 
 bool xpbd_moves_the_scene_itself(const Scene& scene) {
-  const XpbdOptions& options = scene.solver.xpbd;
+  const XpbdOptions options = scene.solver.xpbd ? *scene.solver.xpbd : XpbdOptions{};
   return options.stiffness == XpbdStiffness::Material && options.forces == XpbdForces::Scene &&
          options.phase == HeartPhase::Systole &&
          std::none_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {

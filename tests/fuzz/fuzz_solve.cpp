@@ -2,6 +2,7 @@
 // iterates the energy does not rise where it is one and the same.
 #include "fuzz/fuzz_target.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/stress/energy_judge.hpp"
 #include "scene/stress/small_scene.hpp"
 
@@ -22,7 +23,7 @@ void run_target(std::string_view bytes) {
   RunOptions options;
   options.writes = false;
   options.max_seconds = 10;
-  RunReport found = run(scene, built_in_solvers(), options);
+  RunReport found = run(scene, scene_solvers(), options);
   const Result& result = found.report.result;
   require(result.q.allFinite(), "positions are finite");
   require(!result.message.empty(), "the status has a sentence");

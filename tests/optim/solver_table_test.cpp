@@ -21,10 +21,9 @@
 namespace coapt {
 namespace {
 
-// Without xpbd, which needs a body of constraints (xpbd_test.cpp). masses: of the nodes, for dynamic.
+// masses: of the nodes, for dynamic.
 SolverTable all_solvers(int node_count = 0) {
   SolverTable table = built_in_solvers();
-  table.erase("xpbd");
   table["dynamic"] = [node_count, make = table.at("dynamic")](SolverOptions options) {
     options.masses = [node_count] { return Vector(Vector::Constant(node_count, 0.01)); };
     options.dynamic = {.time_step = 0.05, .relaxation_time = 0.1};

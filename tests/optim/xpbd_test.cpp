@@ -182,7 +182,7 @@ struct Weight {
 
   SolverOptions options() const {
     SolverOptions options;
-    options.xpbd = with_step(0.005);
+    editable(options.xpbd) = with_step(0.005);
     options.masses = [] { return Vector(Vector::Constant(2, 2e-6)); };
     options.xpbd_body = [rest = X] { return std::make_shared<const XpbdBody>(chain_body(rest, 10, 0.05)); };
     return options;
@@ -192,8 +192,7 @@ struct Weight {
     const auto objective = this->objective();
     StopRule stop;
     stop.tolerance = tolerance;
-    return solve(*built_in_solvers().at("xpbd")(options), {*objective, objective->unknowns(X)}, stop,
-                 observer);
+    return solve(*make_xpbd(options), {*objective, objective->unknowns(X)}, stop, observer);
   }
 
   Points X;
@@ -221,7 +220,7 @@ TEST(SolverXpbd, SaysThatItIsAtRestWhereTheResidualIsNotReached) {
   EXPECT_NE(result.message.find("at rest after"), std::string::npos) << result.message;
   EXPECT_NEAR(result.q[2], -10 - 0.02 / 0.06, 1e-4);
 
-  options.xpbd.steps = 3;
+  editable(options.xpbd).steps = 3;
   const Result cut = weight.run(options);
   EXPECT_EQ(cut.status, Status::Stalled);
   EXPECT_NE(cut.message.find("still moving after 3 steps"), std::string::npos) << cut.message;
@@ -238,8 +237,8 @@ TEST(SolverXpbd, RunsTwiceToTheSameBits) {
 TEST(SolverXpbd, TurnsTheForcesRoundInDiastole) {
   const Weight weight;
   SolverOptions options = weight.options();
-  options.xpbd.phase = HeartPhase::Diastole;
-  options.xpbd.steps = 20;
+  editable(options.xpbd).phase = HeartPhase::Diastole;
+  editable(options.xpbd).steps = 20;
   const Result result = weight.run(options);
   double lowest = 0;
   weight.run(options, 1e-6, [&](const Iteration&, const Vector& q) {
@@ -256,8 +255,8 @@ TEST(SolverXpbd, TurnsTheForcesRoundInDiastole) {
 TEST(SolverXpbd, IsNotConvergedWhileItMoves) {
   const Weight weight;
   SolverOptions options = weight.options();
-  options.xpbd = with_step(5e-5);
-  options.xpbd.damping = 0;
+  editable(options.xpbd) = with_step(5e-5);
+  editable(options.xpbd).damping = 0;
   const Result whole = weight.run(options, 1e-9);
   // Of the first swing.
   const auto end = whole.trace.begin() + 400;
@@ -266,18 +265,17 @@ TEST(SolverXpbd, IsNotConvergedWhileItMoves) {
   });
   ASSERT_LT(least->residual, 0.01);
   const double tolerance = 1.2 * least->residual;
-  options.xpbd.steps = least->iteration;
+  editable(options.xpbd).steps = least->iteration;
   const Result out_of_steps = weight.run(options, tolerance);
   EXPECT_EQ(out_of_steps.residual, least->residual);
   EXPECT_EQ(out_of_steps.status, Status::Stalled) << out_of_steps.message;
 
-  options.xpbd.steps = 2000;
+  editable(options.xpbd).steps = 2000;
   const auto objective = weight.objective();
   StopRule stop;
   stop.tolerance = tolerance;
   stop.max_iterations = least->iteration;
-  const Result limited =
-      solve(*built_in_solvers().at("xpbd")(options), {*objective, objective->unknowns(weight.X)}, stop);
+  const Result limited = solve(*make_xpbd(options), {*objective, objective->unknowns(weight.X)}, stop);
   EXPECT_EQ(limited.status, Status::IterationLimit) << limited.message;
 }
 
@@ -288,9 +286,9 @@ TEST(SolverXpbd, TakesThePrescribedMotionStepByStepAndBackInDiastole) {
   Segments links(2, 2);
   links << 0, 1, 1, 2;
   SolverOptions options;
-  options.xpbd = with_step(0.005);
-  options.xpbd.steps = 400;
-  options.xpbd.motion_time = 0.5;  // 100 steps
+  editable(options.xpbd) = with_step(0.005);
+  editable(options.xpbd).steps = 400;
+  editable(options.xpbd).motion_time = 0.5;  // 100 steps
   options.masses = [] { return Vector(Vector::Constant(3, 1e-6)); };
   options.xpbd_body = [&] { return std::make_shared<const XpbdBody>(chain_body(X, 1, 0.05)); };
   const MotionPath motion{1, [&](double t) {
@@ -300,16 +298,15 @@ TEST(SolverXpbd, TakesThePrescribedMotionStepByStepAndBackInDiastole) {
                             return x;
                           }};
   for (const HeartPhase phase : {HeartPhase::Systole, HeartPhase::Diastole}) {
-    options.xpbd.phase = phase;
+    editable(options.xpbd).phase = phase;
     Objective objective(X, fixed_nodes(3, {0, 2}), terms_of(cable_term(links, 0.05, Vector::Ones(2))));
     std::vector<Vec3> places;
     StopRule stop;
-    const Result result =
-        solve(*built_in_solvers().at("xpbd")(options), {objective, objective.unknowns(X), motion}, stop,
-              [&](const Iteration&, const Vector& q) {
-                places.push_back(objective.positions(q).col(2));
-                return true;
-              });
+    const Result result = solve(*make_xpbd(options), {objective, objective.unknowns(X), motion}, stop,
+                                [&](const Iteration&, const Vector& q) {
+                                  places.push_back(objective.positions(q).col(2));
+                                  return true;
+                                });
     ASSERT_GT(places.size(), 100U);
     EXPECT_EQ(places[0], X.col(2));
     EXPECT_NEAR((places[50] - Vec3(2.5, 0.75, 0)).norm(), 0, 1e-12);
@@ -340,12 +337,12 @@ std::string refusal(const SolverOptions& options) {
 TEST(SolverXpbd, RefusesWhatItCannotUse) {
   const SolverOptions good = Weight().options();
   SolverOptions bad = good;
-  bad.xpbd = {
+  editable(bad.xpbd) = {
       .time_step = -1, .iterations = 0, .steps = 0, .motion_time = 0, .damping = 1.5, .thickness = -1};
-  bad.xpbd.threads = 0;
-  bad.xpbd.motion_time = kNaN;
-  bad.xpbd.paper.stretch = 2;
-  bad.xpbd.paper.flow = -1;
+  editable(bad.xpbd).threads = 0;
+  editable(bad.xpbd).motion_time = kNaN;
+  editable(bad.xpbd).paper.stretch = 2;
+  editable(bad.xpbd).paper.flow = -1;
   const std::string all = refusal(bad);
   for (const char* key : {"time_step", "iterations", "steps", "damping", "thickness", "threads",
                           "motion_time", "paper.stretch", "paper.flow"})
@@ -361,10 +358,10 @@ TEST(SolverXpbd, RefusesWhatItCannotUse) {
   few_masses.masses = [] { return Vector(Vector::Ones(1)); };
   EXPECT_NE(refusal(few_masses).find("one positive mass for each of 2 nodes"), std::string::npos);
   SolverOptions no_annulus = good;
-  no_annulus.xpbd.forces = XpbdForces::Paper;
+  editable(no_annulus.xpbd).forces = XpbdForces::Paper;
   EXPECT_NE(refusal(no_annulus).find("annulus"), std::string::npos);
   SolverOptions no_pressure = good;
-  no_pressure.xpbd.stiffness = XpbdStiffness::Paper;
+  editable(no_pressure.xpbd).stiffness = XpbdStiffness::Paper;
   EXPECT_NE(refusal(no_pressure).find("no pressure"), std::string::npos);
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class BenchFixture : public testing::Test {
   }
 
   static SolverTable solvers() {
-    SolverTable table = built_in_solvers();
+    SolverTable table = scene_solvers();
     table["idle"] = [](const SolverOptions&) { return std::make_unique<IdleSolver>(); };
     table["broken"] = [](const SolverOptions&) -> std::unique_ptr<Solver> {
       throw InputError("it is broken, <b>really</b>");

@@ -4,6 +4,7 @@
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/build.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -44,9 +45,9 @@ class BranchesOfAScene : public testing::Test {
   Branches found(const Scene& scene, const BranchSearch& search) {
     RunOptions options;
     options.writes = false;
-    RunReport report = run(scene, built_in_solvers(), options);
+    RunReport report = run(scene, scene_solvers(), options);
     EXPECT_EQ(report.report.result.status, Status::Converged) << report.report.result.message;
-    return find_branches(scene, built_in_solvers(), options, search, report);
+    return find_branches(scene, scene_solvers(), options, search, report);
   }
 
   TemporaryFolder folder_;
@@ -101,10 +102,10 @@ TEST_F(BranchesOfAScene, WritesThemIntoEveryFileOfTheResult) {
   const Scene scene = pyramid();
   RunOptions options;
   options.folder = folder_.path() / "result";
-  RunReport report = run(scene, built_in_solvers(), options);
+  RunReport report = run(scene, scene_solvers(), options);
   EXPECT_EQ(text_of(options.folder / "metrics.csv").find("others_lowest"), std::string::npos);
   EXPECT_EQ(text_of(options.folder / "closed.vtp").find("branch_spread"), std::string::npos);
-  search_branches(scene, built_in_solvers(), options, {.starts = 12, .kick = 0.5, .seed = 1}, report);
+  search_branches(scene, scene_solvers(), options, {.starts = 12, .kick = 0.5, .seed = 1}, report);
   ASSERT_TRUE(report.report.branches.has_value());
   const BranchRange* range = range_of(report.report.branches, "max_displacement_mm");
   ASSERT_NE(range, nullptr);
@@ -137,12 +138,12 @@ TEST_F(BranchesOfAScene, SaysWhereTheyWereNotLookedFor) {
   const Scene scene = blown_disc();
   RunOptions options;
   options.writes = false;
-  RunReport report = run(scene, built_in_solvers(), options);
-  search_branches(scene, built_in_solvers(), options, {.starts = 0}, report);
+  RunReport report = run(scene, scene_solvers(), options);
+  search_branches(scene, scene_solvers(), options, {.starts = 0}, report);
   EXPECT_FALSE(report.report.branches.has_value());
   EXPECT_TRUE(report.report.warnings.empty());
   report.report.result.status = Status::Stalled;
-  search_branches(scene, built_in_solvers(), options, {.starts = 1}, report);
+  search_branches(scene, scene_solvers(), options, {.starts = 1}, report);
   EXPECT_FALSE(report.report.branches.has_value());
   ASSERT_EQ(report.report.warnings.size(), 1u);
   EXPECT_NE(report.report.warnings[0].find("No other equilibria"), std::string::npos);
@@ -208,11 +209,11 @@ TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
   const Scene scene = blown_disc();
   RunOptions options;
   options.writes = false;
-  RunReport report = run(scene, built_in_solvers(), options);
+  RunReport report = run(scene, scene_solvers(), options);
   int iterates = 0;
   options.observer = [&iterates](const Iteration&, const Vector&) { return ++iterates < 2; };
   const Branches branches =
-      find_branches(scene, built_in_solvers(), options, {.starts = 5, .kick = 0.2}, report);
+      find_branches(scene, scene_solvers(), options, {.starts = 5, .kick = 0.2}, report);
   EXPECT_LT(branches.starts, 5);
   EXPECT_EQ(branches.equilibria.size(), 1u);
 }

@@ -5,6 +5,7 @@
 #include "energy/kernels/bending.hpp"
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -114,7 +115,7 @@ TEST_F(BuildTest, RefusesBendingWithoutAStiffness) {
 
 TEST_F(BuildTest, SolvesTheDiscToARoundedDome) {
   const Model model = build_disc(kDiscTerms, kHeldRim);
-  const auto solver = built_in_solvers().at("lbfgs")({});
+  const auto solver = scene_solvers().at("lbfgs")({});
   const Result result = solve(*solver, {*model.objective, model.q0, model.motion}, {.tolerance = 1e-6});
   EXPECT_EQ(result.status, Status::Converged) << result.message;
   const double height = model.objective->positions(result.q)(2, 0);
@@ -130,7 +131,7 @@ TEST_F(BuildTest, S2SolvesAlikeFarFromTheOrigin) {
     moved.vertices.colwise() += offset;
     write_mesh(folder_.path() / "disc.obj", moved);
     const Model model = build_disc(kDiscTerms, kHeldRim);
-    const auto newton = built_in_solvers().at("newton")({});
+    const auto newton = scene_solvers().at("newton")({});
     const Result result = solve(*newton, {*model.objective, model.q0, model.motion}, {.tolerance = 1e-10});
     EXPECT_EQ(result.status, Status::Converged) << result.message;
     const Points x = model.objective->positions(result.q);

@@ -72,7 +72,7 @@ class CarriedValues : public testing::Test {
     throw std::logic_error("no such term");
   }
 
-  static SolveSetup setup(const Scene& scene) { return solve_setup(scene, built_in_solvers(), {}); }
+  static SolveSetup setup(const Scene& scene) { return solve_setup(scene, scene_solvers(), {}); }
 
   TemporaryFolder folder_;
   TriangleMesh mesh_;
@@ -110,7 +110,7 @@ TEST_F(CarriedValues, LetAMeshStudyConvergeHoweverTheFibresAreKnown) {
   for (const char* fibres :
        {R"({"file": "fibres.csv"})",
         R"({"defaults": "none", "directions": [{"nodes": [0], "direction": [1, 0.5, 0]}]})"}) {
-    const MeshStudy study = study_mesh(scene(200, fibres), built_in_solvers(), 2, {});
+    const MeshStudy study = study_mesh(scene(200, fibres), scene_solvers(), 2, {});
     ASSERT_EQ(study.levels.size(), 3u);
     EXPECT_TRUE(study.has_converged()) << fibres;
     ASSERT_TRUE(study.levels[2].order);
@@ -123,7 +123,7 @@ TEST_F(CarriedValues, LetAMeshStudyConvergeHoweverTheFibresAreKnown) {
   EXPECT_LT((finest[0].closed.vertices - finest[1].closed.vertices).cwiseAbs().maxCoeff(), 1e-6);
   const MeshStudy along = study_mesh(
       scene(200, R"({"defaults": "none", "directions": [{"nodes": [0, 1], "direction": "along"}]})"),
-      built_in_solvers(), 1, {});
+      scene_solvers(), 1, {});
   EXPECT_TRUE(along.has_converged());
 }
 
@@ -147,9 +147,9 @@ TEST_F(CarriedValues, AreMeansNearbyOnTheCoarserMeshesOfACascade) {
 TEST_F(CarriedValues, GiveTheSameAnswerWithACascade) {
   RunOptions options;
   options.writes = false;
-  const RunReport direct = run(scene(2500), built_in_solvers(), options),
-                  cascade = run(scene(2500, R"({})", true), built_in_solvers(), options),
-                  again = run(scene(2500, R"({})"), built_in_solvers(), options);
+  const RunReport direct = run(scene(2500), scene_solvers(), options),
+                  cascade = run(scene(2500, R"({})", true), scene_solvers(), options),
+                  again = run(scene(2500, R"({})"), scene_solvers(), options);
   const Result &a = cascade.report.result, &b = again.report.result;
   ASSERT_EQ(a.status, Status::Converged) << a.message;
   ASSERT_EQ(b.status, Status::Converged) << b.message;

@@ -7,6 +7,7 @@
 #include "scene/build.hpp"
 #include "scene/import.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/thinning.hpp"
 #include "support/sanitized.hpp"
@@ -52,9 +53,9 @@ TEST_F(CascadeTest, FindsTheEquilibriumOfTheDirectSolve) {
   Scene scene = this->scene();
   RunOptions options;
   options.writes = false;
-  const RunReport cascade = run(scene, built_in_solvers(), options);
+  const RunReport cascade = run(scene, scene_solvers(), options);
   scene.solver.cascade = false;
-  const RunReport direct = run(scene, built_in_solvers(), options);
+  const RunReport direct = run(scene, scene_solvers(), options);
   const Result &a = cascade.report.result, &b = direct.report.result;
   ASSERT_EQ(a.status, Status::Converged) << a.message;
   ASSERT_EQ(b.status, Status::Converged) << b.message;

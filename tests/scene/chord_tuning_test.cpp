@@ -8,6 +8,7 @@
 #include "scene/import.hpp"
 #include "scene/reference_distance.hpp"
 #include "scene/scene_text.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "support/minimisers.hpp"
 
@@ -68,7 +69,7 @@ class ChordTuningTest : public testing::Test {
     const std::string text = with_interventions(scene_text(scene()), edits, "scene.json");
     RunOptions options;
     options.writes = false;
-    const RunReport solved = run(parse_scene(text, scene()), built_in_solvers(), options);
+    const RunReport solved = run(parse_scene(text, scene()), scene_solvers(), options);
     EXPECT_EQ(solved.report.result.status, Status::Converged);
     TriangleMesh surface = surface_at(solved.model, solved.report.fields.x);
     surface.vertices.colwise() += solved.model.origin;
@@ -77,7 +78,7 @@ class ChordTuningTest : public testing::Test {
   }
 
   ChordTuning tuned(const ChordTuningOptions& options) {
-    ChordTuning found = tune_chords(scene(), built_in_solvers(), minimisers(), options, run_);
+    ChordTuning found = tune_chords(scene(), scene_solvers(), minimisers(), options, run_);
     std::printf("%s %s: rms %.2e to %.2e mm, %d solves (%d rejected, %d lost), %.2f s\n",
                 found.method.c_str(), found.tuning.message.c_str(), found.misfit_before(),
                 found.misfit_after(), found.solves, found.tuning.failed, found.tuning.lost_branches,
@@ -227,7 +228,7 @@ TEST_F(ChordTuningTest, TheTunedSceneIsTheTunedShape) {
     EXPECT_TRUE(fs::exists(run_.folder / file)) << file;
   RunOptions alone;
   alone.writes = false;
-  const RunReport again = run(load_scene(run_.folder / "tuned.json"), built_in_solvers(), alone);
+  const RunReport again = run(load_scene(run_.folder / "tuned.json"), scene_solvers(), alone);
   ASSERT_EQ(again.report.result.status, Status::Converged);
   // Of the leaflets: junctions of slack chords have no place.
   const auto leaflets = [](const RunReport& run) {

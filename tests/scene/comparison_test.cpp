@@ -9,7 +9,9 @@
 #include "scene/import.hpp"
 #include "scene/scene_text.hpp"
 #include "scene/shape_view.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
+#include "support/xpbd_bodies.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -63,7 +65,7 @@ Points mirrored(Points x) {
 }
 
 SolverTable solvers() {
-  SolverTable table = built_in_solvers();
+  SolverTable table = scene_solvers();
   table["trust_region"] = [](SolverOptions options) {
     options.globalisation = Globalisation::TrustRegion;
     return make_newton(options);
@@ -205,7 +207,7 @@ TEST_F(ComparisonTest, NamesTwoBranchesAndTheirEnergies) {
 // The constraints of a chain are its energy: what is left is no gap between models.
 TEST_F(ComparisonTest, XpbdOnTheScenesOwnEnergyIsJudgedAsAnyMethod) {
   Scene scene = load_scene(fs::path(COAPT_SOURCE_DIR) / "examples/03_catenary/scene.json");
-  scene.solver.xpbd.steps = 300;
+  editable(scene.solver.xpbd).steps = 300;
   const Comparison stiff = compare(scene, {"newton", "xpbd"});
   EXPECT_EQ(stiff.methods[1].model, MethodModel::Scene);
   EXPECT_EQ(stiff.methods[1].verdict, Verdict::NotConverged) << stiff.methods[1].message;

@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "support/sheets.hpp"
 
@@ -21,7 +22,7 @@ class ContactSceneTest : public testing::Test {
     RunOptions options;
     options.writes = false;
     options.factorisations = {{"cholmod", best_factorisation()}, {"eigen", make_eigen_factorisation}};
-    return run(scene_of(text), built_in_solvers(), options);
+    return run(scene_of(text), scene_solvers(), options);
   }
 
   // What a scene is refused for.

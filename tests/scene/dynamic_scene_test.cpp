@@ -5,6 +5,7 @@
 #include "scene/build.hpp"
 #include "scene/masses.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ TEST_F(DynamicScene, RefusesASceneWithoutMass) {
 }
 
 TEST_F(DynamicScene, EndsWhereNewtonDoesAndWritesFrames) {
-  const RunReport newton = run(scene(R"({"tolerance": 1e-9})"), built_in_solvers());
+  const RunReport newton = run(scene(R"({"tolerance": 1e-9})"), scene_solvers());
   ASSERT_EQ(newton.report.result.status, Status::Converged);
   for (const std::string dynamics :
        {R"({"time_step": "0.2 ms"})", R"({"kinetic_damping": true, "relaxation_time": "0 s"})",
@@ -95,7 +96,7 @@ TEST_F(DynamicScene, EndsWhereNewtonDoesAndWritesFrames) {
     const RunReport dynamic =
         run(scene(R"({"type": "dynamic", "tolerance": 1e-9, "dynamics": )" + dynamics + "}",
                   R"(, "output": {"frames": 5})"),
-            built_in_solvers());
+            scene_solvers());
     const Result& result = dynamic.report.result;
     ASSERT_EQ(result.status, Status::Converged) << dynamics << result.message;
     EXPECT_LT((result.q - newton.report.result.q).cwiseAbs().maxCoeff(), 2e-5) << dynamics;  // 1e-6 of 20 mm
@@ -115,7 +116,7 @@ TEST_F(DynamicScene, EndsWhereNewtonDoesAndWritesFrames) {
     EXPECT_NE(text("result/trace.csv").find(",time_s\n"), std::string::npos);
   }
   // The frames of an earlier solve do not stay.
-  run(scene(R"({"tolerance": 1e-9})"), built_in_solvers());
+  run(scene(R"({"tolerance": 1e-9})"), scene_solvers());
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "result/frames.pvd"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "result/frames"));
 }
@@ -128,7 +129,7 @@ TEST_F(DynamicScene, KeepsOneTimeOverAMovingRim) {
               {"type": "load_pressure", "value": "1 kPa"}],
     "motion": {"steps": 3}, "output": {"frames": 1},
     "solver": {"type": "dynamic", "tolerance": 1e-6}})"));
-  const RunReport report = run(rim, built_in_solvers());
+  const RunReport report = run(rim, scene_solvers());
   const Result& result = report.report.result;
   ASSERT_EQ(result.status, Status::Converged) << result.message;
   for (size_t k = 1; k < result.trace.size(); ++k)

@@ -4,6 +4,7 @@
 #include "mesh/generators/shapes.hpp"
 #include "mesh/mesh_io.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "support/meshes.hpp"
 #include "support/sheets.hpp"
@@ -36,7 +37,7 @@ class ExtremeScene : public testing::Test {
     RunOptions options;
     options.writes = false;
     options.factorisations = {{"auto", best_factorisation()}};
-    RunReport found = run(load_scene(folder_.write("scene.json", scene)), built_in_solvers(), options);
+    RunReport found = run(load_scene(folder_.write("scene.json", scene)), scene_solvers(), options);
     const Result& result = found.report.result;
     std::printf("S25 %s: %s, %d iterations\n", name.c_str(), result.message.c_str(), result.iterations);
     EXPECT_TRUE(result.q.allFinite()) << name;

@@ -11,6 +11,7 @@
 #include "scene/import.hpp"
 #include "scene/result_surfaces.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/thinning.hpp"
 #include "scene/valve_json.hpp"
@@ -247,7 +248,7 @@ TEST_F(MitralFibresTest, ClosesOnChordsMadeByTheScene) {
   ASSERT_EQ(model.sets.at("papillary").size(), 8u);
   RunOptions options;
   options.writes = false;
-  const RunReport run = coapt::run(generated, built_in_solvers(), options);
+  const RunReport run = coapt::run(generated, scene_solvers(), options);
   EXPECT_EQ(run.report.result.status, Status::Converged) << run.report.result.message;
   EXPECT_LE(run.report.result.residual, 1e-8);
   ASSERT_TRUE(run.report.metrics.orifice_area_percent);

@@ -4,6 +4,7 @@
 #include "mesh/mesh_io.hpp"
 #include "scene/run.hpp"
 #include "scene/shape_view.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "support/counted_allocations.hpp"
 
@@ -35,7 +36,7 @@ class SceneFrugality : public CountedAllocations {
       seen.push_back(allocations().bytes);
       return true;
     };
-    report_ = run(scene_, built_in_solvers(), options).report;
+    report_ = run(scene_, scene_solvers(), options).report;
     EXPECT_EQ(report_.result.status, Status::Converged);
     EXPECT_GT(seen.size(), 4u);
     long most = 0;

@@ -8,6 +8,7 @@
 #include "scene/build.hpp"
 #include "scene/check.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/valve_json.hpp"
 
@@ -219,7 +220,7 @@ TEST(Import, MakesTheRelaxedMitralValveSolvable) {
     EXPECT_EQ(valve.closed_reference->triangles, valve.leaflets.triangles);
     RunOptions options;
     options.writes = false;
-    const RunReport report = run(load_scene(folder.path() / "scene.json"), built_in_solvers(), options);
+    const RunReport report = run(load_scene(folder.path() / "scene.json"), scene_solvers(), options);
     EXPECT_EQ(report.report.result.status, Status::Converged) << size;
     EXPECT_LE(report.report.result.iterations, 60) << size;
   }

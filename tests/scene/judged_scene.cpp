@@ -22,7 +22,7 @@ long JudgedScene::pairs_in_contact() const {
 JudgedScene solve_judged(const Scene& scene) {
   RunOptions options;
   options.factorisations = {{"cholmod", best_factorisation()}, {"eigen", make_eigen_factorisation}};
-  SolveSetup setup = solve_setup(scene, built_in_solvers(), options);
+  SolveSetup setup = solve_setup(scene, scene_solvers(), options);
   JudgedScene judged;
   const Model* level = nullptr;  // whose iterates the observer sees
   setup.make_solver = [&, make = setup.make_solver](const Model& model) {

@@ -37,7 +37,7 @@ class RegionTuningTest : public testing::Test {
   // Tunes the scene, and solves it anew from its own start with the factors that were found.
   void expect_tuned(const Scene& scene, double yield) {
     options_.yield_strain = yield;
-    const RegionTuning found = tune_regions(scene, built_in_solvers(), options_, {});
+    const RegionTuning found = tune_regions(scene, scene_solvers(), options_, {});
     std::printf("%s: strain %.4f to %.4f, %d chords beyond yield at first, %d solves (%d failed), %.2f s\n",
                 found.message.c_str(), found.before.max_chord_strain, found.after.max_chord_strain,
                 found.before.strained_chords, found.solves, found.failed_solves, found.wall_s);
@@ -56,7 +56,7 @@ class RegionTuningTest : public testing::Test {
     const Scene anew = tuned.scene(factors);
     Model model = build(anew, tuned.ground);
     const Result result =
-        solve_scene(anew, tuned.ground, model, solve_setup(anew, built_in_solvers(), {})).result;
+        solve_scene(anew, tuned.ground, model, solve_setup(anew, scene_solvers(), {})).result;
     ASSERT_EQ(result.status, Status::Converged) << result.message;
     const Points x = model.objective->positions(result.q);
     double most = 0;

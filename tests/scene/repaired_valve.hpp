@@ -8,6 +8,7 @@
 #include "scene/import.hpp"
 #include "scene/run.hpp"
 #include "scene/scene_text.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ class RepairedValve : public testing::Test {
   RunReport solved(const Scene& scene) const {
     RunOptions options;
     options.writes = false;
-    return run(scene, built_in_solvers(), options);
+    return run(scene, scene_solvers(), options);
   }
 
   TemporaryFolder folder_;

@@ -10,6 +10,7 @@
 #include "scene/build.hpp"
 #include "scene/import.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ TEST_P(TissueValve, Closes) {
   const Scene scene = load_scene(folder.write("tissue.json", text));
   RunOptions options;
   options.writes = false;
-  const RunReport report = run(scene, built_in_solvers(), options);
+  const RunReport report = run(scene, scene_solvers(), options);
   const Result& result = report.report.result;
   std::printf("%s: %d iterations, residual %.1e, orifice %.1f mm2\n", GetParam().name, result.iterations,
               result.residual, report.report.metrics.orifice_area_mm2.value_or(-1));

@@ -3,6 +3,7 @@
 
 #include "scene/bench_fixture.hpp"
 #include "scene/scene_parameter.hpp"
+#include "scene/solve_scene.hpp"
 #include "sensitivity/metrics_state.hpp"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ class TrackedSceneTest : public BenchFixture {
     RunOptions options;
     options.tolerance = 1e-11;
     const auto solved = [&](const SceneParameter& key, double factor) {
-      const TrackedScene other = track(scaled(scene, key, factor), built_in_solvers(), options);
+      const TrackedScene other = track(scaled(scene, key, factor), scene_solvers(), options);
       EXPECT_EQ(other.first.status, Status::Converged);
       return metric.evaluate(other.equilibrium->positions(), nullptr);
     };
@@ -75,7 +76,7 @@ TEST_F(TrackedSceneTest, NamedParametersAreThoseOfTheScene) {
   const Scene given = scene();
   RunOptions options;
   options.tolerance = 1e-11;
-  TrackedScene tracked = track(given, built_in_solvers(), options, {.tolerance = 1e-11});
+  TrackedScene tracked = track(given, scene_solvers(), options, {.tolerance = 1e-11});
   ASSERT_EQ(tracked.first.status, Status::Converged);
   const std::vector<std::string> names = {"left.stiffness", "left.thickness", "right.stiffness",
                                           "right.thickness"};
@@ -98,7 +99,7 @@ TEST_F(TrackedSceneTest, AnyNumberOfAnElasticTermIsAParameter) {
   given = scaled(given, find_parameter(given, "net.length_scale"), 0.99);
   RunOptions options;
   options.tolerance = 1e-11;
-  TrackedScene tracked = track(given, built_in_solvers(), options, {.tolerance = 1e-11});
+  TrackedScene tracked = track(given, scene_solvers(), options, {.tolerance = 1e-11});
   TrackedEquilibrium& equilibrium = *tracked.equilibrium;
   ASSERT_EQ(tracked.first.status, Status::Converged);
   const std::vector<std::string> keys = {"left.poisson", "right.poisson", "left.young", "net.young",
@@ -138,7 +139,7 @@ TEST_F(TrackedSceneTest, ChordsOfATipAreAGroup) {
   const Scene given =
       load_scene(std::filesystem::path(COAPT_SOURCE_DIR) / "examples/01_mitral_valve/scene.json");
   const auto derivatives = [&](const std::vector<std::string>& names, Vector& value) {
-    TrackedScene tracked = track(given, built_in_solvers(), {}, {.tolerance = 1e-9});
+    TrackedScene tracked = track(given, scene_solvers(), {}, {.tolerance = 1e-9});
     for (const std::string& name : names)
       tracked.equilibrium->add(make_named_parameter(name, given, tracked));
     EXPECT_EQ(tracked.equilibrium->settle().status, Status::Converged);
@@ -156,7 +157,7 @@ TEST_F(TrackedSceneTest, ChordsOfATipAreAGroup) {
   EXPECT_NEAR(by_tip.sum(), single.dot(lengths), 1e-6 * by_tip.cwiseAbs().sum());
   EXPECT_GT(by_tip.cwiseAbs().minCoeff(), 1);
   EXPECT_GT(std::abs(by_material[0]), 1);
-  TrackedScene tracked = track(given, built_in_solvers(), {});
+  TrackedScene tracked = track(given, scene_solvers(), {});
   tracked.equilibrium->add(make_named_parameter("tip_0.length", given, tracked));
   const std::string said =
       refusal([&] { tracked.equilibrium->add(make_named_parameter("chords.lengths", given, tracked)); });
@@ -165,13 +166,13 @@ TEST_F(TrackedSceneTest, ChordsOfATipAreAGroup) {
 
 // Every step solves with the exact tangent.
 TEST_F(TrackedSceneTest, GivenTermsNeedAHessian) {
-  const std::string said = refusal([&] { track(scene(), {.has_hessians = false}, built_in_solvers(), {}); });
+  const std::string said = refusal([&] { track(scene(), {.has_hessians = false}, scene_solvers(), {}); });
   EXPECT_NE(said.find("has no Hessian"), std::string::npos) << said;
 }
 
 TEST_F(TrackedSceneTest, NamesAreListedAndOthersRefused) {
   const Scene given = scene();
-  TrackedScene tracked = track(given, built_in_solvers(), {});
+  TrackedScene tracked = track(given, scene_solvers(), {});
   const std::vector<std::string> names = parameter_names(tracked);
   for (const char* name : {"net.lengths", "net.length", "left.thickness", "pressure.pressure"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;

@@ -8,8 +8,10 @@
 #include "scene/import.hpp"
 #include "scene/judged_scene.hpp"
 #include "scene/run.hpp"
+#include "scene/solve_scene.hpp"
 #include "scene/temporary_folder.hpp"
 #include "support/sanitized.hpp"
+#include "support/xpbd_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +60,7 @@ TEST_P(ValveModels, ClosesInTimeAsWithoutIt) {
   for (const char* solver : {"newton", "lbfgs", "dynamic"}) {
     RunOptions how;
     how.writes = false;
-    const RunReport done = run(valve("none", solver, 1e-8), built_in_solvers(), how);
+    const RunReport done = run(valve("none", solver, 1e-8), scene_solvers(), how);
     const Result& result = done.report.result;
     std::printf("%s, %s: %d iterations, residual %.1e, energy %.6f mJ, orifice %.2f of %.1f mm2\n",
                 GetParam().c_str(), solver, result.iterations, result.residual, result.energy,
@@ -103,8 +105,8 @@ TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
         const bool is_static = solver != std::string("xpbd");
         scene.solver.type = solver;
         scene.solver.cascade = solver == std::string("newton");
-        scene.solver.xpbd.steps = 400;
-        if (triangles > 5000) scene.solver.xpbd.thickness = 0.2;  // edges are 0.4 mm long
+        editable(scene.solver.xpbd).steps = 400;
+        if (triangles > 5000) editable(scene.solver.xpbd).thickness = 0.2;  // edges are 0.4 mm long
         const JudgedScene judged = solve_judged(scene);
         const std::string name = model + ", " + solver + ", " + std::to_string(triangles);
         if (is_static)

@@ -6,6 +6,7 @@
 #include "scene/build.hpp"
 #include "scene/temporary_folder.hpp"
 #include "scene/xpbd_body.hpp"
+#include "support/xpbd_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -155,7 +156,7 @@ TEST_F(XpbdBodyTest, IsExactWhereOnlyLinesAndFilmsAreLeft) {
   build_with(lines);
   EXPECT_TRUE(body_->is_exact);
   EXPECT_TRUE(xpbd_moves_the_scene_itself(scene_));
-  XpbdOptions& options = scene_.solver.xpbd;
+  XpbdOptions& options = editable(scene_.solver.xpbd);
   options.phase = HeartPhase::Diastole;
   EXPECT_FALSE(xpbd_moves_the_scene_itself(scene_));
   options = {};
@@ -208,7 +209,7 @@ TEST_F(XpbdBodyTest, ReadsItsOptionsFromTheScene) {
     "forces": "paper", "phase": "diastole", "motion_time": "50 ms", "paper": {"stretch": 0.2, "bending": 0.3,
     "area": 0.4, "tether": 0.5, "contact": 0.6, "compliance": 2e-5, "flow": 60, "pressure": 90}}}})",
                                  folder_.path() / "other.json");
-  const XpbdOptions& options = read.solver.xpbd;
+  const XpbdOptions& options = *read.solver.xpbd;
   EXPECT_EQ(read.solver.type, "xpbd");
   EXPECT_EQ(options.time_step, 0.002);
   EXPECT_EQ(options.iterations, 3);
@@ -234,10 +235,10 @@ TEST_F(XpbdBodyTest, ReadsItsOptionsFromTheScene) {
 // w 50, p 100, 5 ms, alpha 1e-5, h 0.5 mm; 20 sweeps, or 3.
 TEST_F(XpbdBodyTest, HasTheNumbersOfThePaper) {
   build_with(R"({"type": "surface_tension", "tension": "1 N/mm"})");
-  const XpbdOptions defaults, fallback = parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [
+  const XpbdOptions defaults, fallback = *parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [
     {"type": "surface_tension", "tension": "1 N/mm"}], "solver": {"xpbd": {"stiffness": "paper", "paper": {}}}})",
-                                                     folder_.path() / "other.json")
-                                             .solver.xpbd;
+                                                      folder_.path() / "other.json")
+                                              .solver.xpbd;
   EXPECT_EQ(fallback.time_step, defaults.time_step);
   EXPECT_EQ(fallback.iterations, defaults.iterations);
   EXPECT_EQ(fallback.steps, defaults.steps);

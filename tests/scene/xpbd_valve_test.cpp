@@ -22,7 +22,7 @@ namespace {
 Scene xpbd_scene(const TemporaryFolder& folder, const XpbdOptions& options) {
   Scene scene = load_scene(folder.path() / "scene.json");
   scene.solver.type = "xpbd";
-  scene.solver.xpbd = options;
+  scene.solver.xpbd = std::make_shared<const XpbdOptions>(options);
   return scene;
 }
 
@@ -87,7 +87,7 @@ TEST_F(XpbdValve, TheAnnulusGoesWithThePhasesAndTheOrificeOpensAgain) {
   const Scene scene = xpbd_scene(folder_, options);
   const Groundwork ground = lay_groundwork(scene);
   Model model = build(scene, ground);
-  SolveSetup setup = solve_setup(scene, built_in_solvers(), {});
+  SolveSetup setup = solve_setup(scene, scene_solvers(), {});
   std::vector<Points> states;
   setup.observer = [&](const Iteration&, const Vector& q) {
     states.push_back(model.objective->positions(q));

@@ -3,11 +3,20 @@
 
 #include "energy/objective.hpp"
 #include "mesh/triangle_mesh.hpp"
+#include "optim/xpbd/options.hpp"
 #include "optim/xpbd/system.hpp"
 
+#include <memory>
 #include <random>
 
 namespace coapt {
+
+// Options of xpbd that may be changed: a copy, which takes the place of those that are shared.
+inline XpbdOptions& editable(std::shared_ptr<const XpbdOptions>& options) {
+  const auto copy = std::make_shared<XpbdOptions>(options ? *options : XpbdOptions{});
+  options = copy;
+  return *copy;
+}
 
 // Edges, areas, hinges and a film of a sheet; stiffness of each kind.
 inline XpbdBody sheet_body(const TriangleMesh& mesh, double stretch, double area, double bending,

@@ -66,7 +66,9 @@ class CollisionFreeSteps {
 class SolverXpbd final : public Solver {
  public:
   explicit SolverXpbd(const SolverOptions& options)
-      : options_(options.xpbd), body_of_scene_(options.xpbd_body), masses_of_scene_(options.masses) {
+      : options_(options.xpbd ? *options.xpbd : XpbdOptions{}),
+        body_of_scene_(options.xpbd_body),
+        masses_of_scene_(options.masses) {
     std::vector<std::string> defects = check_xpbd_options(options_);
     for (std::string& defect : defects) defect = "solver \"xpbd\": " + defect;
     if (!defects.empty()) throw InputError(std::move(defects));
@@ -260,5 +262,7 @@ std::vector<std::string> check_xpbd_options(const XpbdOptions& options) {
 std::unique_ptr<Solver> make_xpbd(const SolverOptions& options) {
   return std::make_unique<SolverXpbd>(options);
 }
+
+void add_xpbd_solver(SolverTable& table) { table["xpbd"] = make_xpbd; }
 
 }  // namespace coapt

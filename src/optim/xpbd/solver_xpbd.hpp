@@ -29,6 +29,9 @@ namespace coapt {
 // Throws InputError with all defects where an option is out of range.
 std::unique_ptr<Solver> make_xpbd(const SolverOptions& options);
 
+// Adds "xpbd".
+void add_xpbd_solver(SolverTable& table);
+
 // What is wrong with these options, one text per defect, by the keys of the scene; empty: nothing.
 std::vector<std::string> check_xpbd_options(const XpbdOptions& options);
 

@@ -2,8 +2,8 @@
 
 #include "scene/benchmark_summary.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/finish_run.hpp"
 #include "scene/detail/method_list.hpp"
+#include "scene/run_parts.hpp"
 
 namespace coapt {
 namespace {

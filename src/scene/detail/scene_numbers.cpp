@@ -1,7 +1,7 @@
 #include "scene/detail/scene_numbers.hpp"
 
 #include "core/error.hpp"
-#include "scene/detail/given_parts.hpp"
+#include "scene/build_parts.hpp"
 #include "sensitivity/line_access.hpp"
 #include "sensitivity/term_number.hpp"
 

@@ -1,12 +1,14 @@
-// What the files of the studies share. Private to this room.
+// What the files of the studies share.
 #pragma once
 
-#include "scene/region_tuning.hpp"
-#include "scene/sensitivity.hpp"
+#include "scene/reference_distance.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <optional>
 #include <sstream>
+#include <string>
 
 namespace coapt {
 

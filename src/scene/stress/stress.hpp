@@ -4,6 +4,7 @@
 
 #include "scene/run.hpp"
 #include "scene/solve_page.hpp"
+#include "scene/solve_scene.hpp"
 
 #include <functional>
 #include <optional>
@@ -66,11 +67,11 @@ struct StressMatrix {
 };
 
 struct StressOptions {
-  std::vector<std::string> rows;             // ids; empty: all
-  bool is_quick = false;                     // only the rows that take next to no time
-  double row_seconds = 20;                   // time limit of each solve [s]
-  std::filesystem::path folder;              // the built-in scenes are written into a folder here
-  SolverTable solvers = built_in_solvers();  // "newton" and "lbfgs" are used where they are there
+  std::vector<std::string> rows;          // ids; empty: all
+  bool is_quick = false;                  // only the rows that take next to no time
+  double row_seconds = 20;                // time limit of each solve [s]
+  std::filesystem::path folder;           // the built-in scenes are written into a folder here
+  SolverTable solvers = scene_solvers();  // "newton" and "lbfgs" are used where they are there
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
   IntersectionJudge judge;
   // Solves the scene file in a process of its own and writes the results into the folder, within so many

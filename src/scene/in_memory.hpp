@@ -2,7 +2,8 @@
 // of its own, a shape to start from. The Python module is made of this.
 #pragma once
 
-#include "scene/run.hpp"
+#include "scene/model.hpp"
+#include "scene/scene.hpp"
 
 #include <functional>
 #include <memory>
@@ -31,10 +32,5 @@ struct Given {
 
 // As parse_scene(), of a scene without the key `mesh`, whose mesh will be given.
 Scene parse_scene_around_mesh(const std::string& text, const std::filesystem::path& path);
-
-// As run(scene, solvers, options), with what is given. Throws InputError also for a start with another number
-// of nodes or with coordinates that are not finite, for a given term that has the name of another one, and
-// for given terms together with a cascade, whose coarser meshes they do not know.
-RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options);
 
 }  // namespace coapt

@@ -1,9 +1,7 @@
-#include "scene/given.hpp"
-
 #include "core/error.hpp"
 #include "scene/build.hpp"
-#include "scene/detail/finish_run.hpp"
-#include "scene/detail/given_parts.hpp"
+#include "scene/build_parts.hpp"
+#include "scene/run_parts.hpp"
 
 namespace coapt {
 
