@@ -6,9 +6,9 @@
 // valve: the generated mitral valve, open. sheets: two sheets one above the other at 0.3 edges, as when
 // closed. floor: a sheet over two triangles as large as itself.
 #include "energy/contact/box_hierarchy.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "support/meshes.hpp"
+#include "valve/generators/mitral.hpp"
 
 #include <benchmark/benchmark.h>
 #include <nanoflann.hpp>

@@ -3,7 +3,7 @@
 // moves; `colliding`: pairs on their way to a collision.
 #include "energy/contact/collision_detection.hpp"
 
-#include "mesh/triangle_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -5,12 +5,12 @@
 //   gradient   derivatives() at a settled shape by all chord lengths; numbers:1 by papillary tips, annulus,
 //              thickness and pressure too; numbers:2 by the rest position of each vertex too
 //   cold_ms    CPU time of the solve from the open state, measured once in the same run
-#include "sensitivity/line_lengths.hpp"
-#include "sensitivity/metrics_state.hpp"
-#include "sensitivity/prescribed_positions.hpp"
-#include "sensitivity/pressure_value.hpp"
-#include "sensitivity/reference_positions.hpp"
-#include "sensitivity/stiffness_factor.hpp"
+#include "sensitivity/metrics/metrics_state.hpp"
+#include "sensitivity/parameters/line_lengths.hpp"
+#include "sensitivity/parameters/prescribed_positions.hpp"
+#include "sensitivity/parameters/pressure_value.hpp"
+#include "sensitivity/parameters/reference_positions.hpp"
+#include "sensitivity/parameters/stiffness_factor.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 #include "support/valve_scene.hpp"
 

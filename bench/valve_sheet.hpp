@@ -3,7 +3,7 @@
 
 #include "energy/element_term.hpp"
 #include "energy/objective.hpp"
-#include "mesh/generators/mitral.hpp"
+#include "valve/generators/mitral.hpp"
 
 namespace coapt::bench {
 

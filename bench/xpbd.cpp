@@ -1,8 +1,8 @@
 // Time of one step of xpbd on the generated valve as it closes: membrane, bending and chords, with and
 // without contact, by sweeps per step and threads. The first 200 steps of a closure, again and again.
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "support/xpbd_bodies.hpp"
+#include "valve/generators/mitral.hpp"
 
 #include <benchmark/benchmark.h>
 

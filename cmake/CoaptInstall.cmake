@@ -9,8 +9,8 @@ string(REGEX REPLACE "/$" "" coapt_prefix_of_pkgconfig "${coapt_prefix_of_pkgcon
 
 # What else a consumer must find and link: whatever is private to a static library goes to the final link.
 set(coapt_finds_core Eigen3)
-set(coapt_requires_core eigen3)
-get_target_property(coapt_type coapt TYPE)
+set(coapt_requires_core "")
+get_target_property(coapt_type coapt_room_core TYPE)
 if(coapt_type STREQUAL "STATIC_LIBRARY")
   if(COAPT_HAS_PUGIXML)
     list(APPEND coapt_finds_core pugixml)
@@ -31,28 +31,56 @@ if(coapt_type STREQUAL "STATIC_LIBRARY")
   set(coapt_libs_nlopt "-lnlopt")
 endif()
 
-# coapt_install_library(<component> <target> <pkg-config name> <description> <modules it requires>...)
-function(coapt_install_library component target name description)
-  install(TARGETS ${target} EXPORT coapt-${component}
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/coapt COMPONENT ${component})
-  install(EXPORT coapt-${component} NAMESPACE coapt:: FILE coapt-${component}-targets.cmake
-          DESTINATION ${coapt_config_dir} COMPONENT ${component})
-  string(REPLACE ";" ", " modules "${ARGN}")
-  string(STRIP "-l${target} ${coapt_libs_${component}}" libraries)
+# coapt_pkg_config(<component> <file name> <description> LIBRARIES <in the order of the linker> REQUIRES <modules>)
+function(coapt_pkg_config component name description)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;REQUIRES" ${ARGN})
+  string(REPLACE ";" ", " modules "${ARG_REQUIRES}")
+  list(TRANSFORM ARG_LIBRARIES PREPEND "-l")
+  string(REPLACE ";" " " libraries "${ARG_LIBRARIES}")
+  string(STRIP "${libraries} ${coapt_libs_${component}}" libraries)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/coapt.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${coapt_pkgconfig_dir} COMPONENT ${component})
 endfunction()
 
-coapt_install_library(core coapt coapt "${PROJECT_DESCRIPTION} (compile as C++20)" ${coapt_requires_core})
+# coapt_install_libraries(<component> <targets>...)
+function(coapt_install_libraries component)
+  foreach(target IN LISTS ARGN)
+    get_target_property(type ${target} TYPE)
+    set(headers FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/coapt COMPONENT ${component})
+    if(type STREQUAL "INTERFACE_LIBRARY")
+      set(headers "")
+    endif()
+    install(TARGETS ${target} EXPORT coapt-${component}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+            ${headers})
+  endforeach()
+  install(EXPORT coapt-${component} NAMESPACE coapt:: FILE coapt-${component}-targets.cmake
+          DESTINATION ${coapt_config_dir} COMPONENT ${component})
+endfunction()
+
+list(TRANSFORM COAPT_ROOMS PREPEND coapt_room_ OUTPUT_VARIABLE coapt_room_targets)
+list(TRANSFORM COAPT_CORE_ROOMS PREPEND coapt_ OUTPUT_VARIABLE coapt_core_libraries)
+coapt_pkg_config(core coapt "${PROJECT_DESCRIPTION} (compile as C++20)"
+                 LIBRARIES ${coapt_core_libraries} REQUIRES eigen3)
+if(COAPT_HAS_JSON)
+  coapt_install_libraries(core ${coapt_room_targets} coapt coapt_scene)
+  set(libraries ${COAPT_ROOMS})
+  list(REMOVE_ITEM libraries ${COAPT_CORE_ROOMS})
+  list(TRANSFORM libraries PREPEND coapt_)
+  coapt_pkg_config(core coapt-scene "Scene files of Coapt, valves and their results (compile as C++20)"
+                   LIBRARIES ${libraries} REQUIRES "coapt = ${PROJECT_VERSION}" ${coapt_requires_core})
+else()
+  coapt_install_libraries(core ${coapt_room_targets} coapt)
+endif()
 set(coapt_adapters "")
 foreach(adapter IN ITEMS cgal cholmod ceres nlopt)
   if(TARGET coapt_${adapter})
     list(APPEND coapt_adapters ${adapter})
     string(TOUPPER ${adapter} upper)
-    coapt_install_library(${adapter} coapt_${adapter} coapt-${adapter}
-                          "Adapter of Coapt: ${COAPT_GIVES_${upper}}" "coapt = ${PROJECT_VERSION}")
+    coapt_install_libraries(${adapter} coapt_${adapter})
+    coapt_pkg_config(${adapter} coapt-${adapter} "Adapter of Coapt: ${COAPT_GIVES_${upper}}"
+                     LIBRARIES coapt_${adapter} REQUIRES "coapt = ${PROJECT_VERSION}")
   endif()
 endforeach()
 

@@ -21,9 +21,10 @@ function(coapt_library target)
   coapt_warnings(${target})
 endfunction()
 
-# coapt_room(<target> HEADERS <files> SOURCES <files>): the files of one folder. With COAPT_UNITY_BUILD eight sources
-# of the list, in its order, are one translation unit; a source with flags of its own stays one by itself.
-function(coapt_room target)
+# coapt_sources(<target> HEADERS <files> SOURCES <files>): files of one folder; the headers are installed. With
+# COAPT_UNITY_BUILD eight sources of the list, in its order, are one translation unit; a source with flags of its own
+# stays one by itself.
+function(coapt_sources target)
   cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES" ${ARGN})
   list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
@@ -32,6 +33,32 @@ function(coapt_room target)
   if(COAPT_UNITY_BUILD)
     coapt_unite(${target} 8 ${ARG_SOURCES})
   endif()
+endfunction()
+
+# coapt_room(<room> DEPENDS <rooms> HEADERS <files> SOURCES <files>): the library coapt_room_<room> of src/<room>, or
+# more files of it. It links the rooms that it depends on, and those that they depend on.
+function(coapt_room room)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;HEADERS;SOURCES" ${ARGN})
+  set(target coapt_room_${room})
+  if(NOT TARGET ${target})
+    add_library(${target})
+    add_library(coapt::room_${room} ALIAS ${target})
+    coapt_library(${target} EXPORT_AS room_${room})
+    set_target_properties(${target} PROPERTIES OUTPUT_NAME coapt_${room})
+    target_link_libraries(${target} PUBLIC Eigen3::Eigen)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    if(room IN_LIST COAPT_CORE_ROOMS OR room STREQUAL "xpbd" OR room STREQUAL "valve")
+      coapt_reuse_headers(${target} coapt_headers)
+    else()
+      if(COAPT_HAS_JSON)
+        target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+      endif()
+      coapt_reuse_headers(${target} coapt_scene_headers)
+    endif()
+  endif()
+  list(TRANSFORM ARG_DEPENDS PREPEND coapt_room_)
+  target_link_libraries(${target} PUBLIC ${ARG_DEPENDS})
+  coapt_sources(${target} HEADERS ${ARG_HEADERS} SOURCES ${ARG_SOURCES})
 endfunction()
 
 # coapt_unite(<target> <size> <sources>): groups of so many, named after the folder and the first source.
@@ -61,8 +88,26 @@ function(coapt_link_adapters target)
   endforeach()
 endfunction()
 
-# coapt_precompile(<target> <headers>): where the build asks for it. Never for includes to rely on; the
-# preset `separate` builds without.
+# coapt_precompiled_headers(<name> <headers>): third-party headers, parsed once for all rooms that reuse them, where the
+# build asks for it. Never for includes to rely on; the preset `separate` builds without.
+function(coapt_precompiled_headers name)
+  if(COAPT_PRECOMPILED_HEADERS)
+    file(CONFIGURE OUTPUT ${name}.cpp CONTENT "")
+    add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+    target_compile_features(${name} PUBLIC cxx_std_20)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(${name} PRIVATE Eigen3::Eigen)
+    coapt_warnings(${name})
+    target_precompile_headers(${name} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+function(coapt_reuse_headers target from)
+  if(COAPT_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM ${from})
+  endif()
+endfunction()
+
 function(coapt_precompile target)
   if(COAPT_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} PRIVATE ${ARGN})

@@ -11,12 +11,14 @@ import tomllib
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 PRIVATE = re.compile(r"\bprivate to this (room|folder)\b", re.IGNORECASE)
+HEADERS = re.compile(r"\bHEADERS\s+(.*?)(?=SOURCES|\))", re.DOTALL)
 ALLOWED_IN_HEADERS = ("Eigen/", "unsupported/Eigen/")
 
 
-def room_of(name: str) -> str:
-    folders = name.split("/")[:-1]
-    return "/".join(folders[:-1] if folders[-1:] == ["detail"] else folders)
+def room_of(name: str, rooms: list[str] | dict) -> str:
+    """The longest of the table that the file lies in; else its first folder."""
+    own = [room for room in rooms if name.startswith(room + "/")]
+    return max(own, key=len) if own else name.split("/")[0]
 
 
 def is_private(name: str, text: str) -> bool:
@@ -41,14 +43,25 @@ def circle(follows: dict[str, list[str]]) -> list[str]:
     return next((found for name in sorted(follows) if (found := search(name, []))), [])
 
 
-def third_party_defects(texts: dict[str, str]) -> list[str]:
+def installed(src: pathlib.Path) -> set[str]:
+    """The headers that the lists of CMake call so."""
+    found = set()
+    for path in src.rglob("CMakeLists.txt"):
+        for names in HEADERS.findall(path.read_text(encoding="utf-8")):
+            found |= {(path.parent / name).resolve().relative_to(src.resolve()).as_posix() for name in names.split()}
+    return found
+
+
+def third_party_defects(texts: dict[str, str], public: set[str]) -> list[str]:
     found = []
     for name, text in texts.items():
-        if not name.endswith(".hpp") or "/detail/" in name or room_of(name) == "cli":
+        if name not in public:
             continue
         for bracket, included in INCLUDE.findall(text):
             if bracket == "<" and ("." in included or "/" in included) and not included.startswith(ALLOWED_IN_HEADERS):
                 found.append(f"{name}: a public header includes <{included}>; keep it in a source file")
+            elif bracket == '"' and included in texts and included not in public:
+                found.append(f'{name}: a public header includes "{included}", which is not installed')
     return found
 
 
@@ -57,9 +70,9 @@ def include_defects(includes: dict[str, list[str]], private: set[str], table: di
     allowed, exceptions = table["may_include"], table["exceptions"]["includes"]
     found, used, excepted = [], set(), set()
     for name, names in includes.items():
-        here = room_of(name)
+        here = room_of(name, allowed)
         for included in names:
-            there = room_of(included)
+            there = room_of(included, allowed)
             if here == there:
                 continue
             against = ""
@@ -73,7 +86,7 @@ def include_defects(includes: dict[str, list[str]], private: set[str], table: di
                 excepted.add(line)
             elif against:
                 found.append(f'{name}: includes "{included}"; {against}')
-    rooms = {room_of(name) for name in includes}
+    rooms = {room_of(name, allowed) for name in includes}
     found += [f"src/{room}: has no line in tools/layers.toml" for room in sorted(rooms - set(allowed))]
     found += [f"tools/layers.toml: there is no folder src/{room}" for room in sorted(set(allowed) - rooms)]
     found += [f"tools/layers.toml: no file of {here} includes {there}; take the permission out"
@@ -95,7 +108,7 @@ def defects(root: pathlib.Path) -> list[str]:
         found += [f'{name}: include "{i}" from the src root, by room' for i in own if i not in texts]
         includes[name] = [i for i in own if i in texts]
     found += include_defects(includes, private, table)
-    found += third_party_defects(texts)
+    found += third_party_defects(texts, installed(src))
     for of, what in ((table["may_include"], "the table allows"), (includes, "files include")):
         if around := circle(of):
             found.append(f"a circle of what {what}: {' -> '.join([*around, around[0]])}")

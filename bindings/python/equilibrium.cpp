@@ -3,7 +3,7 @@
 
 #include "cli/solvers.hpp"
 #include "input.hpp"
-#include "sensitivity/dead_load.hpp"
+#include "sensitivity/parameters/dead_load.hpp"
 
 #include <pybind11/stl.h>
 

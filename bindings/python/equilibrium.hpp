@@ -3,7 +3,7 @@
 
 #include "core/error.hpp"
 #include "module.hpp"
-#include "scene/tracked_scene.hpp"
+#include "tuning/tracked_scene.hpp"
 
 #include <memory>
 #include <optional>

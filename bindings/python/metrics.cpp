@@ -1,9 +1,9 @@
 // Figures of merit: those of the library, and the caller's own.
 #include "equilibrium.hpp"
-#include "sensitivity/metrics_contact.hpp"
-#include "sensitivity/metrics_orifice.hpp"
-#include "sensitivity/metrics_state.hpp"
-#include "sensitivity/metrics_surface.hpp"
+#include "sensitivity/metrics/metrics_contact.hpp"
+#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_state.hpp"
+#include "sensitivity/metrics/metrics_surface.hpp"
 
 #include <pybind11/stl.h>
 

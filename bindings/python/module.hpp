@@ -3,7 +3,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
-#include "scene/run.hpp"
+#include "run/run.hpp"
 
 #include <exception>
 #include <memory>

@@ -1,12 +1,12 @@
 // Scenes solved, and what comes out.
 #include "cli/solvers.hpp"
 #include "core/timing.hpp"
+#include "exchange/import.hpp"
 #include "input.hpp"
-#include "mesh/generators/mitral.hpp"
-#include "scene/branches.hpp"
-#include "scene/import.hpp"
-#include "scene/schema.hpp"
+#include "run/branches.hpp"
+#include "scene/file/schema.hpp"
 #include "solution.hpp"
+#include "valve/generators/mitral.hpp"
 
 #include <optional>
 #include <pybind11/stl.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "module.hpp"
-#include "scene/run.hpp"
+#include "run/run.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // --checkpoint, --checkpoint-every and --resume: a run that outlives its process.
 #pragma once
 
-#include "scene/checkpoint.hpp"
+#include "solve/checkpoint.hpp"
 
 #include <filesystem>
 #include <optional>

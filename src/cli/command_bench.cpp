@@ -5,9 +5,9 @@
 #include "cli/study_options.hpp"
 #include "cli/table_cell.hpp"
 #include "core/error.hpp"
-#include "mesh/formats/text.hpp"
-#include "scene/benchmark_report.hpp"
-#include "scene/benchmark_summary.hpp"
+#include "formats/text.hpp"
+#include "study/bench/benchmark_report.hpp"
+#include "study/bench/benchmark_summary.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "core/error.hpp"
-#include "scene/check.hpp"
-#include "scene/repair.hpp"
+#include "scene/build/check.hpp"
+#include "scene/build/repair.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,12 +1,12 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "core/error.hpp"
-#include "mesh/formats/lower_extension.hpp"
-#include "mesh/formats/utf8.hpp"
-#include "mesh/generators/leaflet_chords.hpp"
+#include "formats/json/valve_json.hpp"
+#include "formats/lower_extension.hpp"
+#include "formats/mesh_io.hpp"
+#include "formats/utf8.hpp"
 #include "mesh/mesh_check.hpp"
-#include "mesh/mesh_io.hpp"
-#include "scene/valve_json.hpp"
+#include "valve/generators/leaflet_chords.hpp"
 
 #include <CLI/CLI.hpp>
 

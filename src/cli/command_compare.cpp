@@ -4,7 +4,7 @@
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "cli/table_cell.hpp"
-#include "scene/comparison_report.hpp"
+#include "study/comparison_report.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 #include "core/error.hpp"
-#include "scene/export.hpp"
-#include "scene/markups.hpp"
+#include "exchange/export.hpp"
+#include "formats/json/markups.hpp"
 
 #include <CLI/CLI.hpp>
 

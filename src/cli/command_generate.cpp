@@ -2,12 +2,12 @@
 #include "cli/scene_arguments.hpp"
 #include "cli/shape_scenes.hpp"
 #include "core/error.hpp"
-#include "mesh/generators/mitral.hpp"
-#include "mesh/generators/rough_valve.hpp"
-#include "scene/closed_curve.hpp"
-#include "scene/import.hpp"
-#include "scene/markups.hpp"
-#include "scene/valve_models.hpp"
+#include "exchange/import.hpp"
+#include "exchange/valve_models.hpp"
+#include "formats/json/closed_curve.hpp"
+#include "formats/json/markups.hpp"
+#include "valve/generators/mitral.hpp"
+#include "valve/generators/rough_valve.hpp"
 
 #include <CLI/CLI.hpp>
 

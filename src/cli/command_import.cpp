@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
-#include "scene/import.hpp"
+#include "exchange/import.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -4,7 +4,7 @@
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "cli/table_cell.hpp"
-#include "scene/intervene.hpp"
+#include "study/intervene.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -3,7 +3,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "scene/mesh_study.hpp"
+#include "study/mesh_study.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 #include "cli/commands.hpp"
-#include "scene/result_schema.hpp"
-#include "scene/schema.hpp"
+#include "results/result_schema.hpp"
+#include "scene/file/schema.hpp"
 
 #include <CLI/CLI.hpp>
 

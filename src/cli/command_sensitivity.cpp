@@ -5,8 +5,8 @@
 #include "cli/study_options.hpp"
 #include "cli/table_cell.hpp"
 #include "core/error.hpp"
-#include "scene/sensitivity.hpp"
-#include "scene/units.hpp"
+#include "formats/json/units.hpp"
+#include "study/sensitivity.hpp"
 
 #include <CLI/CLI.hpp>
 

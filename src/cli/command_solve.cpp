@@ -6,9 +6,9 @@
 #include "cli/study_options.hpp"
 #include "core/components.hpp"
 #include "core/error.hpp"
-#include "scene/accuracy.hpp"
-#include "scene/branches.hpp"
-#include "scene/units.hpp"
+#include "formats/json/units.hpp"
+#include "run/branches.hpp"
+#include "study/bench/accuracy.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -5,8 +5,8 @@
 #include "cli/study_options.hpp"
 #include "cli/table_cell.hpp"
 #include "core/error.hpp"
-#include "mesh/formats/text.hpp"
-#include "scene/stress/stress_report.hpp"
+#include "formats/text.hpp"
+#include "stress/stress_report.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -5,7 +5,7 @@
 #include "cli/study_options.hpp"
 #include "cli/worker_pool.hpp"
 #include "core/error.hpp"
-#include "scene/parameter_study.hpp"
+#include "study/parameter_study.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -5,9 +5,9 @@
 #include "cli/study_options.hpp"
 #include "cli/tune_checkpoint.hpp"
 #include "core/error.hpp"
-#include "mesh/formats/text.hpp"
-#include "scene/chord_tuning.hpp"
-#include "scene/units.hpp"
+#include "formats/json/units.hpp"
+#include "formats/text.hpp"
+#include "tuning/chord_tuning.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -4,7 +4,7 @@
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
-#include "scene/region_tuning.hpp"
+#include "tuning/region_tuning.hpp"
 
 #include <CLI/CLI.hpp>
 

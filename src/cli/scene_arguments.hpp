@@ -1,7 +1,7 @@
 // The options that every command has which writes a valve's scene.
 #pragma once
 
-#include "scene/import.hpp"
+#include "exchange/import.hpp"
 
 #include <string>
 #include <vector>

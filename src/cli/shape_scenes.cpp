@@ -1,12 +1,12 @@
 #include "cli/shape_scenes.hpp"
 
 #include "core/error.hpp"
-#include "mesh/formats/whole_file.hpp"
-#include "mesh/generators/chain.hpp"
-#include "mesh/generators/shapes.hpp"
-#include "mesh/mesh_io.hpp"
-#include "scene/suggestion.hpp"
-#include "scene/valve_json.hpp"
+#include "formats/json/suggestion.hpp"
+#include "formats/json/valve_json.hpp"
+#include "formats/mesh_io.hpp"
+#include "formats/whole_file.hpp"
+#include "mesh/shapes.hpp"
+#include "valve/generators/chain.hpp"
 
 #include <cmath>
 #include <system_error>

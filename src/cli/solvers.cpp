@@ -1,6 +1,6 @@
 #include "cli/solvers.hpp"
 
-#include "scene/solve_scene.hpp"
+#include "solve/solve_scene.hpp"
 
 #ifdef COAPT_HAS_CGAL
 #include "mesh/cgal/intersections_cgal.hpp"

@@ -1,7 +1,7 @@
 // The solvers and judges of this build of the command.
 #pragma once
 
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "optim/bounded_minimiser.hpp"
 #include "optim/solver.hpp"
 

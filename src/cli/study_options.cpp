@@ -2,7 +2,7 @@
 
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
-#include "mesh/formats/text.hpp"
+#include "formats/text.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 // Options that every command with many solves has.
 #pragma once
 
-#include "scene/branches.hpp"
+#include "run/branches.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // --checkpoint, --checkpoint-every and --resume of `coapt tune`.
 #pragma once
 
-#include "scene/chord_tuning.hpp"
+#include "tuning/chord_tuning.hpp"
 
 #include <filesystem>
 #include <map>

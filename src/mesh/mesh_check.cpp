@@ -1,6 +1,6 @@
 #include "mesh/mesh_check.hpp"
 
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "mesh/mesh_topology.hpp"
 
 #include <Eigen/Geometry>

@@ -1,8 +1,8 @@
 // Watches one run for every solver alike: trace, stop rules, time by phase, counters, cancellation.
 #pragma once
 
-#include "optim/equilibrium_watch.hpp"
 #include "optim/solver.hpp"
+#include "optim/stability/equilibrium_watch.hpp"
 
 #include <optional>
 

@@ -1,8 +1,8 @@
 #include "optim/newton.hpp"
 
-#include "optim/gmres.hpp"
 #include "optim/line_search.hpp"
-#include "optim/shifted_hessian.hpp"
+#include "optim/linear/gmres.hpp"
+#include "optim/linear/shifted_hessian.hpp"
 #include "optim/worst_part.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "optim/path_following.hpp"
 
-#include "optim/branch_watch.hpp"
 #include "optim/carry_along.hpp"
+#include "optim/stability/branch_watch.hpp"
 
 #include <algorithm>
 #include <cmath>

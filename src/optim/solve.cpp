@@ -1,13 +1,13 @@
 #include "core/error.hpp"
 #include "optim/bfgs.hpp"
 #include "optim/dynamic/dynamic.hpp"
-#include "optim/film_size.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
 #include "optim/path_following.hpp"
 #include "optim/solver.hpp"
-#include "optim/stationary_point.hpp"
+#include "optim/stability/film_size.hpp"
+#include "optim/stability/stationary_point.hpp"
 
 #include <algorithm>
 #include <cmath>

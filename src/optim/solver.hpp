@@ -4,9 +4,9 @@
 #include "core/timing.hpp"
 #include "energy/objective.hpp"
 #include "mesh/triangle_mesh.hpp"
-#include "optim/certificate.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
-#include "optim/factorisation.hpp"
+#include "optim/linear/factorisation.hpp"
+#include "optim/stability/certificate.hpp"
 
 #include <functional>
 #include <map>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "energy/objective.hpp"
-#include "optim/factorisation.hpp"
-#include "optim/gmres.hpp"
+#include "optim/linear/factorisation.hpp"
+#include "optim/linear/gmres.hpp"
 
 namespace coapt {
 

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "optim/newton.hpp"
-#include "sensitivity/covariance.hpp"
+#include "sensitivity/metrics/covariance.hpp"
 
 #include <algorithm>
 #include <cmath>

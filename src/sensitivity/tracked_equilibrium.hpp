@@ -22,7 +22,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
-#include "sensitivity/metric.hpp"
+#include "sensitivity/metrics/metric.hpp"
 #include "sensitivity/nodal_tangent.hpp"
 #include "sensitivity/switches.hpp"
 #include "sensitivity/tangent_system.hpp"

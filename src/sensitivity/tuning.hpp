@@ -20,7 +20,7 @@
 #pragma once
 
 #include "optim/bounded_minimiser.hpp"
-#include "sensitivity/residual_set.hpp"
+#include "sensitivity/metrics/residual_set.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 
 #include <functional>

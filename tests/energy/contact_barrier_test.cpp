@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "energy/contact/pair_barrier.hpp"
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
 #include "support/term_suite.hpp"

@@ -1,8 +1,8 @@
 // OBJ, PLY, STL, OFF and VTP: every input is read as each of them. What is accepted keeps the promises of
 // read_mesh, is judged without an exception, and is read again as it was written.
 #include "core/error.hpp"
+#include "formats/formats.hpp"
 #include "fuzz/fuzz_target.hpp"
-#include "mesh/formats/formats.hpp"
 #include "mesh/mesh_check.hpp"
 
 namespace coapt::fuzz {

@@ -1,8 +1,8 @@
 // Abaqus input files and FEBio models, up to the valve that is made of them.
 #include "core/error.hpp"
+#include "formats/fe_readers.hpp"
+#include "formats/utf8.hpp"
 #include "fuzz/fuzz_target.hpp"
-#include "mesh/formats/fe_readers.hpp"
-#include "mesh/formats/utf8.hpp"
 
 namespace coapt::fuzz {
 namespace {

@@ -1,11 +1,11 @@
 // Markups of 3D Slicer, closed curves, pairs of facets, valve JSON and the tables that a scene names (numbers
 // of triangles and of vertices, fibres, forces, positions): every input is read as each of them.
+#include "formats/json/closed_curve.hpp"
+#include "formats/json/markups.hpp"
+#include "formats/json/valve_json.hpp"
 #include "fuzz/fuzz_target.hpp"
-#include "scene/build.hpp"
-#include "scene/closed_curve.hpp"
-#include "scene/contact_pairs.hpp"
-#include "scene/markups.hpp"
-#include "scene/valve_json.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/contact_pairs.hpp"
 
 namespace coapt::fuzz {
 namespace {

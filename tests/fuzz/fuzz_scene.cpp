@@ -1,8 +1,8 @@
 // Scene files: read, and where they are read, built and evaluated once.
 #include "core/error.hpp"
 #include "fuzz/fuzz_target.hpp"
-#include "scene/build.hpp"
-#include "scene/scene.hpp"
+#include "scene/build/build.hpp"
+#include "scene/file/scene.hpp"
 
 namespace coapt::fuzz {
 namespace {

@@ -1,10 +1,10 @@
 // Row S21: the solver on random tiny scenes. The result is finite and its status true, and between accepted
 // iterates the energy does not rise where it is one and the same.
 #include "fuzz/fuzz_target.hpp"
-#include "scene/run.hpp"
-#include "scene/solve_scene.hpp"
-#include "scene/stress/energy_judge.hpp"
-#include "scene/stress/small_scene.hpp"
+#include "run/run.hpp"
+#include "solve/solve_scene.hpp"
+#include "stress/energy_judge.hpp"
+#include "stress/scenes/small_scene.hpp"
 
 #include <cmath>
 

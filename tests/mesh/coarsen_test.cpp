@@ -1,8 +1,8 @@
-#include "mesh/coarsen.hpp"
+#include "mesh/remesh/coarsen.hpp"
 
 #include "mesh/mesh_check.hpp"
 #include "mesh/mesh_topology.hpp"
-#include "mesh/prolong.hpp"
+#include "mesh/remesh/prolong.hpp"
 #include "support/meshes.hpp"
 
 #include <Eigen/Geometry>

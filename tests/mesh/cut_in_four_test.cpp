@@ -1,4 +1,4 @@
-#include "mesh/cut_in_four.hpp"
+#include "mesh/remesh/cut_in_four.hpp"
 
 #include "mesh/mesh_check.hpp"
 #include "support/meshes.hpp"

@@ -1,8 +1,8 @@
 #include "core/error.hpp"
-#include "mesh/surface_distance.hpp"
-#include "mesh/triangle_distance.hpp"
-#include "mesh/triangle_tree.hpp"
-#include "mesh_samples.hpp"
+#include "mesh/distance/surface_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
+#include "mesh/distance/triangle_tree.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <gtest/gtest.h>
 

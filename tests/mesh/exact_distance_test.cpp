@@ -1,4 +1,4 @@
-#include "mesh/triangle_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
 #include "support/exact_ccd.hpp"
 
 #include <Eigen/Geometry>

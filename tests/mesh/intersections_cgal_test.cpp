@@ -1,8 +1,8 @@
 // Two judges that share no code say the same.
 #include "mesh/cgal/intersections_cgal.hpp"
 
-#include "mesh/intersections.hpp"
-#include "mesh_samples.hpp"
+#include "mesh/distance/intersections.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 
 #include "core/timing.hpp"
 #include "mesh/orientation.hpp"
-#include "mesh_samples.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/mesh_topology.hpp"
-#include "mesh_samples.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <gtest/gtest.h>
 

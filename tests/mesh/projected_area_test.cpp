@@ -1,7 +1,7 @@
 #include "mesh/projected_area.hpp"
 
 #include "core/error.hpp"
-#include "mesh_samples.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

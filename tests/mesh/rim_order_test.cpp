@@ -1,6 +1,6 @@
 #include "mesh/rim_order.hpp"
 
-#include "mesh_samples.hpp"
+#include "support/mesh_samples.hpp"
 
 #include <gtest/gtest.h>
 

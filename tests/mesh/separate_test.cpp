@@ -1,6 +1,6 @@
-#include "mesh/separate.hpp"
+#include "mesh/distance/separate.hpp"
 
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "support/contact_scene.hpp"
 
 #include <Eigen/Geometry>

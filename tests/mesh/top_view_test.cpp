@@ -5,10 +5,10 @@
 #include "mesh/closed_view.hpp"
 #include "mesh/outlines.hpp"
 #include "mesh/projected_area.hpp"
+#include "mesh/remesh/spanning_surface.hpp"
 #include "mesh/seams.hpp"
-#include "mesh/spanning_surface.hpp"
 #include "mesh/vertex_graph.hpp"
-#include "mesh_samples.hpp"
+#include "support/mesh_samples.hpp"
 #include "support/trough_valve.hpp"
 
 #include <Eigen/Geometry>

@@ -1,6 +1,6 @@
 // What a result says beyond its residual: minimum, saddle or flat, free nodes, free parts, where a run that
 // did not converge is farthest from equilibrium. Rows S8, S9 and S10 of the verification table.
-#include "optim/certificate.hpp"
+#include "optim/stability/certificate.hpp"
 
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/load_dead.hpp"

@@ -1,9 +1,9 @@
 // What a factorisation promises, for each that the build has.
-#include "optim/factorisation.hpp"
+#include "optim/linear/factorisation.hpp"
 
 #include "energy/objective.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "support/sheets.hpp"
+#include "valve/generators/mitral.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"

@@ -3,8 +3,8 @@
 
 #include "energy/load_dead.hpp"
 #include "optim/carry_along.hpp"
-#include "optim/gmres.hpp"
 #include "optim/lbfgs.hpp"
+#include "optim/linear/gmres.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"

@@ -1,4 +1,4 @@
-#include "optim/smallest_modes.hpp"
+#include "optim/stability/smallest_modes.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

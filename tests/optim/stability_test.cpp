@@ -1,11 +1,11 @@
 // The verdict on stability where the tangent is not symmetric, what costs nothing, and that neither axes,
 // units nor the order of nodes change a verdict.
-#include "optim/stability.hpp"
+#include "optim/stability/stability.hpp"
 
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
-#include "optim/certificate.hpp"
-#include "optim/smallest_modes.hpp"
+#include "optim/stability/certificate.hpp"
+#include "optim/stability/smallest_modes.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/valve_scene.hpp"

@@ -166,14 +166,14 @@ class DebianPackages(unittest.TestCase):
         paths = [str(p) for p in self.root.glob("usr/lib/**/pkgconfig")]
         environment = os.environ | {"PKG_CONFIG_PATH": ":".join(paths)}
         flags = run("pkg-config", "--cflags", "--libs", "coapt", env=environment).split()
-        self.assertIn("-lcoapt", flags)
+        self.assertIn("-lcoapt_core", flags)
         program = pathlib.Path(self.folder.name) / "consumer"
         run(COMPILER, "-std=c++20", "-O1", CONSUMER, "-o", program, *flags)
         self.assertIn("theory", run(program))
         for package in self.files:
             if match := re.fullmatch(r"lib(coapt-\w+)-dev", package):
                 libraries = run("pkg-config", "--libs", match[1], env=environment).split()
-                self.assertLess(libraries.index(f"-l{match[1].replace('-', '_')}"), libraries.index("-lcoapt"))
+                self.assertLess(libraries.index(f"-l{match[1].replace('-', '_')}"), libraries.index("-lcoapt_optim"))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 // Prints a page whose plot has every kind of mark, of numbers that no solver had a hand in: so its picture
 // changes when the drawing does, and at no other time.
-#include "scene/report_page.hpp"
+#include "report/report_page.hpp"
 
 #include <cstdio>
 

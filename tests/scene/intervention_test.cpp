@@ -2,7 +2,7 @@
 
 #include "energy/element_term.hpp"
 #include "energy/kernels/link.hpp"
-#include "repaired_valve.hpp"
+#include "support/repaired_valve.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "core/error.hpp"
-#include "scene/scene.hpp"
-#include "scene/temporary_folder.hpp"
+#include "scene/file/scene.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 #include "mesh/mesh_check.hpp"
-#include "repaired_valve.hpp"
+#include "support/repaired_valve.hpp"
 
 #include <algorithm>
 #include <set>

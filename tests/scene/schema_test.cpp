@@ -1,7 +1,7 @@
-#include "scene/schema.hpp"
+#include "scene/file/schema.hpp"
 
-#include "scene/suggestion.hpp"
-#include "scene/term_types.hpp"
+#include "formats/json/suggestion.hpp"
+#include "scene/terms/term_types.hpp"
 
 #include <gtest/gtest.h>
 

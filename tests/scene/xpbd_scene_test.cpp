@@ -1,12 +1,12 @@
 // xpbd on scenes: the constraints that terms become, and its options.
 #include "core/error.hpp"
 #include "energy/connected_parts.hpp"
-#include "mesh/mesh_io.hpp"
-#include "optim/xpbd/constraints.hpp"
-#include "scene/build.hpp"
-#include "scene/temporary_folder.hpp"
-#include "scene/xpbd_body.hpp"
+#include "formats/mesh_io.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/xpbd_body.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/xpbd_bodies.hpp"
+#include "xpbd/constraints.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Exact derivatives against differences of solved shapes, for every pair of parameter and metric.
 #include "core/error.hpp"
-#include "sensitivity/metrics_contact.hpp"
-#include "sensitivity/metrics_orifice.hpp"
-#include "sensitivity/metrics_state.hpp"
-#include "sensitivity/metrics_surface.hpp"
+#include "sensitivity/metrics/metrics_contact.hpp"
+#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_state.hpp"
+#include "sensitivity/metrics/metrics_surface.hpp"
 #include "sensitivity/tracked_valve.hpp"
 
 #include <gtest/gtest.h>

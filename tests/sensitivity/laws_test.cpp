@@ -1,8 +1,8 @@
 // Stiffness, thickness and rest length of elements of every law, against terms that are made anew.
 #include "energy/kernels/tether_cubic.hpp"
-#include "sensitivity/line_access.hpp"
-#include "sensitivity/line_lengths.hpp"
-#include "sensitivity/stiffness_factor.hpp"
+#include "sensitivity/parameters/line_access.hpp"
+#include "sensitivity/parameters/line_lengths.hpp"
+#include "sensitivity/parameters/stiffness_factor.hpp"
 #include "support/equilibrium.hpp"
 #include "support/tissue_laws.hpp"
 

@@ -1,7 +1,7 @@
 // Smooth metrics against shapes whose figures are known in closed form.
-#include "sensitivity/metrics_contact.hpp"
-#include "sensitivity/metrics_orifice.hpp"
-#include "sensitivity/metrics_surface.hpp"
+#include "sensitivity/metrics/metrics_contact.hpp"
+#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_surface.hpp"
 #include "support/trough_valve.hpp"
 
 #include <gtest/gtest.h>

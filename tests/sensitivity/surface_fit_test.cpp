@@ -1,9 +1,9 @@
 // What draws and fits a surface to another: residuals from both sides, springs that slide, and whether noise
 // explains what is left.
 #include "core/error.hpp"
-#include "mesh/generators/shapes.hpp"
+#include "mesh/shapes.hpp"
 #include "sensitivity/determinacy.hpp"
-#include "sensitivity/surface_residuals.hpp"
+#include "sensitivity/metrics/surface_residuals.hpp"
 #include "sensitivity/target_attraction.hpp"
 #include "support/term_suite.hpp"
 

@@ -3,8 +3,8 @@
 #include "energy/contact_facet.hpp"
 #include "energy/kernels/spring.hpp"
 #include "energy/load_dead.hpp"
-#include "sensitivity/covariance.hpp"
-#include "sensitivity/metrics_state.hpp"
+#include "sensitivity/metrics/covariance.hpp"
+#include "sensitivity/metrics/metrics_state.hpp"
 #include "sensitivity/refusal.hpp"
 #include "sensitivity/tracked_valve.hpp"
 

@@ -3,9 +3,9 @@
 
 #include "core/error.hpp"
 #include "sensitivity/determinacy.hpp"
-#include "sensitivity/joint_parameter.hpp"
-#include "sensitivity/metrics_state.hpp"
-#include "sensitivity/surface_residuals.hpp"
+#include "sensitivity/metrics/metrics_state.hpp"
+#include "sensitivity/metrics/surface_residuals.hpp"
+#include "sensitivity/parameters/joint_parameter.hpp"
 #include "sensitivity/tracked_valve.hpp"
 
 #include <Eigen/LU>

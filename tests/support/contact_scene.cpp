@@ -2,7 +2,7 @@
 
 #include "energy/contact_barrier.hpp"
 #include "energy/load_dead.hpp"
-#include "mesh/intersections.hpp"
+#include "mesh/distance/intersections.hpp"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 
 namespace coapt {
 
-// What an independent judge (exact predicates, mesh/intersections.hpp) saw of a run.
+// What an independent judge (exact predicates, mesh/distance/intersections.hpp) saw of a run.
 struct Judged {
   Equilibrium found;
   long iterates = 0;       // accepted, the start and those of intermediate steps included

@@ -1,8 +1,8 @@
 #include "support/refined_valve.hpp"
 
-#include "mesh/generators/mitral.hpp"
-#include "mesh/generators/mitral_mesh.hpp"
 #include "support/meshes.hpp"
+#include "valve/generators/mitral.hpp"
+#include "valve/generators/mitral_mesh.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,7 +1,7 @@
 // The generated mitral valve on meshes that nest, with one and the same set of chords.
 #pragma once
 
-#include "mesh/valve.hpp"
+#include "formats/valve.hpp"
 
 namespace coapt {
 

@@ -2,8 +2,8 @@
 
 #include "energy/contact_barrier.hpp"
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "support/refined_valve.hpp"
+#include "valve/generators/mitral.hpp"
 
 namespace coapt {
 namespace {

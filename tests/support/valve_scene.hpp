@@ -2,7 +2,7 @@
 // and the annulus and papillary tips moved from the open to the closed position in one step. mm, N, MPa.
 #pragma once
 
-#include "mesh/valve.hpp"
+#include "formats/valve.hpp"
 #include "support/frame.hpp"
 #include "support/sheets.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "energy/objective.hpp"
 #include "mesh/triangle_mesh.hpp"
-#include "optim/xpbd/options.hpp"
-#include "optim/xpbd/system.hpp"
+#include "xpbd/options.hpp"
+#include "xpbd/system.hpp"
 
 #include <memory>
 #include <random>

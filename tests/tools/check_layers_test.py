@@ -54,8 +54,8 @@ class Layers(unittest.TestCase):
         self.expect_defect("mesh/added.cpp", "mesh may not include energy")
 
     def test_refuses_a_header_in_the_detail_of_another_room(self):
-        self.write("cli/added.cpp", '#include "scene/detail/base64.hpp"\n')
-        self.expect_defect("cli/added.cpp", "private to scene")
+        self.write("run/added.cpp", '#include "report/detail/page_plot.hpp"\n')
+        self.expect_defect("run/added.cpp", "private to report")
 
     def test_refuses_a_header_that_calls_itself_private_to_another_room(self):
         self.write("scene/added.hpp", "// Numbers. Private to this room.\n#pragma once\n")
@@ -79,8 +79,8 @@ class Layers(unittest.TestCase):
         self.expect_defect("circle", "mesh -> energy -> mesh")
 
     def test_refuses_an_exception_that_is_no_longer_needed(self):
-        self.replace("includes = [\n", 'includes = [\n  "mesh/seams.cpp -> mesh/formats/text.hpp",\n')
-        self.expect_defect("mesh/seams.cpp -> mesh/formats/text.hpp", "needed no more")
+        self.replace("includes = [\n", 'includes = [\n  "mesh/seams.cpp -> formats/text.hpp",\n')
+        self.expect_defect("mesh/seams.cpp -> formats/text.hpp", "needed no more")
 
     def test_refuses_a_permission_that_no_file_uses(self):
         self.replace('"energy/laws" = []', '"energy/laws" = ["core"]')
@@ -94,7 +94,15 @@ class Layers(unittest.TestCase):
 
     def test_refuses_a_library_in_a_public_header(self):
         self.write("mesh/added.hpp", "#pragma once\n#include <nlohmann/json.hpp>\n")
+        self.assertEqual(self.run_checker()[0], 0, "not installed")
+        self.write("mesh/added/CMakeLists.txt", "coapt_room(mesh HEADERS ../added.hpp SOURCES added.cpp)\n")
         self.expect_defect("mesh/added.hpp", "<nlohmann/json.hpp>")
+
+    def test_refuses_a_header_that_is_not_installed_in_one_that_is(self):
+        self.write("mesh/added.hpp", '#pragma once\n#include "mesh/inner.hpp"\n')
+        self.write("mesh/inner.hpp", "#pragma once\n")
+        self.write("mesh/added/CMakeLists.txt", "coapt_room(mesh HEADERS ../added.hpp SOURCES added.cpp)\n")
+        self.expect_defect("mesh/added.hpp", "mesh/inner.hpp", "not installed")
 
 
 if __name__ == "__main__":

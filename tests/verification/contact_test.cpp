@@ -5,10 +5,10 @@
 #include "energy/contact_barrier.hpp"
 #include "energy/contact_facet.hpp"
 #include "energy/load_dead.hpp"
-#include "mesh/generators/mitral.hpp"
 #include "support/contact_scene.hpp"
 #include "support/sanitized.hpp"
 #include "support/valve_scene.hpp"
+#include "valve/generators/mitral.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Stress rows S1 and S7: the answer does not depend on units, numbering, orientation or point of view. (S2, a
-// scene far from the origin, is the scene's own matter: tests/scene/build_test.cpp.)
+// scene far from the origin, is the scene's own matter: tests/solve/build_test.cpp.)
 #include "support/valve_scene.hpp"
 
 #include <gtest/gtest.h>

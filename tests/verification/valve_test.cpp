@@ -1,5 +1,5 @@
 // The generated valve: one equilibrium from perturbed starts, one closed shape in the limit of fine meshes.
-#include "mesh/surface_distance.hpp"
+#include "mesh/distance/surface_distance.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
 #include "support/valve_scene.hpp"

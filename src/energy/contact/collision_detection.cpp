@@ -1,6 +1,6 @@
 #include "energy/contact/collision_detection.hpp"
 
-#include "mesh/triangle_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
 
 #include <Eigen/Geometry>
 

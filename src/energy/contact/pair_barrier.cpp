@@ -1,7 +1,7 @@
 #include "energy/contact/pair_barrier.hpp"
 
 #include "energy/project_psd.hpp"
-#include "mesh/triangle_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "optim/cholmod/detail/blas_threads.hpp"
 #include "optim/cholmod/detail/node_analysis.hpp"
-#include "optim/permuted_matrix.hpp"
-#include "optim/pivots.hpp"
+#include "optim/linear/permuted_matrix.hpp"
+#include "optim/linear/pivots.hpp"
 
 #include <algorithm>
 #include <cholmod.h>

@@ -2,7 +2,7 @@
 // hence a library of its own.
 #pragma once
 
-#include "optim/factorisation.hpp"
+#include "optim/linear/factorisation.hpp"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optim/dynamic/dynamic_options.hpp"
-#include "optim/factorisation.hpp"
+#include "optim/linear/factorisation.hpp"
 #include "optim/monitor.hpp"
 
 #include <memory>

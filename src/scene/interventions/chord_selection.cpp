@@ -1,7 +1,7 @@
 #include "scene/interventions/chord_selection.hpp"
 
 #include "core/error.hpp"
-#include "scene/suggestion.hpp"
+#include "formats/json/suggestion.hpp"
 
 #include <algorithm>
 #include <set>

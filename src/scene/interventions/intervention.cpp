@@ -1,9 +1,9 @@
 #include "scene/interventions/intervention.hpp"
 
 #include "core/error.hpp"
-#include "scene/detail/read_parameters.hpp"
-#include "scene/node_selection.hpp"
-#include "scene/term_types.hpp"
+#include "scene/build/node_selection.hpp"
+#include "scene/file/detail/read_parameters.hpp"
+#include "scene/terms/term_types.hpp"
 
 #include <algorithm>
 #include <set>

@@ -6,10 +6,10 @@
 // means.
 #pragma once
 
-#include "mesh/valve.hpp"
-#include "scene/prescribed_motion.hpp"
-#include "scene/scene.hpp"
-#include "scene/schema.hpp"
+#include "formats/valve.hpp"
+#include "scene/build/prescribed_motion.hpp"
+#include "scene/file/scene.hpp"
+#include "scene/file/schema.hpp"
 
 #include <array>
 #include <functional>

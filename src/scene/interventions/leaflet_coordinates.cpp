@@ -1,7 +1,7 @@
 #include "scene/interventions/leaflet_coordinates.hpp"
 
 #include "core/error.hpp"
-#include "scene/suggestion.hpp"
+#include "formats/json/suggestion.hpp"
 
 #include <algorithm>
 #include <set>

@@ -1,7 +1,7 @@
 // Artificial chords between a papillary tip and the leaflets.
 #include "core/error.hpp"
 #include "scene/interventions/chord_selection.hpp"
-#include "scene/term_types.hpp"
+#include "scene/terms/term_types.hpp"
 
 namespace coapt {
 namespace {

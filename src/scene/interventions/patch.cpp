@@ -1,7 +1,7 @@
 // A patch: part of a leaflet replaced by another material.
 #include "core/error.hpp"
 #include "scene/interventions/leaflet_coordinates.hpp"
-#include "scene/term_types.hpp"
+#include "scene/terms/term_types.hpp"
 
 #include <cmath>
 #include <cstdio>

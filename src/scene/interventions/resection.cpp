@@ -1,6 +1,6 @@
 // Resection: a wedge is cut out of a leaflet and its sides are sewn together.
 #include "core/error.hpp"
-#include "mesh/cut_away.hpp"
+#include "mesh/remesh/cut_away.hpp"
 #include "scene/interventions/chord_selection.hpp"
 #include "scene/interventions/leaflet_coordinates.hpp"
 

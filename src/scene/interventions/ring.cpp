@@ -1,8 +1,8 @@
 // Ring annuloplasty: where the annulus goes when the valve closes.
 #include "core/error.hpp"
+#include "formats/json/closed_curve.hpp"
 #include "mesh/curve_match.hpp"
 #include "mesh/projected_area.hpp"
-#include "scene/closed_curve.hpp"
 #include "scene/interventions/intervention.hpp"
 
 #include <Eigen/Dense>

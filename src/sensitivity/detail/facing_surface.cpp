@@ -1,6 +1,6 @@
 #include "sensitivity/detail/facing_surface.hpp"
 
-#include "mesh/triangle_distance.hpp"
+#include "mesh/distance/triangle_distance.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // The closest point of a surface, of the sheet that faces the right way. Private to this room.
 #pragma once
 
-#include "mesh/triangle_tree.hpp"
+#include "mesh/distance/triangle_tree.hpp"
 
 #include <array>
 

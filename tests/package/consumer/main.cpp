@@ -2,7 +2,7 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/load_pressure.hpp"
-#include "mesh/generators/shapes.hpp"
+#include "mesh/shapes.hpp"
 #include "optim/solver.hpp"
 
 #include <cmath>

@@ -1,0 +1,127 @@
+#include "exchange/detail/import_repair.hpp"
+
+#include "core/error.hpp"
+#include "exchange/detail/law_terms.hpp"
+#include "formats/whole_file.hpp"
+#include "mesh/mesh_check.hpp"
+#include "valve/repair_valve.hpp"
+#include "valve/valve_check.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace coapt::detail {
+namespace {
+
+using DefectKind = MeshDefectKind;
+
+std::string in_short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string first_ten(const std::vector<int>& numbers) {
+  constexpr size_t kFew = 10;
+  std::string text = numbers.size() == 1 ? "triangle " : "triangles ";
+  for (size_t k = 0; k < std::min(kFew, numbers.size()); ++k)
+    text.append(k == 0 ? "" : ", ").append(std::to_string(numbers[k]));
+  return numbers.size() > kFew ? text + " and " + std::to_string(numbers.size() - kFew) + " more" : text;
+}
+
+void add_count(const MeshRepair& repair, RepairKind kind, const std::string& one, const std::string& many,
+               std::string& text) {
+  const auto count = std::count_if(repair.steps.begin(), repair.steps.end(),
+                                   [kind](const RepairStep& step) { return step.kind == kind; });
+  if (count == 0) return;
+  text.append(text.empty() ? "" : ", ")
+      .append(std::to_string(count))
+      .append(" ")
+      .append(count == 1 ? one : many);
+}
+
+std::string repaired_text(const ValveRepair& repair) {
+  const MeshRepair& leaflets = repair.leaflets;
+  std::string done;
+  add_count(leaflets, RepairKind::Drop, "repeated triangle left out", "repeated triangles left out", done);
+  add_count(leaflets, RepairKind::Flip, "edge flipped", "edges flipped", done);
+  add_count(leaflets, RepairKind::Cut, "flat triangle cut off the rim", "flat triangles cut off the rim",
+            done);
+  add_count(leaflets, RepairKind::Collapse, "edge collapsed", "edges collapsed", done);
+  std::string text = "repaired";
+  if (!leaflets.slivers.empty())
+    text.append(" ")
+        .append(std::to_string(leaflets.slivers.size()))
+        .append(leaflets.slivers.size() == 1 ? " sliver (" : " slivers (")
+        .append(first_ten(leaflets.slivers))
+        .append(")");
+  text.append(": ").append(done).append("; no vertex moved");
+  if (leaflets.largest_move > 0)
+    text.append(" by more than ").append(in_short(leaflets.largest_move)).append(" mm");
+  text.append(", and the surface by no more than ").append(in_short(leaflets.surface_move)).append(" mm.");
+  if (repair.has_reference)
+    text.append(" The closed reference took the same steps and moved by no more than ")
+        .append(in_short(repair.reference_move))
+        .append(" mm.");
+  return text.append(" repairs.csv lists the steps; --no-repair keeps the mesh as it is.");
+}
+
+// What the repair cannot take away. Parts and vertices that hang on nothing are said of the scene.
+void append_doubts(const std::vector<MeshDefect>& before, const std::vector<MeshDefect>& after,
+                   const std::string& place, std::vector<std::string>& warnings) {
+  for (const MeshDefect& defect : before) {
+    const bool is_there = std::any_of(after.begin(), after.end(),
+                                      [&](const MeshDefect& other) { return other.kind == defect.kind; });
+    if (is_there && defect.kind != DefectKind::IsolatedVertex && defect.kind != DefectKind::SeveralComponents)
+      warnings.push_back(place + defect.message + ".");
+  }
+}
+
+}  // namespace
+
+MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Valve& valve,
+                          std::vector<std::string>& warnings) {
+  const std::string place = file + ": leaflets: ";
+  const std::vector<MeshDefect> before = check_mesh(valve.leaflets);
+  for (const std::string& doubt : fold_doubts(valve.leaflets)) warnings.push_back(place + doubt);
+  if (!options.repairs) {
+    append_doubts(before, before, place, warnings);
+    return {};
+  }
+  const ValveRepair repair = repair_valve(valve, kSliverAspect);
+  const MeshRepair& leaflets = repair.leaflets;
+  if (!leaflets.left.empty())
+    throw InputError(
+        place + first_ten(leaflets.left) + (leaflets.left.size() == 1 ? ": a sliver" : ": slivers") +
+        " (longest edge above " + in_short(kSliverAspect) +
+        " times the height) on which a solve stalls, and which no step repairs, as their corners "
+        "are held or carry chords, or lie on the rim; remesh there, or keep them by --no-repair");
+  if (leaflets.is_changed()) warnings.push_back(place + repaired_text(repair));
+  append_doubts(before, leaflets.is_changed() ? check_mesh(valve.leaflets) : before, place, warnings);
+  return leaflets;
+}
+
+void write_repairs(const std::filesystem::path& path, const MeshRepair& repair) {
+  if (!repair.is_changed()) {
+    std::error_code none;
+    std::filesystem::remove(path, none);
+    return;
+  }
+  std::string text = "step,triangles,edge_from,edge_to,apex,moved_mm\n";
+  for (const RepairStep& step : repair.steps) {
+    const char* kind = step.kind == RepairKind::Drop   ? "drop"
+                       : step.kind == RepairKind::Flip ? "flip"
+                       : step.kind == RepairKind::Cut  ? "cut"
+                                                       : "collapse";
+    std::string triangles;
+    for (const int t : step.triangles)
+      triangles.append(triangles.empty() ? "" : " ").append(std::to_string(t));
+    text.append(kind).append(",").append(triangles);
+    for (const int v : step.edge) text.append(",").append(std::to_string(v));
+    text.append(",").append(step.apex < 0 ? "" : std::to_string(step.apex));
+    text.append(",").append(digits(step.moved)).append("\n");
+  }
+  formats::write_whole(path, text);
+}
+
+}  // namespace coapt::detail

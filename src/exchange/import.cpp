@@ -1,0 +1,310 @@
+#include "exchange/import.hpp"
+
+#include "core/error.hpp"
+#include "exchange/detail/import_repair.hpp"
+#include "exchange/detail/law_terms.hpp"
+#include "exchange/detail/valve_curves.hpp"
+#include "formats/json/json_text.hpp"
+#include "formats/json/markups.hpp"
+#include "formats/json/read_json.hpp"
+#include "formats/json/suggestion.hpp"
+#include "formats/json/units.hpp"
+#include "formats/json/valve_json.hpp"
+#include "formats/lower_extension.hpp"
+#include "formats/mesh_io.hpp"
+#include "formats/utf8.hpp"
+#include "formats/whole_file.hpp"
+#include "scene/build/valve_doubts.hpp"
+#include "valve/valve_check.hpp"
+#include "valve/valve_import.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr const char* kUsualPressure = "120 mmHg";
+
+// From here on a cascade of meshes saves more than it costs: half the time and half the iterations on the
+// finest mesh over eight rough valves of 6,000 triangles, a third less in the median of eight of 2,500.
+constexpr int kCascadeTriangles = 3000;
+
+using detail::digits;
+using detail::law_terms;
+using detail::quoted;
+
+void check_options(const ImportOptions& options) {
+  std::vector<std::string> defects;
+  const auto check = [&](const char* option, const std::string& text) {
+    try {
+      if (quantity_value(text, kPressure) <= 0) defects.push_back(std::string(option) + ": must be positive");
+    } catch (const InputError& error) {
+      defects.push_back(std::string(option) + ": " + error.what());
+    }
+  };
+  if (!options.young.empty()) check("young", options.young);
+  if (!options.chord_young.empty()) check("chord_young", options.chord_young);
+  if (!options.pressure.empty()) check("pressure", options.pressure);
+  const std::string& model = options.pressure_model;
+  if (!model.empty() && model != "follower" && model != "frozen" && model != "field")
+    defects.push_back("pressure model: read \"" + model +
+                      "\"; a valve's free edge moves, so it takes one of follower, frozen, field");
+  if (!options.contact.empty() && options.contact != "none" && options.contact != "barrier" &&
+      options.contact != "facet")
+    defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, barrier, facet");
+  if (options.membrane != "tension_field" && options.membrane != "stvk" && options.membrane != "spring")
+    defects.push_back("membrane: read \"" + options.membrane +
+                      "\"; expected one of tension_field, stvk, spring");
+  if (!defects.empty()) throw InputError(defects);
+}
+
+// A pressure whose number of mmHg is whole is better read in mmHg.
+std::string pressure_text(const Valve& valve, const ImportOptions& options) {
+  if (!options.pressure.empty()) return options.pressure;
+  if (valve.pressure <= 0) return kUsualPressure;
+  const double mmhg = std::round(valve.pressure / quantity_value("1 mmHg", kPressure));
+  const std::string text = digits(mmhg) + " mmHg";
+  constexpr double kSame = 1e-6;  // sources differ in the seventh digit of 1 mmHg
+  if (mmhg > 0 && std::abs(quantity_value(text, kPressure) / valve.pressure - 1) < kSame) return text;
+  return digits(valve.pressure) + " MPa";
+}
+
+// The line that a field load points to: the commissures, or the longest chord of the annulus from its
+// first vertex, which needs no name.
+std::string line_set(const Valve& valve) { return valve.commissures.size() >= 2 ? "commissures" : "annulus"; }
+
+std::string load_text(const Valve& valve, const ImportOptions& options) {
+  const std::string pressure = quoted(pressure_text(valve, options));
+  if (options.pressure_model == "field") {
+    return "    // Forces toward the line through the commissures, as large as the pressure on the open "
+           "leaflets.\n"
+           "    { \"type\": \"load_field\", \"toward_line\": " +
+           quoted(line_set(valve)) + ", \"pressure\": " + pressure + " }";
+  }
+  return "    // Acts on the side that the normals point to.\n"
+         "    { \"type\": \"load_pressure\", \"value\": " +
+         pressure +
+         ", \"model\": " + quoted(options.pressure_model.empty() ? "follower" : options.pressure_model) +
+         ", \"side\": \"front\" }";
+}
+
+std::string listed_text(const std::vector<std::string>& entries) {
+  std::string text;
+  for (const std::string& entry : entries) text += (text.empty() ? "\n" : ",\n") + entry;
+  return "[" + text + "\n  ]";
+}
+
+std::string support_text(const Support& support) {
+  std::vector<std::string> axes;
+  for (size_t c = 0; c < 3; ++c)
+    if (support.axes[c]) axes.push_back(std::string(1, "xyz"[c]));
+  std::string text = "    { \"nodes\": " + quoted(support.name) +
+                     ", \"fix\": " + (axes.size() == 3 ? "true" : json_text(Json(axes)));
+  if (support.closed.cols() > 0) text += ", \"move_to\": " + quoted(support.name + "_closed");
+  return text + " }";
+}
+
+std::string boundary_text(const Valve& valve) {
+  std::vector<std::string> entries;
+  if (!valve.annulus.empty())
+    entries.push_back(valve.annulus_closed.cols() > 0
+                          ? "    { \"nodes\": \"annulus\", \"move_to\": \"annulus_closed\" }"
+                          : "    { \"nodes\": \"annulus\", \"fix\": true }");
+  if (valve.chords.papillary.cols() > 0)
+    entries.push_back(valve.chords.papillary_closed.cols() > 0
+                          ? "    { \"nodes\": \"papillary\", \"move_to\": \"papillary_closed\" }"
+                          : "    { \"nodes\": \"papillary\", \"fix\": true }");
+  for (const Support& support : valve.supports) entries.push_back(support_text(support));
+  return listed_text(entries);
+}
+
+std::string terms_text(const Valve& valve, const ImportOptions& options) {
+  std::vector<std::string> terms = law_terms(valve, options);
+  terms.push_back(load_text(valve, options));
+  const std::string contact = options.contact.empty() ? "barrier" : options.contact;
+  if (contact != "none") terms.push_back("    { \"type\": \"contact_" + contact + "\" }");
+  return listed_text(terms);
+}
+
+std::string scene_text(const Valve& valve, const ImportOptions& options) {
+  std::string text = "{ // lengths in mm unless a unit is written\n";
+  text += "  \"name\": " + quoted(valve.name.empty() ? "valve" : valve.name) + ",\n";
+  text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
+  text += "  \"boundary\": " + boundary_text(valve) + ",\n";
+  text += "  \"terms\": " + terms_text(valve, options) + ",\n";
+  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) +
+          (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
+  if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
+  return text + "\n}\n";
+}
+
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+// A surface alone: its longest rim is the annulus, and the other one, if there is one, the free edge.
+Valve valve_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+  MeshFile read = read_mesh(file);
+  append(warnings, read.warnings);
+  Valve valve;
+  valve.name = formats::as_utf8(file.stem().string());
+  valve.leaflets = std::move(read.mesh);
+  detail::choose_annulus(valve, {});
+  return valve;
+}
+
+const std::string* key_of(const Material& law, const std::string& key) {
+  const auto found =
+      std::find_if(law.keys.begin(), law.keys.end(), [&](const auto& entry) { return entry.first == key; });
+  return found == law.keys.end() ? nullptr : &found->second;
+}
+
+bool is_membrane(const Material& law) { return law.type.starts_with("cst_") || law.type == "spring"; }
+
+// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
+// are springs. A law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
+void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
+  const bool resists = options.membrane == "stvk";
+  if (law.type == "cst_stvk" || (resists && law.type == "cst_tension_field")) {
+    if (is_own && !resists) return;
+    law.type = detail::linear_membrane_type(options);
+    if (law.type == "spring") std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
+  } else if (resists && is_membrane(law) && key_of(law, "compression") == nullptr) {
+    law.keys.emplace_back("compression", "\"resisted\"");
+  }
+}
+
+// Incompressible membranes. A shell of a program that wrote the file keeps its volume by the program's own
+// rule (section Poisson's ratio 0.5 in the published tricuspid valve), whatever the volumetric term of its
+// law is.
+void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::string>& warnings) {
+  std::vector<std::string> regions;
+  for (auto& [region, law] : valve.membranes)
+    if (std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; }) > 0)
+      regions.push_back(region.empty() ? "the leaflets" : region);
+  if (regions.empty()) return;
+  warnings.push_back(
+      file + ": states a bulk modulus (" + listed(regions) +
+      "); the membranes are taken as incompressible, as the shells of finite-element runs keep "
+      "their volume. --bulk stated takes the modulus as it is.");
+}
+
+// The moduli of the options in the place of the valve's laws. A law of another thickness than the valve's
+// becomes a linear law of its own.
+void take_moduli(const ImportOptions& options, Valve& valve) {
+  if (!options.young.empty()) {
+    const std::string usual = quoted(digits(valve.thickness) + " mm");
+    std::erase_if(valve.membranes, [&](const auto& entry) {
+      const std::string* thickness = key_of(entry.second, "thickness");
+      return thickness == nullptr || *thickness == usual;
+    });
+    for (auto& [region, law] : valve.membranes) {
+      Material linear{detail::linear_membrane_type(options), {{"young", quoted(options.young)}}};
+      if (options.membrane != "spring") linear.keys.emplace_back("poisson", digits(options.poisson));
+      linear.keys.emplace_back("thickness", *key_of(law, "thickness"));
+      law = std::move(linear);
+    }
+  }
+  if (!options.chord_young.empty()) valve.cables.clear();
+}
+
+// Gives laws of membranes the thickness that the file does not state. True where there was one to give, also
+// to leaflets without a law.
+bool complete_thickness(const ImportOptions& options, Valve& valve) {
+  if (valve.thickness > 0) return false;
+  bool is_missing = valve.leaflets.region_names.empty();
+  for (const std::string& region : valve.leaflets.region_names)
+    is_missing |= !valve.membranes.contains(region);
+  for (auto& [region, law] : valve.membranes)
+    if (is_membrane(law) && key_of(law, "thickness") == nullptr) {
+      law.keys.emplace_back("thickness", quoted(digits(options.default_thickness) + " mm"));
+      is_missing = true;
+    }
+  return is_missing;
+}
+
+Valve read_any(const std::filesystem::path& file, ImportOptions& options,
+               std::vector<std::string>& warnings) {
+  if (is_markup_file(file))
+    throw InputError(
+        file.string() +
+        ": points and curves alone are no valve; give its leaflets (a mesh) and this file behind "
+        "--annulus-closed or --papillary");
+  if (is_model_file(file)) {
+    ValveModel model = read_model(file);
+    append(warnings, model.warnings);
+    if (options.pressure_model.empty() && model.is_pressure_dead) options.pressure_model = "frozen";
+    if (options.contact.empty() && !model.has_contact) {
+      options.contact = "none";
+      warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
+    }
+    for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, false, law);
+    return std::move(model.valve);
+  }
+  if (formats::lower_extension(file) != ".json") return valve_of_mesh(file, warnings);
+  ValveFile read = read_valve(file);
+  append(warnings, read.warnings);
+  for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
+  return std::move(read.valve);
+}
+
+// Sizes of a valve that only a misread unit explains, and how to insist.
+void refuse_sizes(const std::string& file, const Valve& valve) {
+  std::vector<std::string> defects;
+  for (const std::string& doubt : size_doubts(valve))
+    defects.push_back(file + ": " + doubt + " --any-size imports it as it is.");
+  if (!defects.empty()) throw InputError(defects);
+}
+
+}  // namespace
+
+void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
+                       const ImportOptions& options) {
+  check_options(options);
+  if (valve.leaflets.triangle_count() == 0) throw InputError(valve.name + ": the valve has no leaflets");
+  std::error_code error;
+  std::filesystem::create_directories(out_dir, error);
+  if (error) throw InputError(out_dir.string() + ": cannot be made: " + error.message());
+  write_valve(out_dir / "valve.json", valve);
+  formats::write_whole(out_dir / "scene.json", scene_text(valve, options));
+}
+
+std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
+                                      const ImportOptions& given) {
+  ImportOptions options = given;
+  std::vector<std::string> warnings;
+  Valve valve = read_any(file, options, warnings);
+  if (valve.leaflets.triangle_count() == 0)
+    throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
+  // Any mesh has a longest rim; an annulus has been named.
+  const bool is_bare_mesh = !is_model_file(file) && formats::lower_extension(file) != ".json";
+  bool is_valve = !is_bare_mesh && !valve.annulus.empty();
+  detail::apply_curves(options, file.string(), valve, warnings);
+  is_valve |=
+      !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
+  if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
+  take_moduli(options, valve);
+  if (complete_thickness(options, valve))
+    warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
+                       digits(options.default_thickness) + " mm.");
+  if (valve.pressure == 0 && options.pressure.empty())
+    warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
+  if (valve.annulus.empty() && valve.supports.empty())
+    warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
+  const double pressure = quantity_value(pressure_text(valve, options), kPressure);
+  if (is_valve && !options.takes_any_size) {
+    Valve loaded = valve;
+    loaded.pressure = pressure;
+    refuse_sizes(file.string(), loaded);
+  }
+  const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
+  Valve loaded = valve;
+  loaded.pressure = pressure;
+  append(warnings, valve_doubts(loaded, file.string()));
+  write_valve_scene(valve, out_dir, options);
+  detail::write_repairs(out_dir / "repairs.csv", repair);
+  return warnings;
+}
+
+}  // namespace coapt

@@ -1,0 +1,127 @@
+#include "exchange/mass_spring_scene.hpp"
+
+#include "core/error.hpp"
+#include "formats/json/read_json.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/groundwork.hpp"
+#include "scene/terms/term_types.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+bool is_membrane(const TermSpec& term) { return term.type.starts_with("cst_"); }
+bool is_bending(const TermSpec& term) { return term.type == "bending"; }
+bool is_spring(const TermSpec& term) { return term.type == "spring"; }
+
+void copy_numbers(const Parameters& from, std::initializer_list<const char*> keys, Parameters& to) {
+  for (const char* key : keys)
+    if (from.has(key)) to.set(key, from.number(key));
+}
+
+// Where the term is, and the files with its numbers.
+void copy_place(const Parameters& from, Parameters& to) {
+  if (from.has("region")) to.set("region", from.texts("region"));
+  for (const char* key : {"triangle_values", "vertex_values"})
+    if (from.has(key)) to.set(key, from.text(key));
+}
+
+// The numbers of its law; false for a law that springs do not have.
+bool copy_law(const TermSpec& membrane, Parameters& springs) {
+  const Parameters& p = membrane.parameters;
+  if (membrane.type == "cst_stvk" || membrane.type == "cst_tension_field")
+    copy_numbers(p, {"young"}, springs);
+  else if (membrane.type == "cst_bilinear")
+    copy_numbers(p, {"young_pre", "young_post", "transition_strain"}, springs);
+  else if (membrane.type == "cst_orthotropic")
+    copy_numbers(p,
+                 {"fibre_young_pre", "fibre_young_post", "fibre_transition", "cross_young_pre",
+                  "cross_young_post", "cross_transition"},
+                 springs);
+  else
+    return false;
+  copy_numbers(p, {"thickness"}, springs);
+  copy_place(p, springs);
+  return true;
+}
+
+// The window at a membrane's knees is called `smoothing`; that of a spring rounds its onset.
+void copy_window(const Parameters& from, Parameters& to) {
+  if (to.has("young") || !from.has("smoothing")) return;
+  to.set("knee", from.number("smoothing"));
+  for (const char* key : {"triangle_values", "vertex_values"})
+    if (from.has(key) && read_text(from.text(key)).find("smoothing") != std::string::npos)
+      throw InputError(from.where(key) + ": " + from.text(key) +
+                       " has a column smoothing, which springs cannot have by triangle; leave it out for "
+                       "mass-spring");
+}
+
+// Modulus and thickness at small strain, of a law that springs do not have.
+void set_small_strain(const TermSpec& membrane, const Scene& scene, const Groundwork& ground,
+                      Parameters& springs) {
+  Scene alone = scene;
+  alone.terms = {membrane};
+  const Model model = build(alone, ground);
+  const std::vector<int> triangles = region_triangles(membrane.parameters, model.mesh);
+  const MembraneProperties& first = model.membrane[static_cast<size_t>(triangles.front())];
+  for (const int t : triangles) {
+    const MembraneProperties& here = model.membrane[static_cast<size_t>(t)];
+    if (here.young != first.young || here.thickness != first.thickness)
+      throw InputError(membrane.parameters.where() + ": the numbers of " + membrane.type +
+                       " differ from triangle to triangle; mass-spring takes one modulus and one thickness "
+                       "from such a law: give the term by regions instead");
+  }
+  springs.set("young", first.young);
+  springs.set("thickness", first.thickness);
+  if (membrane.parameters.has("region")) springs.set("region", membrane.parameters.texts("region"));
+}
+
+std::string compression_of(const TermSpec& membrane) {
+  if (membrane.parameters.has("compression")) return membrane.parameters.text("compression");
+  return membrane.type == "cst_stvk" ? "resisted" : "relaxed";
+}
+
+TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<Groundwork>& ground) {
+  const Parameters& p = membrane.parameters;
+  if (p.number_or("prestress", 0) != 0)
+    throw InputError(p.where("prestress") + ": springs have none; mass-spring needs a membrane without");
+  Parameters springs(p.where());
+  springs.set("compression", compression_of(membrane));
+  if (copy_law(membrane, springs)) {
+    copy_window(p, springs);
+  } else {
+    if (!ground) ground = lay_groundwork(scene);
+    set_small_strain(membrane, scene, *ground, springs);
+  }
+  return {"spring", membrane.name, std::move(springs)};
+}
+
+}  // namespace
+
+Scene mass_spring_scene(const Scene& scene) {
+  Scene springs = scene;
+  springs.terms.clear();
+  springs.solver.type = "dynamic";
+  std::optional<Groundwork> ground;  // read when a law asks for it
+  std::vector<std::string> defects;
+  for (const TermSpec& term : scene.terms) {
+    if (is_bending(term)) continue;
+    try {
+      springs.terms.push_back(is_membrane(term) ? springs_of(term, scene, ground) : term);
+    } catch (const InputError& error) {
+      defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+    }
+  }
+  if (defects.empty() && std::none_of(springs.terms.begin(), springs.terms.end(), is_spring))
+    defects.push_back(scene.file.string() + ": terms: no membrane (cst_*) that springs could stand for");
+  if (!defects.empty()) throw InputError(defects);
+  return springs;
+}
+
+bool has_springs_alone(const Scene& scene) {
+  return std::none_of(scene.terms.begin(), scene.terms.end(),
+                      [](const TermSpec& term) { return is_membrane(term) || is_bending(term); });
+}
+
+}  // namespace coapt

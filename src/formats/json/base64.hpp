@@ -1,0 +1,13 @@
+// Numbers as base64 of little-endian bytes, as scripts of pages read them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace coapt {
+
+std::string base64(std::span<const float> numbers);
+std::string base64(std::span<const std::uint32_t> numbers);
+
+}  // namespace coapt

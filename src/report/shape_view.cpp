@@ -1,0 +1,119 @@
+#include "report/shape_view.hpp"
+
+#include "formats/json/base64.hpp"
+#include "formats/json/json_text.hpp"
+#include "formats/xml_escaped.hpp"
+#include "report/detail/report_files.hpp"
+
+namespace coapt {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+template <class Numbers>
+std::string floats(const Numbers& numbers) {
+  const Eigen::MatrixXf singles = numbers.template cast<float>();
+  return base64(std::span<const float>(singles.data(), static_cast<size_t>(singles.size())));
+}
+
+template <class Indices>
+std::string integers(const Indices& indices) {
+  const Eigen::Matrix<std::uint32_t, -1, -1> words = indices.template cast<std::uint32_t>();
+  return base64(std::span<const std::uint32_t>(words.data(), static_cast<size_t>(words.size())));
+}
+
+OrderedJson numbers(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+std::string_view place_name(ViewPlace place) {
+  switch (place) {
+    case ViewPlace::Vertex:
+      return "vertex";
+    case ViewPlace::Triangle:
+      return "triangle";
+    case ViewPlace::Line:
+      return "line";
+  }
+  return "";
+}
+
+OrderedJson field_json(const ViewField& field) {
+  OrderedJson values = OrderedJson::array();
+  for (const Vector& state : field.values)
+    values.push_back(state.size() > 0 ? OrderedJson(floats(state)) : OrderedJson(nullptr));
+  OrderedJson json = {
+      {"title", field.title}, {"unit", field.unit}, {"at", place_name(field.place)}, {"values", values}};
+  if (!field.categories.empty()) json["categories"] = field.categories;
+  if (field.is_reversed) json["map"] = "reversed";
+  if (!field.none.empty()) json["none"] = field.none;
+  return json;
+}
+
+OrderedJson state_json(const ViewState& state) {
+  OrderedJson outlines = OrderedJson::array();
+  for (const ViewOutline& outline : state.outlines)
+    outlines.push_back(
+        {{"kind", outline.is_orifice ? "orifice" : "coaptation"}, {"points", floats(outline.points)}});
+  return {{"label", state.label},
+          {"nodes", floats(state.x)},
+          {"carried", state.is_on_the_way},
+          {"outlines", outlines},
+          {"orifice_text", state.orifice_text}};
+}
+
+OrderedJson view_json(const ShapeView& view) {
+  OrderedJson states = OrderedJson::array(), ways = OrderedJson::array(), fields = OrderedJson::array();
+  for (const ViewState& state : view.states) states.push_back(state_json(state));
+  for (const ViewWay& way : view.ways) ways.push_back({{"label", way.label}, {"states", way.state_count}});
+  for (const ViewField& field : view.fields) fields.push_back(field_json(field));
+  return {{"name", view.name},
+          {"origin", numbers(view.origin)},
+          {"frame",
+           {{"right", numbers(view.frame.e1)},
+            {"up", numbers(view.frame.e2)},
+            {"towards", numbers(view.frame.up)}}},
+          {"triangles", integers(view.triangles)},
+          {"lines", integers(view.lines)},
+          {"obstacles", integers(view.obstacles)},
+          {"states", states},
+          {"ways", ways},
+          {"fields", fields},
+          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)}};
+}
+
+void replace(std::string& text, std::string_view mark, std::string_view by) {
+  const size_t at = text.find(mark);
+  if (at != std::string::npos) text.replace(at, mark.size(), by);
+}
+
+std::string script(std::string_view text) { return "<script>\n" + std::string(text) + "\n</script>\n"; }
+
+}  // namespace
+
+bool has_shape_view() { return !report_files::three.empty(); }
+
+PageMarkup shape_view_html(const ShapeView& view) {
+  namespace files = report_files;
+  if (!has_shape_view())
+    return {
+        "<p class=\"quiet\">This build of coapt has no 3-D view (three.js was not found, or was turned off, "
+        "when it was configured): the shape is left out. closed.vtp holds it.</p>\n"};
+  std::string markup(files::viewer_markup);
+  replace(markup, "@ABOVE@", view.is_valve ? "From the atrium" : "From above");
+  replace(markup, "@BELOW@", view.is_valve ? "From the ventricle" : "From below");
+  replace(markup, "@SLIDER@", formats::xml_escaped(view.slider));
+  std::string html = "<style>\n" + std::string(files::viewer_style) + "</style>\n" + markup;
+  html += "<noscript>The shape needs scripts. Figures and plots do not.</noscript>\n";
+  html +=
+      "<script type=\"application/json\" id=\"shape-data\">" + script_text(view_json(view)) + "</script>\n";
+  html += "<details><summary>Licence of three.js, which draws the shape</summary><pre>" +
+          formats::xml_escaped(files::three_notice) + "</pre></details>\n";
+  html += script(files::three) + script(files::three_controls);
+  std::string own = "\"use strict\";\n{\n";
+  for (const std::string_view part : {files::viewer_base, files::viewer_stage, files::viewer_parts,
+                                      files::viewer_values, files::viewer_screenshot, files::viewer_controls})
+    own += part;
+  html += script(own + "}");
+  return {html};
+}
+
+}  // namespace coapt

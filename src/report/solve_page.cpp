@@ -1,0 +1,315 @@
+#include "report/solve_page.hpp"
+
+#include "core/components.hpp"
+#include "core/timing.hpp"
+#include "formats/xml_escaped.hpp"
+#include "report/solve_view.hpp"
+#include "results/result_warnings.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr size_t kMostShapes = 12;
+constexpr size_t kShapeBytes = 2'000'000;  // of all shapes in the page; a node takes 16 in each
+
+// "orifice_area_mm2" in words: "orifice area".
+std::string in_words(const MetricRow& row) {
+  std::string name = row.name;
+  if (!row.unit.empty() && name.ends_with("_" + row.unit)) name.resize(name.size() - row.unit.size() - 1);
+  if (row.unit == "N" && name.ends_with("_n")) name.resize(name.size() - 2);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string unit_sign(std::string unit) {
+  if (unit == "mm2") return "mm²";
+  if (unit == "mm3") return "mm³";
+  return unit;
+}
+
+std::string tile(const std::string& name, double value, const std::string& unit) {
+  return "<div><dt>" + formats::xml_escaped(name) + "</dt><dd>" + page_number(value) + " <small>" + unit +
+         "</small></dd></div>\n";
+}
+
+// The figures that a user looks at first.
+PageMarkup tiles(const Report& report) {
+  std::string html;
+  for (const MetricRow& row : metric_rows(report.metrics))
+    for (const char* name :
+         {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
+          "max_principal_strain", "max_chord_force_n", "max_displacement_mm"})
+      if (row.name == name && row.value) html += tile(in_words(row), *row.value, unit_sign(row.unit));
+  if (report.reference)
+    html += tile("mean distance to reference", both_directions(*report.reference).mean, "mm");
+  return {"<dl class=\"tiles\">\n" + html + tile("residual", report.result.residual, "") + "</dl>\n"};
+}
+
+PageList warning_list(const Report& report) {
+  PageList list;
+  for (const std::string& warning : result_warnings(report))
+    list.items.push_back({"Warning: " + warning, Tone::Caution});
+  return list;
+}
+
+// A figure, with its range over other equilibria in small print.
+PageCell value_cell(double value, const BranchRange* others) {
+  PageCell cell{page_number(value, 6)};
+  if (others != nullptr)
+    cell.remark =
+        "other equilibria: " + page_number(others->lowest, 6) + " to " + page_number(others->highest, 6);
+  return cell;
+}
+
+PageTable metric_table(const Report& report) {
+  PageTable table{.caption = "All figures of the result",
+                  .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
+  for (const MetricRow& row : metric_rows(report.metrics))
+    if (row.value)
+      table.rows.push_back({{in_words(row)},
+                            value_cell(*row.value, range_of(report.branches, row.name)),
+                            {unit_sign(row.unit)},
+                            {row.meaning}});
+  table.note = "Intersections were counted by: " + report.metrics.intersection_judge +
+               ". Figures that the scene does not define are left out.";
+  return table;
+}
+
+PageTable leaflet_table(const std::vector<LeafletMetrics>& leaflets) {
+  PageTable table{.caption = "Leaflet by leaflet", .columns = {{"figure", true}}};
+  for (const MetricRow& row : leaflet_rows(leaflets.front()))
+    table.rows.push_back({{in_words(row) + (row.unit.empty() ? "" : " [" + unit_sign(row.unit) + "]")}});
+  for (const LeafletMetrics& leaflet : leaflets) {
+    table.columns.push_back({leaflet.name});
+    const std::vector<MetricRow> rows = leaflet_rows(leaflet);
+    for (size_t r = 0; r < rows.size(); ++r)
+      table.rows[r].push_back({rows[r].value ? page_number(*rows[r].value, 5) : "–"});
+  }
+  return table;
+}
+
+PageTable orifice_table(const std::vector<Orifice>& orifices) {
+  PageTable table{
+      .caption = "Open places seen from the atrium; a negative area is a covered island in one",
+      .columns = {{"orifice", true}, {"area [mm²]"}, {"regurgitant area [mm²]"}, {"perimeter [mm]"}}};
+  for (const Orifice& orifice : orifices)
+    table.rows.push_back({{std::to_string(table.rows.size() + 1)},
+                          {page_number(orifice.outline.area)},
+                          {page_number(orifice.regurgitant_area_mm2)},
+                          {page_number(orifice.outline.perimeter)}});
+  return table;
+}
+
+PageTable distance_table(const ReferenceDistance& distance) {
+  PageTable table{.caption = "Distance to the given closed surface [mm]",
+                  .columns = {{"direction", true}, {"mean"}, {"95 %"}, {"greatest"}}};
+  const auto add = [&table](const char* name, const DistanceFigures& figures) {
+    table.rows.push_back(
+        {{name}, {page_number(figures.mean)}, {page_number(figures.p95)}, {page_number(figures.max)}});
+  };
+  add("from the result to it", distance.to_reference);
+  add("from it to the result", distance.from_reference);
+  if (distance.same_vertex)
+    table.rows.push_back({{"each vertex from itself"},
+                          {page_number(distance.same_vertex->mean)},
+                          {""},
+                          {page_number(distance.same_vertex->max)}});
+  return table;
+}
+
+PageSection figures(const Report& report) {
+  PageSection section{"Figures", {metric_table(report)}};
+  if (report.metrics.closure && !report.metrics.closure->leaflets.empty())
+    section.blocks.emplace_back(leaflet_table(report.metrics.closure->leaflets));
+  if (report.metrics.closure && !report.metrics.closure->orifices.empty())
+    section.blocks.emplace_back(orifice_table(report.metrics.closure->orifices));
+  if (report.reference) section.blocks.emplace_back(distance_table(*report.reference));
+  return section;
+}
+
+// Energies and the figures that differ, equilibrium by equilibrium.
+PageTable branch_table(const Branches& branches) {
+  PageTable table{.caption = "Equilibria, that of this result first",
+                  .columns = {{"equilibrium", true},
+                              {"perturbed starts"},
+                              {"energy [mJ]"},
+                              {"stability", true},
+                              {"greatest distance [mm]"}}};
+  std::vector<size_t> shown;
+  const std::vector<MetricRow> own = metric_rows(branches.equilibria.front().metrics);
+  for (size_t row = 0; row < own.size(); ++row)
+    for (const char* name : {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
+                             "tenting_height_mm", "max_chord_force_n"})
+      if (own[row].name == name && own[row].value) {
+        shown.push_back(row);
+        table.columns.push_back(
+            {in_words(own[row]) + (own[row].unit.empty() ? "" : " [" + unit_sign(own[row].unit) + "]")});
+      }
+  for (const NearbyEquilibrium& equilibrium : branches.equilibria) {
+    table.rows.push_back({{table.rows.empty() ? "this result" : std::to_string(table.rows.size() + 1)},
+                          {std::to_string(equilibrium.found)},
+                          {page_number(equilibrium.energy, 8)},
+                          {std::string(stability_name(equilibrium.stability))},
+                          {page_number(equilibrium.greatest_mm)}});
+    const std::vector<MetricRow> rows = metric_rows(equilibrium.metrics);
+    for (const size_t row : shown)
+      table.rows.back().push_back({rows[row].value ? page_number(*rows[row].value, 5) : "–"});
+  }
+  return table;
+}
+
+PageSection other_equilibria(const Report& report) {
+  const Branches& branches = *report.branches;
+  return {"Other equilibria near by", {PageText{branches_message(branches) + "."}, branch_table(branches)}};
+}
+
+PageSection convergence(const Report& report) {
+  PageSection section{"Convergence", {}};
+  if (report.result.trace.empty()) return {"Convergence", {PageText{"No iterate was accepted."}}};
+  const std::vector<NamedReport> named = {{report.solver, &report}};
+  section.blocks = {residual_plot(named, false), residual_plot(named, true)};
+  const auto& trace = report.result.trace;
+  if (trace.front().round != trace.back().round)
+    section.blocks.emplace_back(
+        PageText{"Dotted upright lines: from there on another energy is minimised, because loads or supports "
+                 "went on, a barrier became stiffer, kinks became sharper, or pressure was renewed."});
+  if (report.result.rounds > 0)
+    section.blocks.emplace_back(
+        PageText{"The residual of an iterate is that of the potential of its round; the "
+                 "verdict is that of the exact loads."});
+  return section;
+}
+
+// Name and value, one row each.
+PageTable listed_pairs(const std::string& caption,
+                       const std::vector<std::pair<std::string, std::string>>& pairs) {
+  PageTable table{.caption = caption, .columns = {{"", true}, {"", true}}};
+  for (const auto& [name, value] : pairs) table.rows.push_back({{name}, {value}});
+  return table;
+}
+
+PageTable solve_table(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  const auto count = [](auto number) { return std::to_string(number); };
+  return listed_pairs(
+      "What was solved, how, and at what cost",
+      {{"scene", report.scene_file},
+       {"version of coapt", version()},
+       {"licence of this build", combined_licence()},
+       {"mesh", count(model.mesh.vertex_count()) + " vertices, " + count(model.mesh.triangle_count()) +
+                    " triangles, " + count(model.lines.size()) + " chords and cables, " +
+                    count(model.objective->free_count()) + " unknowns"},
+       {"solver", report.solver},
+       {"tolerance on the residual", page_number(report.tolerance)},
+       {"pressure", report.pressure_route},
+       {"certificate", summary(result.certificate)},
+       {"energy", page_number(result.energy, 10) + " mJ"},
+       {"iterates", count(result.iterations)},
+       {"evaluations", count(result.evaluations.gradient) + " gradients, " + count(result.evaluations.value) +
+                           " values, " + count(result.evaluations.hessian) + " Hessians, " +
+                           count(result.factorisations) + " factorisations"},
+       {"time", page_number(result.wall_s, 3) + " s by the clock, " + page_number(result.cpu_s, 3) +
+                    " s of CPU time"},
+       {"peak memory", page_number(peak_memory_mb(), 3) + " MB"}});
+}
+
+PageTable term_table(const Result& result) {
+  PageTable table{.caption = "Energies and loads",
+                  .columns = {{"term", true}, {"type", true}, {"energy [mJ]"}, {"greatest nodal force [N]"}}};
+  for (const TermReport& term : result.terms)
+    table.rows.push_back(
+        {{term.name}, {term.type}, {page_number(term.energy, 6)}, {page_number(term.greatest_force)}});
+  return table;
+}
+
+PageTable phase_table(const Result& result) {
+  PageTable table{.caption = "Wall time by phase", .columns = {{"phase", true}, {"time [s]"}}};
+  for (const auto& [phase, seconds] : result.phase_s)
+    table.rows.push_back({{phase}, {page_number(seconds, 3)}});
+  return table;
+}
+
+PageTable level_table(const std::vector<CascadeLevel>& levels) {
+  PageTable table{
+      .caption = "Meshes of the cascade; the shapes in the view are those of the last",
+      .columns = {{"triangles", true}, {"iterates"}, {"status", true}, {"residual"}, {"CPU time [s]"}}};
+  for (const CascadeLevel& level : levels)
+    table.rows.push_back({{std::to_string(level.triangles)},
+                          {std::to_string(level.iterations)},
+                          {std::string(status_name(level.status))},
+                          {page_number(level.residual, 3)},
+                          {page_number(level.cpu_s, 3)}});
+  return table;
+}
+
+}  // namespace
+
+size_t page_shapes(const Model& model) {
+  const auto bytes = 16 * static_cast<size_t>(std::max<Eigen::Index>(1, model.X.cols()));
+  return std::clamp<size_t>(kShapeBytes / bytes, 2, kMostShapes);
+}
+
+PagePlot residual_plot(const std::vector<NamedReport>& reports, bool against_time) {
+  PagePlot plot{
+      .title = against_time ? "Residual against wall time" : "Residual against iterates",
+      .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
+      .y = {"residual", Scale::Logarithmic},
+      .note = "Residual: the largest out-of-balance nodal force over the largest applied or reaction force."};
+  for (const NamedReport& each : reports) {
+    PageSeries& series = plot.series.emplace_back();
+    series.name = each.name;
+    const std::vector<Iteration>& trace = each.report->result.trace;
+    for (size_t k = 0; k < trace.size(); ++k)
+      series.points.push_back({.x = against_time ? trace[k].seconds : trace[k].iteration,
+                               .y = trace[k].residual,
+                               .label = "iterate " + std::to_string(trace[k].iteration),
+                               .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
+  }
+  plot.levels = {{reports.front().report->tolerance, "tolerance"}};
+  return plot;
+}
+
+PageSection what_was_solved(const Model& model, const Report& report) {
+  PageSection section{"What was solved", {solve_table(model, report), term_table(report.result)}};
+  if (!report.result.phase_s.empty()) section.blocks.emplace_back(phase_table(report.result));
+  if (!report.levels.empty()) section.blocks.emplace_back(level_table(report.levels));
+  return section;
+}
+
+std::vector<PageSection> solve_account(const Model& model, const Report& report) {
+  std::vector<PageSection> account = {figures(report), convergence(report), what_was_solved(model, report)};
+  if (report.branches) account.insert(account.begin() + 1, other_equilibria(report));
+  return account;
+}
+
+std::string solve_page(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  Page page;
+  page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
+  page.lead = result.message;
+  page.tone = result.status != Status::Converged            ? Tone::Bad
+              : stability_doubt(result.certificate).empty() ? Tone::Good
+                                                            : Tone::Caution;
+  if (PageList warnings = warning_list(report); !warnings.items.empty())
+    page.sections.push_back({"Warnings", {std::move(warnings)}});
+  page.sections.push_back({"Shape", {tiles(report), shape_view_html(solved_view(model, report))}});
+  for (PageSection& section : solve_account(model, report)) page.sections.push_back(std::move(section));
+  return report_page(page);
+}
+
+ShownSolve shown_solve(const std::string& what, const Model& model, const Report& report) {
+  ShownSolve shown{what, warning_list(report), solved_view(model, report), solve_account(model, report)};
+  for (PageSection& section : shown.account) section.title += " of the shape above";
+  return shown;
+}
+
+PageSection shape_section(const std::string& title, const ShownSolve& shown) {
+  PageSection section{title, {PageText{shown.what}}};
+  if (!shown.warnings.items.empty()) section.blocks.emplace_back(shown.warnings);
+  section.blocks.emplace_back(shape_view_html(shown.view));
+  return section;
+}
+
+}  // namespace coapt

@@ -1,0 +1,173 @@
+#include "report/solve_view.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace coapt {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+Vector of_flags(const std::vector<char>& flags) {
+  Vector values(std::ssize(flags));
+  for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = flags[static_cast<size_t>(k)];
+  return values;
+}
+
+std::string millimetres(double value) { return page_number(value, 3) + " mm"; }
+
+void add_contact(const Fields& fields, std::vector<ViewField>& all) {
+  if (fields.gap.size() == 0) return;
+  // Infinite where nothing was found.
+  const Vector gap = fields.gap.unaryExpr(
+      [](double value) { return std::isfinite(value) && value >= 0 ? value : kNothing; });
+  all.push_back({.title = "Gap to the nearest other facet",
+                 .unit = "mm",
+                 .values = {gap},
+                 .is_reversed = true,
+                 .none = "none within " + millimetres(fields.gap_reach)});
+  all.push_back({.title = "Contact",
+                 .place = ViewPlace::Triangle,
+                 .values = {of_flags(fields.is_contact_facet)},
+                 .categories = {"apart", "within " + millimetres(fields.contact_distance)}});
+}
+
+void add_distances(const Fields& fields, std::vector<ViewField>& all) {
+  if (fields.reference_distance.size() > 0)
+    all.push_back({.title = "Distance to the given closed surface",
+                   .unit = "mm",
+                   .values = {fields.reference_distance}});
+  if (fields.method_distance.size() > 0)
+    all.push_back({.title = kMethodDistance, .unit = "mm", .values = {fields.method_distance}});
+  if (fields.branch_spread.size() > 0 && fields.branch_spread.maxCoeff() > 0)
+    all.push_back({.title = "Distance to other equilibria", .unit = "mm", .values = {fields.branch_spread}});
+}
+
+void add_strains(const Fields& fields, std::vector<ViewField>& all) {
+  const auto add = [&all](const char* title, const char* unit, const Vector& values) {
+    all.push_back({.title = title, .unit = unit, .place = ViewPlace::Triangle, .values = {values}});
+  };
+  if (fields.principal_strain.cols() > 0) {
+    add("Greater principal strain", "", fields.principal_strain.row(0));
+    add("Lesser principal strain", "", fields.principal_strain.row(1));
+  }
+  if (fields.principal_stress.cols() == 0) return;
+  add("Greater principal stress", "MPa", fields.principal_stress.row(0));
+  add("Lesser principal stress", "MPa", fields.principal_stress.row(1));
+  Vector regime(std::ssize(fields.regime));
+  for (Eigen::Index t = 0; t < regime.size(); ++t)
+    regime[t] = static_cast<double>(fields.regime[static_cast<size_t>(t)]);
+  all.push_back({.title = "Taut, wrinkled, slack",
+                 .place = ViewPlace::Triangle,
+                 .values = {regime},
+                 .categories = {"slack", "wrinkled", "taut"}});
+}
+
+void add_regions(const Model& model, std::vector<ViewField>& all) {
+  if (model.mesh.regions.empty()) return;
+  Vector region(model.mesh.triangle_count());
+  for (Eigen::Index t = 0; t < region.size(); ++t) region[t] = model.mesh.regions[static_cast<size_t>(t)];
+  all.push_back({.title = "Region",
+                 .place = ViewPlace::Triangle,
+                 .values = {region},
+                 .categories = model.mesh.region_names});
+}
+
+std::string label(const Iteration& iteration, bool is_start) {
+  if (is_start) return "start, as given";
+  char text[128];
+  std::snprintf(text, sizeof text, "iterate %d, residual %.1e", iteration.iteration, iteration.residual);
+  std::string label = text;
+  if (iteration.time > 0) label += ", after " + page_number(iteration.time, 3) + " s of motion";
+  return label;
+}
+
+std::string label(const Result& result) {
+  char text[128];
+  std::snprintf(text, sizeof text, ", residual %.1e", result.residual);
+  return "result: " + std::string(status_name(result.status)) + text;
+}
+
+// The input's x axis to the right, or where one looks along it, its y axis: the same valve stands the same
+// way in every page.
+ViewFrame upright(ViewFrame frame) {
+  const Vec3 axis = std::abs(frame.up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  frame.e1 = (axis - axis.dot(frame.up) * frame.up).normalized();
+  frame.e2 = frame.up.cross(frame.e1);
+  return frame;
+}
+
+}  // namespace
+
+ViewFrame viewing_frame(const Model& model, const Fields& fields) {
+  if (const std::vector<int>* annulus = annulus_of(model)) return annulus_frame(model, fields, *annulus);
+  Vec3 facing = Vec3::Zero();
+  for (int t = 0; t < model.mesh.triangle_count(); ++t)
+    facing += area_vector(fields.x, model.mesh.triangles.col(t));
+  const double area = surface_area(fields.x, model.mesh.triangles);
+  const Vec3 centre = 0.5 * (fields.x.rowwise().minCoeff() + fields.x.rowwise().maxCoeff());
+  return view_frame(centre, facing.norm() > 0.01 * area ? facing : Vec3::UnitZ());
+}
+
+ShapeView bare_view(const Model& model, const Fields& fields) {
+  ShapeView view;
+  view.origin = model.origin;
+  view.triangles = model.mesh.triangles;
+  view.obstacles = model.obstacles;
+  view.lines.resize(2, std::ssize(model.lines));
+  for (size_t k = 0; k < model.lines.size(); ++k)
+    view.lines.col(static_cast<Eigen::Index>(k)) << model.lines[k].a, model.lines[k].b;
+  view.frame = upright(viewing_frame(model, fields));
+  view.is_valve = annulus_of(model) != nullptr;
+  return view;
+}
+
+std::vector<ViewField> view_fields(const Model& model, const Fields& fields) {
+  std::vector<ViewField> all;
+  add_contact(fields, all);
+  add_distances(fields, all);
+  const Vector moved = fields.displacement.colwise().norm().transpose();
+  all.push_back({.title = "Displacement", .unit = "mm", .values = {moved}});
+  add_strains(fields, all);
+  add_regions(model, all);
+  return all;
+}
+
+ViewState result_state(const std::string& label, const Report& report) {
+  ViewState state{.label = label, .x = report.fields.x};
+  if (const auto& closure = report.metrics.closure) {
+    for (const Seam& seam : closure->line) state.outlines.push_back({false, seam.points});
+    for (const Orifice& orifice : closure->orifices)
+      state.outlines.push_back({true, orifice.outline.corners});
+  }
+  if (const auto& area = report.metrics.orifice_area_mm2)
+    state.orifice_text = "orifice outline, " + page_number(*area) + " mm²";
+  return state;
+}
+
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& way) {
+  std::vector<ViewState> states;
+  for (const RecordedShape& shape : way)
+    states.push_back({.label = label(shape.iteration, states.empty()), .x = shape.x, .is_on_the_way = true});
+  states.push_back(result_state(label(report.result), report));
+  return states;
+}
+
+ShapeView solved_view(const Model& model, const Report& report) {
+  ShapeView view = bare_view(model, report.fields);
+  view.name = "coapt";
+  if (view.is_valve) view.slider = "Open ↔ closed";
+  view.states = view_states(report, report.way);
+  view.fields = view_fields(model, report.fields);
+  if (!model.lines.empty())
+    view.line_force = {.title = "Force in chords and cables",
+                       .unit = "N",
+                       .place = ViewPlace::Line,
+                       .values = {report.fields.line_force}};
+  return view;
+}
+
+}  // namespace coapt

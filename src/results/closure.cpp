@@ -1,0 +1,294 @@
+#include "results/closure.hpp"
+
+#include "mesh/projected_area.hpp"
+#include "mesh/remesh/spanning_surface.hpp"
+#include "results/coaptation_height.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr int kSmallestOutline = 4;             // cells of the view
+constexpr int kFinest = 1024, kCoarsest = 128;  // cells over the extent of the annulus
+
+// Eight cells to an edge, four to the contact distance, within bounds that keep the view cheap and useful.
+double cell_size(double extent, double mean_edge, double contact_distance) {
+  return std::clamp(std::min(mean_edge / 8, contact_distance / 4), extent / kFinest, extent / kCoarsest);
+}
+
+// All that is looked at while the figures are taken.
+struct Scenery {
+  const Model& model;
+  const Fields& fields;
+  Points surface, annulus;  // of the closed state
+  TopView view;
+  ClosedView closed;
+  int radius = 0;  // of the closing, in cells
+  SpanningSurface spanned;
+
+  int region(int triangle) const {
+    return model.mesh.regions.empty() ? 0 : model.mesh.regions[static_cast<size_t>(triangle)];
+  }
+  size_t region_count() const { return std::max<size_t>(1, model.mesh.region_names.size()); }
+  // The triangle that is seen at a node of the closed view; -1 in an orifice.
+  int top(size_t node) const {
+    const int source = closed.source[node];
+    return source < 0 ? -1 : view.triangle[static_cast<size_t>(source)];
+  }
+  bool is_contact(int vertex) const { return fields.is_contact[static_cast<size_t>(vertex)] != 0; }
+};
+
+Scenery look(const Model& model, const Fields& fields) {
+  const std::vector<int>& loop = *annulus_of(model);
+  const ViewFrame frame = annulus_frame(model, fields, loop);
+  const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
+  const Points outline = in_frame(annulus, frame);
+  const double extent = (outline.rowwise().maxCoeff() - outline.rowwise().minCoeff()).head<2>().maxCoeff();
+  const double cell =
+      cell_size(extent, mean_edge_length(surface, model.mesh.triangles), fields.contact_distance);
+  const int radius = std::max(1, static_cast<int>(std::lround(fields.contact_distance / 2 / cell)));
+  TopView view = top_view(surface, model.mesh.triangles, annulus, frame, cell, radius + 1);
+  ClosedView closed = closed_view(view, radius);
+  return {
+      model, fields, surface, annulus, std::move(view), std::move(closed), radius, SpanningSurface(outline)};
+}
+
+// Open nodes that hang together with the given one, across the edges of cells.
+std::vector<int> open_place(const TopView& view, int node, std::vector<char>& seen) {
+  std::vector<int> place = {node};
+  seen[static_cast<size_t>(node)] = 1;
+  for (size_t k = 0; k < place.size(); ++k)  // nodes at the border of the view are never open
+    for (const int step : {-1, 1, -view.columns, view.columns}) {
+      const auto next = static_cast<size_t>(place[k] + step);
+      if (!view.is_open[next] || seen[next]) continue;
+      seen[next] = 1;
+      place.push_back(static_cast<int>(next));
+    }
+  return place;
+}
+
+void find_orifices(const Scenery& scenery, Closure& closure) {
+  const TopView& view = scenery.view;
+  const double cell_area = view.cell * view.cell;
+  std::vector<char> seen(static_cast<size_t>(view.node_count()), 0);
+  for (Outline& outline : open_outlines(view)) {
+    Orifice orifice{std::move(outline), 0};
+    if (orifice.outline.area > 0)
+      for (const int node : open_place(view, orifice.outline.open_node, seen))
+        if (!std::isfinite(scenery.closed.height[static_cast<size_t>(node)]))
+          orifice.regurgitant_area_mm2 += cell_area;
+    closure.regurgitant_area_mm2 += orifice.regurgitant_area_mm2;
+    if (std::abs(orifice.outline.area) >= kSmallestOutline * cell_area)
+      closure.orifices.push_back(std::move(orifice));
+  }
+}
+
+// Mean height of the rims of all orifices: what stands in for the leaflets there.
+double rim_height(const Closure& closure) {
+  double weighted = 0, length = 0;
+  for (const Orifice& orifice : closure.orifices) {
+    weighted += orifice.outline.mean_height * orifice.outline.perimeter;
+    length += orifice.outline.perimeter;
+  }
+  return length > 0 ? weighted / length : 0;
+}
+
+void measure_tenting_volume(const Scenery& scenery, Closure& closure) {
+  const TopView& view = scenery.view;
+  const double rim = rim_height(closure), cell_area = view.cell * view.cell;
+  for (int node = 0; node < view.node_count(); ++node) {
+    const auto n = static_cast<size_t>(node);
+    if (!view.is_inside[n]) continue;
+    const bool is_hole = !std::isfinite(scenery.closed.height[n]);
+    const double height = is_hole ? rim : scenery.closed.height[n];
+    const double x = view.x0 + (node % view.columns) * view.cell,
+                 y = view.y0 + (node / view.columns) * view.cell;
+    const double volume = std::max(0.0, scenery.spanned.height(x, y) - height) * cell_area;
+    closure.tenting_volume_mm3 += volume;
+    if (is_hole) continue;
+    const int top = scenery.top(n);
+    if (top < 0) continue;
+    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(scenery.region(top))];
+    leaflet.tenting_volume_mm3 += volume;
+  }
+}
+
+// At most so many corners: the highest chord needs no more.
+Points thinned(const Points& polygon, Eigen::Index count) {
+  const Eigen::Index step = (polygon.cols() + count - 1) / count;
+  Points result(3, (polygon.cols() + step - 1) / step);
+  for (Eigen::Index k = 0; k < result.cols(); ++k) result.col(k) = polygon.col(k * step);
+  return result;
+}
+
+// By vertex, so that nothing depends on the view but which of them lie within the annulus.
+void measure_prolapse(const Scenery& scenery, Closure& closure) {
+  const TopView& view = scenery.view;
+  const Points plan = in_frame(scenery.surface, view.frame);
+  const Points annulus = thinned(in_frame(scenery.annulus, view.frame), 128);
+  for (int t = 0; t < scenery.model.mesh.triangle_count(); ++t) {
+    double& highest = closure.leaflets[static_cast<size_t>(scenery.region(t))].prolapse_height_mm;
+    for (const int v : scenery.model.mesh.triangles.col(t)) {
+      const Vec3 p = plan.col(v);
+      const double i = std::round((p[0] - view.x0) / view.cell), j = std::round((p[1] - view.y0) / view.cell);
+      if (i < 0 || j < 0 || i >= view.columns || j >= view.rows) continue;
+      if (!view.is_inside[static_cast<size_t>(j * view.columns + i)]) continue;
+      // The highest chord is nowhere below the spanned surface, which is quick to ask.
+      if (p[2] - scenery.spanned.height(p[0], p[1]) <= highest) continue;
+      const double chord = highest_chord(annulus, p[0], p[1]);
+      if (std::isfinite(chord)) highest = std::max(highest, p[2] - chord);
+    }
+    closure.prolapse_height_mm = std::max(closure.prolapse_height_mm, highest);
+  }
+}
+
+// Nodes near which, seen from above, a vertex is in contact: a bulge may hide where contact begins.
+std::vector<char> near_contact(const Scenery& scenery) {
+  const TopView& view = scenery.view;
+  const Points plan = in_frame(scenery.surface, view.frame);
+  std::vector<char> marked(static_cast<size_t>(view.node_count()), 0);
+  for (Eigen::Index v = 0; v < plan.cols(); ++v) {
+    if (!scenery.is_contact(static_cast<int>(v))) continue;
+    const double i = std::round((plan(0, v) - view.x0) / view.cell),
+                 j = std::round((plan(1, v) - view.y0) / view.cell);
+    if (i >= 0 && j >= 0 && i < view.columns && j < view.rows)
+      marked[static_cast<size_t>(j * view.columns + i)] = 1;
+  }
+  const double extent = view.cell * std::max(view.columns, view.rows);
+  const double reach = std::max(extent / 20, mean_edge_length(scenery.surface, scenery.model.mesh.triangles));
+  return near_marked(view, marked, static_cast<int>(std::ceil(reach / view.cell)));
+}
+
+double depth_of(const Scenery& scenery, const Vec3& point) {
+  return std::max(0.0, -(point - scenery.view.frame.centre).dot(scenery.view.frame.up));
+}
+
+using WeightedDepth = std::pair<double, double>;  // depth and length of a stretch
+
+// The depth that nine tenths of the length do not exceed; 0 for no length.
+double ninth_decile_depth(std::vector<WeightedDepth> depths) {
+  std::sort(depths.begin(), depths.end());
+  double total = 0, below = 0;
+  for (const auto& [depth, length] : depths) total += length;
+  for (const auto& [depth, length] : depths)
+    if ((below += length) >= 0.9 * total) return depth;
+  return 0;
+}
+
+// Without a line: the greatest depth of what is seen.
+void measure_seen_depth(const Scenery& scenery, Closure& closure) {
+  const auto deepen = [](double& depth, double candidate) { depth = std::max(depth, candidate); };
+  for (size_t n = 0; n < scenery.closed.height.size(); ++n) {
+    const int top = scenery.top(n);
+    if (!scenery.view.is_inside[n] || top < 0) continue;
+    deepen(closure.tenting_height_mm, -scenery.closed.height[n]);
+    deepen(closure.leaflets[static_cast<size_t>(scenery.region(top))].tenting_height_mm,
+           -scenery.closed.height[n]);
+  }
+}
+
+// Depth of the coaptation line below the annulus plane. Its ends dive where they reach an orifice: not the
+// deepest place counts, but the ninth decile of the length.
+void measure_tenting_height(const Scenery& scenery, Closure& closure) {
+  if (closure.line.empty()) return measure_seen_depth(scenery, closure);
+  std::vector<WeightedDepth> all;
+  std::vector<std::vector<WeightedDepth>> of_leaflet(closure.leaflets.size());
+  for (const Seam& seam : closure.line)
+    for (size_t k = 0; k < seam.triangles.size(); ++k) {
+      const Vec3 a = seam.points.col(static_cast<Eigen::Index>(k)),
+                 b = seam.points.col(static_cast<Eigen::Index>(k) + 1);
+      const WeightedDepth stretch = {depth_of(scenery, 0.5 * (a + b)), (b - a).norm()};
+      const int one = scenery.region(seam.triangles[k][0]), other = scenery.region(seam.triangles[k][1]);
+      all.push_back(stretch);
+      of_leaflet[static_cast<size_t>(one)].push_back(stretch);
+      if (other != one) of_leaflet[static_cast<size_t>(other)].push_back(stretch);
+    }
+  closure.tenting_height_mm = ninth_decile_depth(all);
+  for (size_t r = 0; r < of_leaflet.size(); ++r)
+    closure.leaflets[r].tenting_height_mm = ninth_decile_depth(of_leaflet[r]);
+}
+
+// Vertices in contact of one leaflet, or of all (-1), each once.
+std::vector<Vec3> contact_of(const Scenery& scenery, int region) {
+  const TriangleMesh& mesh = scenery.model.mesh;
+  std::vector<char> taken(static_cast<size_t>(mesh.vertex_count()), 0);
+  std::vector<Vec3> points;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    if (region >= 0 && scenery.region(t) != region) continue;
+    for (const int v : mesh.triangles.col(t)) {
+      if (!scenery.is_contact(v) || taken[static_cast<size_t>(v)]) continue;
+      taken[static_cast<size_t>(v)] = 1;
+      points.push_back(scenery.surface.col(v));
+    }
+  }
+  return points;
+}
+
+void measure_line(const Scenery& scenery, Closure& closure) {
+  const double mean_edge = mean_edge_length(scenery.surface, scenery.model.mesh.triangles);
+  const double shortest = std::max(2 * scenery.fields.contact_distance, 2 * mean_edge);
+  closure.line = seams(scenery.view, scenery.closed, scenery.surface, scenery.model.mesh.triangles,
+                       {near_contact(scenery), scenery.radius, shortest});
+  for (const Seam& seam : closure.line) {
+    closure.coaptation_length_mm += length_of(seam);
+    for (size_t k = 0; k < seam.triangles.size(); ++k) {
+      const auto c = static_cast<Eigen::Index>(k);
+      const double length = (seam.points.col(c + 1) - seam.points.col(c)).norm();
+      const int a = scenery.region(seam.triangles[k][0]), b = scenery.region(seam.triangles[k][1]);
+      closure.leaflets[static_cast<size_t>(a)].coaptation_length_mm += length;
+      if (b != a) closure.leaflets[static_cast<size_t>(b)].coaptation_length_mm += length;
+    }
+  }
+  const double spacing = std::max(2 * mean_edge, closure.coaptation_length_mm / 400);
+  const std::vector<Station> places = stations(closure.line, spacing);
+  const std::vector<double> heights = heights_at(places, contact_of(scenery, -1), spacing);
+  closure.local_height = heights_along(closure.line, places, heights);
+  closure.coaptation_height_mm = ninth_decile(heights);
+  for (size_t r = 0; r < closure.leaflets.size(); ++r)
+    closure.leaflets[r].coaptation_height_mm =
+        ninth_decile(heights_at(places, contact_of(scenery, static_cast<int>(r)), spacing));
+}
+
+void measure_areas(const Scenery& scenery, Closure& closure) {
+  const TriangleMesh& mesh = scenery.model.mesh;
+  const Vector contact = contact_areas(scenery.model, scenery.fields);
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(scenery.region(t))];
+    leaflet.area_open_mm2 += area_vector(scenery.model.X, mesh.triangles.col(t)).norm();
+    leaflet.area_closed_mm2 += area_vector(scenery.surface, mesh.triangles.col(t)).norm();
+    leaflet.contact_area_mm2 += contact[t];
+    leaflet.contact_facets += scenery.fields.is_contact_facet[static_cast<size_t>(t)];
+  }
+  for (size_t r = 0; r < closure.leaflets.size(); ++r)
+    closure.leaflets[r].contact_vertices = static_cast<long>(contact_of(scenery, static_cast<int>(r)).size());
+}
+
+}  // namespace
+
+ViewFrame annulus_frame(const Model& model, const Fields& fields, const std::vector<int>& annulus) {
+  const Plane plane = best_fit_plane(fields.x(Eigen::all, annulus));
+  const Vec3 open_centre = model.X(Eigen::all, annulus).rowwise().mean();
+  const Vec3 hang = model.X.leftCols(model.mesh.vertex_count()).rowwise().mean() - open_centre;
+  return view_frame(plane.centre, hang.dot(plane.normal) > 0 ? Vec3(-plane.normal) : plane.normal);
+}
+
+Closure closure_of(const Model& model, const Fields& fields) {
+  const Scenery scenery = look(model, fields);
+  Closure closure;
+  closure.cell = scenery.view.cell;
+  closure.leaflets.resize(scenery.region_count());
+  for (size_t r = 0; r < model.mesh.region_names.size(); ++r)
+    closure.leaflets[r].name = model.mesh.region_names[r];
+  find_orifices(scenery, closure);
+  measure_tenting_volume(scenery, closure);
+  measure_prolapse(scenery, closure);
+  measure_line(scenery, closure);
+  measure_tenting_height(scenery, closure);
+  measure_areas(scenery, closure);
+  if (model.mesh.regions.empty()) closure.leaflets.clear();
+  return closure;
+}
+
+}  // namespace coapt

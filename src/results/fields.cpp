@@ -1,0 +1,165 @@
+#include "results/fields.hpp"
+
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
+#include "energy/kernels/cable_law.hpp"
+#include "energy/kernels/spring.hpp"
+#include "energy/kernels/tether_cubic.hpp"
+#include "mesh/distance/vertex_gaps.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+// Green strain of a triangle in its rest plane.
+Eigen::Matrix2d green_strain(const Points& X, const Points& x, const Eigen::Vector3i& t) {
+  const Vec3 E1 = X.col(t[1]) - X.col(t[0]), E2 = X.col(t[2]) - X.col(t[0]);
+  const Vec3 along = E1.normalized(), across = E1.cross(E2).cross(E1).normalized();
+  Eigen::Matrix2d rest;
+  rest << E1.dot(along), E2.dot(along), 0, E2.dot(across);
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << x.col(t[1]) - x.col(t[0]), x.col(t[2]) - x.col(t[0]);
+  const Eigen::Matrix<double, 3, 2> F = edges * rest.inverse();
+  return 0.5 * (F.transpose() * F - Eigen::Matrix2d::Identity());
+}
+
+// Eigenvalues of a symmetric 2 x 2 matrix, larger first.
+Eigen::Vector2d principal_values(const Eigen::Matrix2d& m) {
+  const double mean = 0.5 * (m(0, 0) + m(1, 1)), half = 0.5 * (m(0, 0) - m(1, 1));
+  const double radius = std::hypot(half, m(0, 1));
+  return {mean + radius, mean - radius};
+}
+
+// Of the last membrane term that covers a triangle; none: no stress.
+void add_stress(const Model& model, Fields& fields) {
+  const auto count = model.mesh.triangle_count();
+  fields.principal_stress = Eigen::Matrix2Xd::Zero(2, count);
+  fields.regime.assign(static_cast<size_t>(count), MembraneRegime::Slack);
+  for (const MembranePatch& patch : model.membrane_patches)
+    for (size_t e = 0; e < patch.triangles.size(); ++e) {
+      const int t = patch.triangles[e];
+      const Eigen::Vector3i c = model.mesh.triangles.col(t);
+      CstVector x;
+      x << fields.x.col(c[0]), fields.x.col(c[1]), fields.x.col(c[2]);
+      const MembraneState state = patch.state(static_cast<int>(e), x);
+      fields.principal_stress.col(t) = state.stress;
+      fields.regime[static_cast<size_t>(t)] = state.regime;
+    }
+}
+
+// Springs have forces and no stress, so beside them no triangle is told to be slack.
+bool has_springs(const Model& model) {
+  const auto& terms = model.objective->terms();
+  return std::any_of(terms.begin(), terms.end(),
+                     [](const auto& term) { return term->type() == Spring::kType; });
+}
+
+void add_strain_and_stress(const Model& model, Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  fields.principal_strain.resize(2, triangles.cols());
+  for (int t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector2d green = principal_values(green_strain(model.X, fields.x, triangles.col(t)));
+    fields.principal_strain.col(t) = (1 + 2 * green.array()).max(0).sqrt() - 1;
+  }
+  if (!model.membrane_patches.empty() && !has_springs(model)) add_stress(model, fields);
+}
+
+template <typename Kernel>
+bool tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
+  const auto* lines = dynamic_cast<const ElementTerm<Kernel>*>(&term);
+  if (lines == nullptr) return false;
+  Eigen::Vector<double, 6> ends, g;
+  ends << x.col(line.a), x.col(line.b);
+  Kernel::evaluate(lines->rest()[line.element], ends, &g, nullptr);
+  // The gradient at the second end is the force along the line from the first to the second.
+  force = g.tail<3>().dot((x.col(line.b) - x.col(line.a)).normalized());
+  return true;
+}
+
+template <typename... Kernels>
+void first_tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
+  static_cast<void>((tension_of<Kernels>(term, line, x, force) || ...));
+}
+
+void add_line_forces(const Model& model, Fields& fields) {
+  fields.line_force = Vector::Zero(static_cast<Eigen::Index>(model.lines.size()));
+  for (size_t k = 0; k < model.lines.size(); ++k)
+    for (const auto& term : model.objective->terms()) {
+      if (term->name() != model.lines[k].term) continue;
+      double& force = fields.line_force[static_cast<Eigen::Index>(k)];
+      first_tension_of<Cable, TetherCubic, CableBilinear, CableOgden, CableToe, CableCrimpedFibre>(
+          *term, model.lines[k], fields.x, force);
+    }
+}
+
+void add_contact(const Model& model, Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  const Points surface = fields.x.leftCols(model.mesh.vertex_count());
+  fields.contact_distance = contact_distance(model);
+  fields.gap_reach = std::max(2 * fields.contact_distance, 3 * mean_edge_length(fields.x, triangles));
+  fields.gap = vertex_gaps(surface, triangles, fields.gap_reach);
+  fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
+  for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
+    fields.is_contact[static_cast<size_t>(v)] = fields.gap[v] <= fields.contact_distance;
+  const auto touches = [&](int v) { return fields.is_contact[static_cast<size_t>(v)] != 0; };
+  for (const auto& t : triangles.colwise())
+    fields.is_contact_facet.push_back(touches(t[0]) && touches(t[1]) && touches(t[2]));
+}
+
+// Part of a triangle over which a linear function with these values at the corners is at most `level`.
+double part_below(std::array<double, 3> values, double level) {
+  std::sort(values.begin(), values.end());
+  const auto [a, b, c] = values;
+  if (c <= level) return 1;
+  if (a >= level) return 0;
+  if (b >= level) return (level - a) * (level - a) / ((b - a) * (c - a));
+  return 1 - (c - level) * (c - level) / ((c - a) * (c - b));
+}
+
+}  // namespace
+
+std::optional<double> line_strain(const Line& line, const Points& x) {
+  if (line.rest_length <= 0) return std::nullopt;
+  return (x.col(line.a) - x.col(line.b)).norm() / line.rest_length - 1;
+}
+
+const std::vector<int>* annulus_of(const Model& model) {
+  const auto annulus = model.sets.find("annulus");
+  return annulus != model.sets.end() && annulus->second.size() >= 3 ? &annulus->second : nullptr;
+}
+
+bool looks_for_contact(const Model& model) { return model.contact_range > 0 || annulus_of(model) != nullptr; }
+
+double contact_distance(const Model& model) {
+  if (model.contact_range > 0) return model.contact_range;
+  return 0.5 * mean_edge_length(model.X, model.mesh.triangles);
+}
+
+Fields compute_fields(const Model& model, const Points& x) {
+  Fields fields;
+  fields.x = x;
+  fields.displacement = x - model.X;
+  add_strain_and_stress(model, fields);
+  add_line_forces(model, fields);
+  if (looks_for_contact(model)) add_contact(model, fields);
+  return fields;
+}
+
+Vector contact_areas(const Model& model, const Fields& fields) {
+  const Triangles& triangles = model.mesh.triangles;
+  const auto gap = [&](int v) { return std::isnan(fields.gap[v]) ? fields.gap_reach : fields.gap[v]; };
+  Vector areas(triangles.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3i c = triangles.col(t);
+    areas[t] = area_vector(fields.x, c).norm() *
+               part_below({gap(c[0]), gap(c[1]), gap(c[2])}, fields.contact_distance);
+  }
+  return areas;
+}
+
+}  // namespace coapt

@@ -1,0 +1,56 @@
+// What a solved state looks like, point by point: displacement, strain, stress, gap, contact, distance to
+// a reference, force in each line.
+#pragma once
+
+#include "scene/build/model.hpp"
+
+#include <optional>
+
+namespace coapt {
+
+struct Fields {
+  Points x;                            // positions, 3 x node_count, relative to the model's origin [mm]
+  Points displacement;                 // x - X, 3 x node_count [mm]
+  Eigen::Matrix2Xd principal_strain;   // engineering strain (stretch - 1), largest first, per triangle
+  Eigen::Matrix2Xd principal_stress;   // second Piola-Kirchhoff [MPa], largest first, per triangle; no
+                                       // columns for a model without membrane stress, or with springs
+  std::vector<MembraneRegime> regime;  // per triangle; empty where there is no stress
+  Vector gap;  // per mesh vertex, see mesh/distance/vertex_gaps.hpp [mm]; empty where nobody
+               // asks for contact, see looks_for_contact
+  std::vector<char> is_contact;        // per mesh vertex: gap <= contact_distance; empty like gap
+  std::vector<char> is_contact_facet;  // per triangle: all its corners are in contact; empty like gap
+  double contact_distance = 0;         // [mm]
+  double gap_reach = 0;                // how far gaps were looked for [mm]
+  Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
+  Vector method_distance;          // per mesh vertex to the shape that the reference method of a comparison
+                                   // found [mm]; empty outside of one
+  Vector branch_spread;            // per node, Branches::spread_mm [mm]; empty where nothing was looked for
+  std::vector<char> undetermined;  // per node, see undetermined_flags; empty before that is known
+  Vector line_force;               // tension of each line of the model [N]; negative for compression
+};
+
+// Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that
+// covers the triangle, the prestress included. The regime of a membrane that resists compression is that in
+// which a tension field would be.
+Fields compute_fields(const Model& model, const Points& x);
+
+// Length of a line at positions x over its rest length, less 1; empty for a constant-force cable, which has
+// no rest length.
+std::optional<double> line_strain(const Line& line, const Points& x);
+
+// Whether contact means anything to the model: it has an annulus or a contact term. Others pay nothing for
+// it.
+bool looks_for_contact(const Model& model);
+
+// The annulus of the model, an ordered loop of at least three vertices; null without one.
+const std::vector<int>* annulus_of(const Model& model);
+
+// The distance below which a vertex counts as in contact: the range of the contact term, or, in a model
+// without one, half the mean edge length of the reference mesh [mm].
+double contact_distance(const Model& model);
+
+// Of each closed triangle the area over which the gap, linear between its corners, is at most the contact
+// distance; corners without a gap count as those at the end of the reach. [mm2] Pre: fields of contact.
+Vector contact_areas(const Model& model, const Fields& fields);
+
+}  // namespace coapt

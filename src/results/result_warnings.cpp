@@ -1,0 +1,25 @@
+#include "results/result_warnings.hpp"
+
+namespace coapt {
+
+std::vector<std::string> result_warnings(const Report& report) {
+  std::vector<std::string> warnings = report.warnings;
+  const Certificate& certificate = report.result.certificate;
+  if (report.result.status == Status::Converged)
+    if (const std::string doubt = stability_doubt(certificate); !doubt.empty())
+      warnings.push_back("The stability of this equilibrium is in doubt: " + doubt + ".");
+  if (report.branches && report.branches->equilibria.size() > 1)
+    warnings.push_back("This shape is one of several equilibria: " + branches_message(*report.branches) +
+                       ". Figures that differ between them are given with their range.");
+  const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, report.branches);
+  if (nodes.total() > 0)
+    warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +
+                       std::to_string(nodes.free) + " can be moved at no cost" +
+                       (report.branches
+                            ? ", " + std::to_string(nodes.differing) + " others differ between the equilibria"
+                            : "") +
+                       ").");
+  return warnings;
+}
+
+}  // namespace coapt

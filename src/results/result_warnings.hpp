@@ -1,0 +1,15 @@
+// What a reader of a result must know before its figures.
+#pragma once
+
+#include "results/results.hpp"
+
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// Whole sentences: the warnings of the solve; why its stability is in doubt; that other equilibria were found
+// near by; how many nodes have no determined place.
+std::vector<std::string> result_warnings(const Report& report);
+
+}  // namespace coapt

@@ -1,0 +1,367 @@
+#include "results/results.hpp"
+
+#include "core/components.hpp"
+#include "core/error.hpp"
+#include "energy/kernels/spring.hpp"
+#include "formats/json/csv_text.hpp"
+#include "formats/json/json_text.hpp"
+#include "formats/mesh_io.hpp"
+#include "formats/whole_file.hpp"
+#include "results/branches_json.hpp"
+#include "results/result_surfaces.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <system_error>
+
+namespace coapt {
+
+using OrderedJson = nlohmann::ordered_json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// JSON knows no NaN and no infinity.
+OrderedJson number(double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); }
+
+OrderedJson terms_json(const Result& result) {
+  OrderedJson terms = OrderedJson::array();
+  for (const TermReport& term : result.terms)
+    terms.push_back({{"name", term.name},
+                     {"type", term.type},
+                     {"energy", number(term.energy)},
+                     {"greatest_force", number(term.greatest_force)},
+                     {"counters",
+                      {{"elements", term.counters.elements},
+                       {"candidates", term.counters.candidates},
+                       {"searches", term.counters.searches}}}});
+  return terms;
+}
+
+OrderedJson rows_json(const std::vector<MetricRow>& rows) {
+  OrderedJson json = OrderedJson::object();
+  for (const MetricRow& row : rows) {
+    if (!row.value)
+      json[row.name] = nullptr;
+    else if (row.is_count)
+      json[row.name] = std::lround(*row.value);
+    else
+      json[row.name] = number(*row.value);
+  }
+  return json;
+}
+
+bool has_leaflets(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->leaflets.empty();
+}
+
+OrderedJson leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
+  OrderedJson json = OrderedJson::array();
+  for (const LeafletMetrics& leaflet : leaflets) {
+    OrderedJson entry = {{"name", leaflet.name}};
+    entry.update(rows_json(leaflet_rows(leaflet)));
+    json.push_back(entry);
+  }
+  return json;
+}
+
+OrderedJson figures_json(const DistanceFigures& figures) {
+  return {
+      {"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
+}
+
+OrderedJson reference_json(const ReferenceDistance& distance) {
+  OrderedJson json = figures_json(both_directions(distance));
+  json["to_reference"] = figures_json(distance.to_reference);
+  json["from_reference"] = figures_json(distance.from_reference);
+  if (distance.same_vertex)
+    json["same_vertex"] = {{"mean_mm", number(distance.same_vertex->mean)},
+                           {"max_mm", number(distance.same_vertex->max)}};
+  return json;
+}
+
+OrderedJson counters_json(const Model& model, const Result& result) {
+  long membrane = 0, springs = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
+  for (const auto& term : model.objective->terms()) {
+    const long elements = term->counters().elements;
+    const bool is_internal = term->role() == TermRole::Internal;
+    if (is_internal && term->stencils().width == 3) membrane += elements;
+    if (is_internal && term->stencils().width == 2)
+      (term->type() == Spring::kType ? springs : cable) += elements;
+    if (term->type() == "load_pressure") pressure += elements;
+  }
+  for (const TermReport& term : result.terms) {
+    candidates += term.counters.candidates;
+    searches += term.counters.searches;
+  }
+  return {{"membrane_elements", membrane},    {"spring_elements", springs},
+          {"cable_elements", cable},          {"pressure_facets", pressure},
+          {"contact_candidates", candidates}, {"contact_searches", searches}};
+}
+
+OrderedJson counted(int count) { return count < 0 ? OrderedJson(nullptr) : OrderedJson(count); }
+
+OrderedJson certificate_json(const Model& model, const Result& result) {
+  const Certificate& certificate = result.certificate;
+  const std::string doubt = result.status == Status::Converged ? stability_doubt(certificate) : "";
+  const StabilityReport& stability = certificate.stability;
+  const bool is_judged = stability.verdict != Stability::NotKnown;
+  OrderedJson smallest = OrderedJson::array(), parts = OrderedJson::array();
+  for (const double value : stability.smallest) smallest.push_back(number(value));
+  for (const FreePart& part : certificate.free_parts)
+    parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
+  OrderedJson lowest = nullptr;
+  if (stability.is_tangent_judged)
+    lowest = {{"real", number(stability.lowest.real())}, {"imaginary", number(stability.lowest.imag())}};
+  OrderedJson json = {
+      {"summary", summary(certificate)},
+      {"stability", stability_name(stability.verdict)},
+      {"conservative", certificate.is_conservative},
+      {"smallest_pivot_ratio",
+       stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : OrderedJson(nullptr)},
+      {"doubt", doubt.empty() ? OrderedJson(nullptr) : OrderedJson(doubt)},
+      {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
+      {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
+      {"unstable_modes", counted(stability.is_tangent_judged ? stability.unstable_modes : -1)},
+      {"lowest_eigenvalue", lowest},
+      {"free_directions", counted(is_judged ? stability.free_directions : -1)},
+      {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
+      {"free_nodes", certificate.free_nodes},
+      {"smallest_eigenvalues", smallest},
+      {"free_parts", parts},
+      {"force_balance", number(certificate.balance.force)},
+      {"moment_balance", number(certificate.balance.moment)}};
+  if (const auto& worst = certificate.imbalance) {
+    const Vec3 at = worst->position + model.origin;
+    json["imbalance"] = {{"node", worst->node},
+                         {"position_mm", {number(at[0]), number(at[1]), number(at[2])}},
+                         {"force_n", number(worst->force)},
+                         {"term", worst->term},
+                         {"share_n", number(worst->share)}};
+  }
+  return json;
+}
+
+OrderedJson levels_json(const std::vector<CascadeLevel>& levels) {
+  OrderedJson json = OrderedJson::array();
+  for (const CascadeLevel& level : levels)
+    json.push_back({{"triangles", level.triangles},
+                    {"iterations", level.iterations},
+                    {"status", status_name(level.status)},
+                    {"residual", number(level.residual)},
+                    {"wall_s", number(level.wall_s)},
+                    {"cpu_s", number(level.cpu_s)}});
+  return json;
+}
+
+OrderedJson accuracy_json(const AccuracyEstimate& accuracy) {
+  const auto optional = [](const std::optional<double>& value) {
+    return value ? number(*value) : OrderedJson(nullptr);
+  };
+  OrderedJson levels = OrderedJson::array();
+  for (const AccuracyLevel& level : accuracy.levels)
+    levels.push_back({{"triangles", level.triangles},
+                      {"tolerance", number(level.tolerance)},
+                      {"status", status_name(level.status)},
+                      {"iterations", level.iterations},
+                      {"wall_s", number(level.wall_s)},
+                      {"cpu_s", number(level.cpu_s)},
+                      {"distance_to_previous",
+                       level.to_previous ? figures_json(*level.to_previous) : OrderedJson(nullptr)}});
+  return {{"wanted_mm", number(accuracy.wanted_mm)},
+          {"reached", accuracy.is_reached},
+          {"message", accuracy.message},
+          {"total_mm", optional(accuracy.total_mm())},
+          {"discretisation_mm", optional(accuracy.discretisation_mm)},
+          {"algebraic_mm", optional(accuracy.algebraic_mm)},
+          {"order", optional(accuracy.order)},
+          {"cuts", accuracy.cuts},
+          {"solves", levels}};
+}
+
+OrderedJson branch_changes_json(const std::vector<BranchChange>& changes) {
+  OrderedJson json = OrderedJson::array();
+  for (const BranchChange& change : changes)
+    json.push_back(
+        {{"step", change.step}, {"before", change.before}, {"distance_mm", number(change.distance)}});
+  return json;
+}
+
+OrderedJson undetermined_json(const Certificate& certificate, const std::optional<Branches>& branches) {
+  const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, branches);
+  return {{"total", nodes.total()}, {"free", nodes.free}, {"differing", nodes.differing}};
+}
+
+// Iterates at which a round begins, but for the first.
+OrderedJson potential_changes_json(const std::vector<Iteration>& trace) {
+  OrderedJson json = OrderedJson::array();
+  for (size_t k = 1; k < trace.size(); ++k)
+    if (trace[k].round != trace[k - 1].round) json.push_back(trace[k].iteration);
+  return json;
+}
+
+std::string trace_csv(const Result& result) {
+  std::ostringstream out;
+  out.precision(10);
+  out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations,time_s\n";
+  for (const Iteration& it : result.trace)
+    out << it.iteration << ',' << it.round << ',' << it.energy << ',' << it.residual << ',' << it.step << ','
+        << it.seconds << ',' << it.evaluations << ',' << it.time << '\n';
+  return out.str();
+}
+
+// The range over other equilibria stands in two more columns where there are such; leaflets have none.
+std::string metrics_csv(const Report& report) {
+  std::ostringstream out;
+  out.precision(10);
+  const bool has_others = report.branches && !report.branches->others.empty();
+  out << "metric,value,unit" << (has_others ? ",others_lowest,others_highest" : "") << '\n';
+  const auto write = [&](const std::string& prefix, const std::vector<MetricRow>& rows) {
+    for (const MetricRow& row : rows) {
+      out << csv_text(prefix + row.name) << ',';
+      if (row.value && std::isfinite(*row.value)) out << *row.value;
+      out << ',' << row.unit;
+      const BranchRange* others = prefix.empty() ? range_of(report.branches, row.name) : nullptr;
+      if (others != nullptr)
+        out << ',' << others->lowest << ',' << others->highest;
+      else if (has_others)
+        out << ",,";
+      out << '\n';
+    }
+  };
+  write("", metric_rows(report.metrics));
+  if (has_leaflets(report))
+    for (const LeafletMetrics& leaflet : report.metrics.closure->leaflets)
+      write(leaflet.name + ".", leaflet_rows(leaflet));
+  return out.str();
+}
+
+bool has_line(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->line.empty();
+}
+
+bool has_orifice(const Report& report) {
+  return report.metrics.closure && !report.metrics.closure->orifices.empty();
+}
+
+// One that an earlier solve left would be taken for this one's.
+void write_or_remove(bool is_there, const fs::path& file, const std::function<void()>& write) {
+  std::error_code ignored;
+  if (is_there)
+    write();
+  else
+    fs::remove(file, ignored);
+}
+
+}  // namespace
+
+std::string pressure_route(const Model& model, const Result& result) {
+  if (!result.route.empty()) return "follower pressure on a rim that moves: " + result.route;
+  for (const auto& term : model.objective->terms()) {
+    if (term->type() != "load_pressure") continue;
+    if (term->stencils().width == 1) return "frozen: dead forces of the pressure on the reference shape";
+    return "follower pressure by its potential, minus pressure times volume (exact: no rim moves freely)";
+  }
+  return "no pressure";
+}
+
+std::string result_json(const Model& model, const Report& report) {
+  const Result& result = report.result;
+  OrderedJson phases = OrderedJson::object();
+  for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number(seconds);
+  OrderedJson json = {
+      {"version", version()},
+      {"scene", report.scene_file},
+      {"status", status_name(result.status)},
+      {"message", result.message},
+      {"converged", result.status == Status::Converged},
+      {"residual", number(result.residual)},
+      {"energy", number(result.energy)},
+      {"certificate", certificate_json(model, result)},
+      {"terms", terms_json(result)},
+      {"iterations", result.iterations},
+      {"rounds", result.rounds},
+      {"potential_changes", potential_changes_json(result.trace)},
+      {"branch_changes", branch_changes_json(result.branch_changes)},
+      {"evaluations",
+       {{"value", result.evaluations.value},
+        {"gradient", result.evaluations.gradient},
+        {"hessian", result.evaluations.hessian},
+        {"factorisations", result.factorisations}}},
+      {"time", {{"wall_s", number(result.wall_s)}, {"cpu_s", number(result.cpu_s)}, {"by_phase", phases}}},
+      {"peak_memory_mb", number(peak_memory_mb())},
+      {"mesh",
+       {{"vertices", model.mesh.vertex_count()},
+        {"triangles", model.mesh.triangle_count()},
+        {"nodes", model.X.cols()},
+        {"unknowns", model.objective->free_count()}}},
+      {"metrics", rows_json(metric_rows(report.metrics))},
+      {"judge", report.metrics.intersection_judge}};
+  if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
+  if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
+  if (report.accuracy) json["accuracy"] = accuracy_json(*report.accuracy);
+  json["counters"] = counters_json(model, result);
+  json["solver"] = {
+      {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
+  if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
+  json["files"] = result_files(model, report);
+  json["warnings"] = report.warnings;
+  json["neighbours"] = {{"judged", report.neighbours.is_made},
+                        {"suspected", report.neighbours.is_suspected},
+                        {"iterates", report.neighbours.iterates}};
+  json["undetermined_nodes"] = undetermined_json(result.certificate, report.branches);
+  if (report.branches) json["branches"] = branches_json(*report.branches);
+  // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.
+  return json_text(json, 2) + "\n";
+}
+
+std::vector<std::string> result_files(const Model& model, const Report& report) {
+  std::vector<std::string> files = {"result.json", "closed.vtp"};
+  if (model.mesh.triangle_count() > 0) files.push_back("closed.obj");
+  files.insert(files.end(), {"trace.csv", "metrics.csv"});
+  if (has_line(report)) files.push_back("coaptation_line.vtp");
+  if (has_orifice(report)) files.push_back("orifice.vtp");
+  if (report.has_page) files.push_back("report.html");
+  if (report.has_frames) files.push_back("frames.pvd");
+  return files;
+}
+
+void prepare_result_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be used as the result folder: " +
+                     (error ? error.message() : "it is a file") + "; choose another with -o");
+  const fs::path probe = folder / ".coapt.part";
+  {
+    std::ofstream out(probe);
+    if (!out)
+      throw InputError(folder.string() + ": no file can be written into this folder; choose another with -o");
+  }
+  fs::remove(probe, error);
+}
+
+void write_results(const fs::path& folder, const Model& model, const Report& report) {
+  prepare_result_folder(folder);
+  write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
+  const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
+                 mesh = folder / "closed.obj";
+  write_or_remove(has_line(report), line,
+                  [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
+  write_or_remove(has_orifice(report), orifice,
+                  [&] { write_vtp(orifice, orifice_outlines(model, *report.metrics.closure)); });
+  write_or_remove(model.mesh.triangle_count() > 0, mesh, [&] {
+    TriangleMesh closed = model.mesh;
+    closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
+    write_mesh(mesh, closed);
+  });
+  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
+  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
+  // Last: where it is, the others are.
+  formats::write_whole(folder / "result.json", result_json(model, report));
+}
+
+}  // namespace coapt

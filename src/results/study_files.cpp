@@ -1,0 +1,33 @@
+// The files of the studies: JSON and CSV.
+#include "results/study_files.hpp"
+
+#include "formats/json/json_text.hpp"
+#include "formats/whole_file.hpp"
+
+#include <cmath>
+
+namespace coapt {
+OrderedJson number_json(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? OrderedJson(*value) : OrderedJson(nullptr);
+}
+
+OrderedJson distances_json(const DistanceFigures& distance) {
+  return {{"mean_mm", number_json(distance.mean)},
+          {"p95_mm", number_json(distance.p95)},
+          {"max_mm", number_json(distance.max)}};
+}
+
+void write_study(const std::filesystem::path& folder, const std::string& name, const OrderedJson& json,
+                 const std::string& csv) {
+  formats::write_whole(folder / (name + ".json"), json_text(json, 2) + "\n");
+  formats::write_whole(folder / (name + ".csv"), csv);
+}
+
+std::ostringstream csv_begun(const std::string& header) {
+  std::ostringstream out;
+  out.precision(12);
+  out << header << '\n';
+  return out;
+}
+
+}  // namespace coapt

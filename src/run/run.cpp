@@ -1,0 +1,127 @@
+#include "run/run.hpp"
+
+#include "formats/whole_file.hpp"
+#include "optim/stability/smallest_modes.hpp"
+#include "report/shape_view.hpp"
+#include "report/solve_page.hpp"
+#include "results/frames.hpp"
+#include "run/run_parts.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/groundwork.hpp"
+#include "solve/solve_scene.hpp"
+
+#include <iterator>
+
+namespace coapt {
+
+std::filesystem::path result_folder(const Scene& scene) {
+  return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
+}
+
+void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
+                  Report& report) {
+  report.scene_file = scene.file.filename().string();
+  report.scene_title = scene_title(scene);
+  report.solver = setup.solver;
+  report.tolerance = setup.stop.tolerance;
+  report.warnings = model.warnings;
+  report.has_page = options.writes && options.writes_page.value_or(scene.writes_page);
+}
+
+CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+                              Report& report, const Points* start) {
+  std::optional<ShapeRecord> record;
+  if (report.has_page && has_shape_view()) {
+    record.emplace(model, page_shapes(model));
+    setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
+      record->see(iteration, q);
+      return !next || next(iteration, q);
+    };
+  }
+  CascadeOutcome outcome;
+  if (start == nullptr)
+    outcome = solve_scene(scene, ground, model, setup);
+  else
+    outcome.result = solve_again(*start, model, setup);
+  if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
+  return outcome;
+}
+
+void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run) {
+  const Model& model = run.model;
+  Report& report = run.report;
+  report.result = std::move(outcome.result);
+  report.levels = std::move(outcome.levels);
+  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+
+  const Result& result = report.result;
+  report.pressure_route = pressure_route(model, result);
+  report.fields = compute_fields(model, model.objective->positions(result.q));
+  if (!result.certificate.free_nodes.empty())
+    report.fields.undetermined =
+        undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
+  report.metrics = measure(model, result.q, report.fields, options.judge);
+  report.reference = compare_with_reference(model, report.fields);
+  if (setup.stability.modes > 0 && !has_smallest_modes())
+    report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
+  const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);
+  if (2 * slack > lines)
+    report.warnings.push_back(std::to_string(slack) + " of " + std::to_string(lines) +
+                              " chords and cables are slack in the result: are their rest lengths right?");
+  if (report.metrics.intersections > 0)
+    report.warnings.push_back(std::to_string(report.metrics.intersections) +
+                              " pairs of facets pass through each other in the result.");
+  report.neighbours = check_neighbours(report.solver, result, report.levels);
+  if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
+    report.warnings.insert(report.warnings.begin(), warning);
+  if (options.writes) write_run(run);
+}
+
+void write_run(const RunReport& run) {
+  write_results(run.folder, run.model, run.report);
+  const std::filesystem::path page = run.folder / "report.html";
+  std::error_code ignored;
+  if (run.report.has_page)
+    formats::write_whole(page, solve_page(run.model, run.report));
+  else
+    std::filesystem::remove(page, ignored);  // of an earlier solve
+}
+
+void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,
+               RunReport& run, const Points* start) {
+  Report& report = run.report;
+  Model& model = run.model;
+  // Only now: a scene that is refused leaves no folder behind.
+  if (options.writes) {
+    run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
+    prepare_result_folder(run.folder);
+  }
+  std::optional<FrameWriter> frames;
+  if (options.writes) {
+    remove_frames(run.folder);
+    const int interval = options.frame_interval.value_or(scene.frame_interval);
+    if (interval > 0) {
+      frames.emplace(run.folder, interval, model);
+      setup.observer = [&frames, next = setup.observer](const Iteration& iteration, const Vector& q) {
+        frames->see(iteration, q);
+        return !next || next(iteration, q);
+      };
+    }
+  }
+  begin_report(scene, setup, model, options, report);
+  CascadeOutcome outcome = solve_recorded(scene, ground, model, setup, report, start);
+  if (frames) frames->finish();
+  report.has_frames = frames.has_value();
+  finish_run(setup, std::move(outcome), options, run);
+}
+
+RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
+  RunReport run;
+  SolveSetup setup = solve_setup(scene, solvers, options);
+  const Groundwork ground = lay_groundwork(scene);
+  run.model = build(scene, ground);
+  run_built(scene, ground, std::move(setup), options, run);
+  return run;
+}
+
+}  // namespace coapt

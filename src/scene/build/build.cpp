@@ -1,0 +1,118 @@
+#include "scene/build/build.hpp"
+
+#include "core/error.hpp"
+#include "scene/build/build_parts.hpp"
+#include "scene/build/fibres.hpp"
+#include "scene/build/groundwork.hpp"
+#include "scene/build/supports.hpp"
+#include "scene/terms/term_types.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+// What the groundwork knows of the model.
+Model begun(const Groundwork& ground) {
+  Model model;
+  model.origin = ground.model.origin;
+  model.X = ground.model.X;
+  model.mesh = ground.model.mesh;
+  model.obstacles = ground.model.obstacles;
+  model.sets = ground.model.sets;
+  model.closed_reference = ground.model.closed_reference;
+  model.warnings = ground.model.warnings;
+  return model;
+}
+
+// Terms that no scene names, beside those that it does.
+void add_given(const GivenTerms& given, const Model& model, std::vector<TermPointer>& terms,
+               std::vector<std::string>& defects) {
+  if (!given) return;
+  try {
+    for (TermPointer& term : given(model)) {
+      const auto is_same = [&term](const TermPointer& other) { return other->name() == term->name(); };
+      if (std::any_of(terms.begin(), terms.end(), is_same))
+        defects.push_back("term \"" + term->name() + "\": another term has this name too");
+      terms.push_back(std::move(term));
+    }
+  } catch (const InputError& error) {
+    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+  }
+}
+
+std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground, Model& model,
+                                     std::vector<std::string>& defects) {
+  BuildContext context{model,
+                       ground.prescribed.fixed,
+                       ground.networks,
+                       [&ground](const NodeSelection& selection, const std::string& where) {
+                         return selected_nodes(selection, ground, where);
+                       },
+                       [&ground](const NodeSelection* selection, const std::string& where) {
+                         return multiplicity(selection, ground, where);
+                       },
+                       scene_mesh(ground),
+                       [&ground](const Vector& values) { return at_vertices(values, ground); },
+                       [&ground](const Vector& values) { return on_triangles(values, ground); },
+                       [&]() -> const Points& {
+                         find_fibres(scene, ground, model);
+                         return model.fibres;
+                       },
+                       ground.links,
+                       scene_ground(ground).patches};
+  std::vector<TermPointer> terms;
+  for (const BuildStage stage : kBuildStages)
+    for (const TermSpec& spec : scene.terms) {
+      const TermType& type = *find_term_type(spec.type);
+      if (type.stage != stage) continue;
+      try {
+        terms.push_back(type.build(spec, context));
+      } catch (const InputError& error) {
+        defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+      }
+    }
+  try {
+    if (scene.fibres) context.fibres();
+  } catch (const InputError& error) {
+    defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+  }
+  return terms;
+}
+
+}  // namespace
+
+std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground) {
+  Model model = begun(ground);
+  std::vector<std::string> defects;
+  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  if (!defects.empty()) throw InputError(defects);
+  return terms;
+}
+
+Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
+
+Model build(const Scene& scene, const Groundwork& ground) { return build(scene, ground, GivenTerms()); }
+
+Model build(const Scene& scene, const Groundwork& ground, const GivenTerms& given) {
+  Model model = begun(ground);
+  const Prescribed& prescribed = ground.prescribed;
+  std::vector<std::string> defects = ground.defects;
+  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  add_given(given, model, terms, defects);
+  if (!defects.empty()) throw InputError(defects);
+  warn_of_unsupported_parts(model, terms, prescribed.fixed);
+
+  model.motion = motion_path(prescribed, model.X, scene.motion_steps);
+  model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
+  model.objective->use_threads(scene.solver.threads);
+  model.q0 = model.objective->unknowns(model.X);
+  return model;
+}
+
+Problem problem_at(const Points& x, Model& model) {
+  if (model.motion.positions) model.objective->prescribe(model.motion.positions(1));
+  return {*model.objective, model.objective->unknowns(x)};
+}
+
+}  // namespace coapt

@@ -1,0 +1,17 @@
+// A scene's nodes, sets and supports on a coarser mesh than its own.
+#pragma once
+
+#include "mesh/remesh/coarsen.hpp"
+#include "scene/build/groundwork.hpp"
+
+namespace coapt {
+
+// How to coarsen the scene's mesh: insertions of chords, nodes that terms name one by one and lines of cables
+// stay; supports are thinned out among themselves.
+CoarsenOptions coarsen_options(const Scene& scene, const Groundwork& finest);
+
+// The groundwork on a coarser mesh; kept: for each of its vertices the vertex of the scene's own mesh.
+// The result refers to `finest`. Pre: coarsened with coarsen_options().
+Groundwork thinned(const Groundwork& finest, const TriangleMesh& coarse, const std::vector<int>& kept);
+
+}  // namespace coapt

@@ -1,0 +1,79 @@
+#include "scene/build/valve_doubts.hpp"
+
+#include "valve/valve_check.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+Vec3 end_of_path(int node, const Groundwork& ground) {
+  const auto path = ground.prescribed.paths.find(node);
+  return path == ground.prescribed.paths.end() ? Vec3(ground.model.X.col(node)) : path->second.back();
+}
+
+// All networks as one, at the positions of the model.
+ChordNetwork joined_networks(const Groundwork& ground) {
+  ChordNetwork all;
+  std::vector<int> tips, junctions;  // nodes
+  for (const auto& [path, placed] : ground.networks) {
+    const auto first_tip = static_cast<int>(tips.size()), first_junction = static_cast<int>(junctions.size());
+    for (int k = 0; k < placed.network.papillary.cols(); ++k) tips.push_back(placed.first_papillary + k);
+    for (int k = 0; k < placed.network.junctions.cols(); ++k) junctions.push_back(placed.first_junction + k);
+    for (Chord chord : placed.network.chords) {
+      for (ChordEnd* end : {&chord.from, &chord.to}) {
+        if (end->kind == ChordEnd::Kind::Papillary) end->index += first_tip;
+        if (end->kind == ChordEnd::Kind::Junction) end->index += first_junction;
+      }
+      all.chords.push_back(std::move(chord));
+    }
+  }
+  all.papillary = ground.model.X(Eigen::all, tips);
+  all.junctions = ground.model.X(Eigen::all, junctions);
+  all.papillary_closed.resize(3, all.papillary.cols());
+  for (size_t k = 0; k < tips.size(); ++k)
+    all.papillary_closed.col(static_cast<Eigen::Index>(k)) = end_of_path(tips[k], ground);
+  return all;
+}
+
+// Whether a pressure acts on the side that the normals point to. One on the other side was asked for by name:
+// it opens the valve.
+bool presses_front(const Scene& scene) {
+  return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
+    return term.type == "load_pressure" && term.parameters.text("side") == "front" &&
+           term.parameters.number("value") > 0;
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file) {
+  std::vector<std::string> doubts;
+  for (const std::vector<std::string>& list :
+       {chord_doubts(valve), size_doubts(valve), pressure_side_doubts(valve)})
+    for (const std::string& doubt : list) doubts.push_back(file + ": " + doubt);
+  return doubts;
+}
+
+std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model) {
+  const auto annulus = ground.model.sets.find("annulus");
+  if (!scene.mesh || annulus == ground.model.sets.end() || annulus->second.empty()) return {};
+  Valve valve;
+  valve.leaflets = ground.model.mesh;
+  valve.closed_reference = ground.model.closed_reference;
+  valve.annulus = annulus->second;
+  valve.chords = joined_networks(ground);
+  valve.pressure = model.applied_pressure;
+  for (const MembraneProperties& membrane : model.membrane)
+    if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))
+      valve.thickness = membrane.thickness;
+  // Cut and shortened chords hang loose or are overstretched by intention.
+  if (!scene.interventions.empty()) valve.chords.chords.clear();
+  if (!presses_front(scene)) valve.annulus.clear();
+  std::vector<std::string> doubts = valve_doubts(valve, scene.file.string());
+  for (const std::string& doubt : fold_doubts(valve.leaflets))
+    doubts.push_back(scene.mesh->file.string() + ": " + doubt);
+  return doubts;
+}
+
+}  // namespace coapt

@@ -1,0 +1,19 @@
+// What is doubtful about a valve (valve/valve_check.hpp), as sentences that name the file. Private to this
+// room.
+#pragma once
+
+#include "scene/build/groundwork.hpp"
+
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// valve: mm, MPa.
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file);
+
+// Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
+// chords nothing where interventions edit them. Pre: model is built of it.
+std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model);
+
+}  // namespace coapt

@@ -1,0 +1,337 @@
+#include "scene/file/schema.hpp"
+
+#include "scene/file/solver_keys.hpp"
+
+namespace coapt {
+namespace {
+
+KeySpec mesh_key() {
+  return {
+      .name = "mesh",
+      .kind = KeyKind::Object,
+      .object = {.keys = {{.name = "file",
+                           .kind = KeyKind::File,
+                           .required = true,
+                           .doc = "Triangle mesh of the reference shape: OBJ, PLY, STL, OFF or VTP."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .fallback = "\"mm\"",
+                           .doc = "Unit of length of the file's coordinates, such as \"m\" or \"cm\"."},
+                          {.name = "sets",
+                           .kind = KeyKind::File,
+                           .doc = "JSON file, such as a valve JSON, that names node sets (lists of vertex "
+                                  "numbers) and points to move to (lists of positions)."}}},
+      .doc = "The surface; a scene of cables alone has none."};
+}
+
+KeySpec obstacles_key() {
+  return {
+      .name = "obstacles",
+      .kind = KeyKind::Objects,
+      .object = {.keys = {{.name = "name",
+                           .kind = KeyKind::Text,
+                           .required = true,
+                           .doc = "Name of its nodes, for `boundary` and wherever nodes are asked for."},
+                          {.name = "file",
+                           .kind = KeyKind::File,
+                           .required = true,
+                           .doc = "Triangle mesh: OBJ, PLY, STL, OFF or VTP."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .doc = "Unit of length of the file's coordinates; default: that of the mesh."}}},
+      .doc =
+          "Surfaces that the membrane meets where a `contact_barrier` is among the terms: a ventricle wall, "
+          "a ring, a sphere. They stand still unless `boundary` moves them."};
+}
+
+KeySpec boundary_key() {
+  return {
+      .name = "boundary",
+      .kind = KeyKind::Objects,
+      .object = {.keys = {{.name = "nodes",
+                           .kind = KeyKind::Nodes,
+                           .required = true,
+                           .doc = "The nodes that the entry speaks of."},
+                          {.name = "fix",
+                           .kind = KeyKind::Axes,
+                           .doc = "Coordinates that are prescribed: true for all, or some of \"x\", \"y\", "
+                                  "\"z\" (a symmetry plane); false sets the nodes free. Default: all where "
+                                  "`move_to` is given."},
+                          {.name = "move_to",
+                           .kind = KeyKind::Targets,
+                           .doc = "Where the nodes go: a CSV or mesh file with one position per node, the "
+                                  "name of positions in a valve JSON (\"annulus_closed\"), a translation, or "
+                                  "a list of these as stations of a path."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .doc = "Unit of length of the files in `move_to`; default: that of the mesh."}},
+                 .groups = {{{"fix", "move_to"}, false}}},
+      .doc =
+          "Prescribed nodes, each entry for some of them; later entries win. The anchors of a network "
+          "(\"papillary\") are prescribed unless an entry says otherwise."};
+}
+
+KeySpec fibres_key() {
+  return {
+      .name = "fibres",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys =
+               {{.name = "defaults",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"auto\"",
+                 .choices = {"auto", "valve", "boundary", "none"},
+                 .doc =
+                     "What is known without being told. valve: along the annulus (the set \"annulus\"), "
+                     "across "
+                     "it at the trigones (the set \"trigones\", else \"commissures\", else where regions "
+                     "meet), "
+                     "along free edges, and as the chords pull where they end inside the leaflets; boundary: "
+                     "along every boundary; auto: valve where there is an annulus, else boundary."},
+                {.name = "directions",
+                 .kind = KeyKind::Objects,
+                 .object =
+                     {.keys = {{.name = "nodes",
+                                .kind = KeyKind::Nodes,
+                                .required = true,
+                                .doc = "Mesh vertices at which the direction is known."},
+                               {.name = "direction",
+                                .kind = KeyKind::Direction,
+                                .required = true,
+                                .doc = "Along or across the mesh edges that join these nodes (boundary edges "
+                                       "where there are any), or a vector, whose part in the surface "
+                                       "counts."}}},
+                 .doc = "Directions that are known; they win over the defaults, and later ones over earlier "
+                        "ones."},
+                {.name = "file",
+                 .kind = KeyKind::File,
+                 .doc = "CSV with one direction x, y, z for each triangle, instead of a computed field."},
+                {.name = "join_regions",
+                 .kind = KeyKind::Flag,
+                 .fallback = "false",
+                 .doc = "Whether directions pass from one region of the mesh to the next; otherwise each (a "
+                        "leaflet) "
+                        "has a field of its own."}}},
+      .doc =
+          "Fibre directions, found from known ones by Laplace's equation (Toma et al. 2016) and written to "
+          "`closed.vtp`. Terms that need fibres find them by these rules whether or not the key is there."};
+}
+
+KeySpec tips_key() {
+  return {
+      .name = "tips",
+      .kind = KeyKind::Objects,
+      .object = {.keys = {{.name = "at",
+                           .kind = KeyKind::Triple,
+                           .dimension = kLength,
+                           .required = true,
+                           .doc = "Where it is in the open valve."},
+                          {.name = "closed_at",
+                           .kind = KeyKind::Triple,
+                           .dimension = kLength,
+                           .doc =
+                               "Where it is in the closed valve; for all tips or none. `boundary` moves them "
+                               "by \"move_to\": \"papillary_closed\"."}}},
+      .doc = "Papillary tips; default: `papillary` (and `papillary_closed`) of the file of `mesh.sets`."};
+}
+
+KeySpec chords_key() {
+  return {
+      .name = "chords",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys =
+               {tips_key(),
+                {.name = "zones",
+                 .kind = KeyKind::Texts,
+                 .fallback = "\"free_edge\"",
+                 .doc = "Where chords end, some of \"free_edge\" (material primary), \"rough\" (secondary, "
+                        "at 0.65 "
+                        "of the way from annulus to free edge) and \"basal\" (tertiary, at 0.25)."},
+                {.name = "count",
+                 .kind = KeyKind::Integer,
+                 .fallback = "24",
+                 .min = 1,
+                 .max = 10000,
+                 .doc = "Chords of each zone that leave the tips, over all tips together."},
+                {.name = "levels",
+                 .kind = KeyKind::Integer,
+                 .fallback = "1",
+                 .min = 1,
+                 .max = 4,
+                 .doc = "1: straight from tip to leaflet; 2: a trunk and its fan; and so on."},
+                {.name = "branches",
+                 .kind = KeyKind::Integer,
+                 .fallback = "3",
+                 .min = 2,
+                 .max = 6,
+                 .doc = "Into how many a chord splits at each branch point."},
+                {.name = "scale",
+                 .fallback = "1",
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Factor on all rest lengths."},
+                {.name = "depth",
+                 .dimension = kLength,
+                 .fallback = "0",
+                 .min = 0,
+                 .doc = "How far below the annulus plane the ends are expected in the closed valve: a rest "
+                        "length is "
+                        "the scale times the distance from the tip to there."},
+                {.name = "level_areas",
+                 .kind = KeyKind::Texts,
+                 .doc = "Cross-section of one chord at each level, such as [\"0.4 mm2\", \"0.15 mm2\"]; "
+                        "default: 0.4, "
+                        "0.8, 1.2 mm2 by zone, shared out at each branch point."},
+                {.name = "seed",
+                 .kind = KeyKind::Integer,
+                 .fallback = "0",
+                 .min = 0,
+                 .doc = "0: ends at equal steps; any other number shifts each by up to a third of a step."}}},
+      .doc =
+          "Chords made from papillary tips, annulus plane and free edge where an image shows none (Walczak "
+          "et "
+          "al. 2019), for terms with \"network\": \"generated\". The sets \"annulus\" and \"free_edge\" name "
+          "the "
+          "rims; without them the boundary loop farthest from the tips is the annulus."};
+}
+
+KeySpec reference_key() {
+  return {.name = "reference",
+          .kind = KeyKind::Object,
+          .object = {.keys = {{.name = "closed_surface",
+                               .kind = KeyKind::File,
+                               .required = true,
+                               .doc = "Mesh of the closed surface that the result is compared with."},
+                              {.name = "unit",
+                               .kind = KeyKind::Text,
+                               .doc = "Unit of length of that file; default: that of the mesh."}}},
+          .doc = "What the result is compared with; it never influences the solution."};
+}
+
+}  // namespace
+
+const ObjectSpec& scene_spec() {
+  static const ObjectSpec kSpec{
+      .keys = {
+          {.name = "$schema", .kind = KeyKind::Text, .doc = "Address of the JSON Schema, for editors."},
+          {.name = "name", .kind = KeyKind::Text, .doc = "Title of the scene; default: the file's name."},
+          mesh_key(),
+          {.name = "sets",
+           .kind = KeyKind::NodeSets,
+           .doc = "Named node selections, for use wherever nodes are asked for."},
+          obstacles_key(),
+          boundary_key(),
+          {.name = "motion",
+           .kind = KeyKind::Object,
+           .object =
+               {.keys = {{.name = "steps",
+                          .kind = KeyKind::Integer,
+                          .min = 1,
+                          .max = 100000,
+                          .doc =
+                              "Equal steps of the prescribed motion; default: one for each station of the "
+                              "longest path. Free nodes are carried along, whatever the length of a step."}}},
+           .doc = "How the prescribed nodes travel."},
+          chords_key(),
+          fibres_key(),
+          {.name = "interventions",
+           .kind = KeyKind::Interventions,
+           .doc =
+               "Repairs and other edits of the valve, a list of objects with a `type`, made in their order "
+               "between mesh and terms."},
+          {.name = "terms",
+           .kind = KeyKind::Terms,
+           .required = true,
+           .doc = "Energies and loads, a list of objects with a `type`; each is added to the others."},
+          solver_key(),
+          reference_key(),
+          {.name = "output",
+           .kind = KeyKind::Object,
+           .object = {.keys = {{.name = "folder",
+                                .kind = KeyKind::Text,
+                                .doc = "Result folder, relative to the scene's."},
+                               {.name = "frames",
+                                .kind = KeyKind::Integer,
+                                .min = 1,
+                                .doc = "Writes every so-many-th accepted iterate as a frame of an animation, "
+                                       "listed by `frames.pvd`; default: none."},
+                               {.name = "report",
+                                .kind = KeyKind::Flag,
+                                .fallback = "true",
+                                .doc = "Writes `report.html`, a page with the shape, all figures and the "
+                                       "convergence; false: neither the page nor the iterates for it."}}},
+           .doc = "Where results go."},
+      }};
+  return kSpec;
+}
+
+const ObjectSpec& selection_spec() {
+  static const ObjectSpec kSpec{
+      .keys = {{.name = "plane",
+                .kind = KeyKind::Object,
+                .object = {.keys = {{.name = "axis",
+                                     .kind = KeyKind::Choice,
+                                     .required = true,
+                                     .choices = {"x", "y", "z"},
+                                     .doc = "Axis normal to the plane."},
+                                    {.name = "at",
+                                     .dimension = kLength,
+                                     .fallback = "0",
+                                     .doc = "Its coordinate on that axis."},
+                                    {.name = "within",
+                                     .dimension = kLength,
+                                     .min = 0,
+                                     .doc = "Greatest distance from the plane; default: a millionth of the "
+                                            "model's size."}}},
+                .doc = "All nodes on a coordinate plane."},
+               {.name = "box",
+                .kind = KeyKind::Object,
+                .object = {.keys = {{.name = "min",
+                                     .kind = KeyKind::Triple,
+                                     .dimension = kLength,
+                                     .required = true,
+                                     .doc = "Smallest coordinates."},
+                                    {.name = "max",
+                                     .kind = KeyKind::Triple,
+                                     .dimension = kLength,
+                                     .required = true,
+                                     .doc = "Greatest coordinates."}}},
+                .doc = "All nodes in a box, its faces included."},
+               {.name = "nearest",
+                .kind = KeyKind::Triple,
+                .dimension = kLength,
+                .doc = "The one node nearest to a point."}},
+      .groups = {{{"plane", "box", "nearest"}, true}}};
+  return kSpec;
+}
+
+const ObjectSpec& target_spec() {
+  static const ObjectSpec kSpec{.keys = {{.name = "translate",
+                                          .kind = KeyKind::Triple,
+                                          .dimension = kLength,
+                                          .required = true,
+                                          .doc = "Displacement from the reference position."}}};
+  return kSpec;
+}
+
+const std::vector<KeySpec>& common_term_keys() {
+  static const std::vector<KeySpec> kKeys{
+      {.name = "type", .kind = KeyKind::Text, .required = true, .doc = "Which energy or load."},
+      {.name = "name",
+       .kind = KeyKind::Text,
+       .doc = "Name in results; default: the type, with a number where it stands more than once."}};
+  return kKeys;
+}
+
+const std::vector<KeySpec>& common_intervention_keys() {
+  static const std::vector<KeySpec> kKeys{
+      {.name = "type", .kind = KeyKind::Text, .required = true, .doc = "Which intervention."},
+      {.name = "name",
+       .kind = KeyKind::Text,
+       .doc = "Name in results and for `coapt study`; default: the type, with a number where it stands more "
+              "than once."}};
+  return kKeys;
+}
+
+}  // namespace coapt

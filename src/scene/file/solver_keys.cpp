@@ -1,0 +1,273 @@
+#include "scene/file/solver_keys.hpp"
+
+namespace coapt {
+namespace {
+
+KeySpec dynamics_key() {
+  return {
+      .name = "dynamics",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys = {{.name = "integration",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"backward_differences\"",
+                     .choices = {"backward_differences", "semi_implicit_euler"},
+                     .doc = "Backward differences of second order, implicit, or semi-implicit Euler."},
+                    {.name = "time_step",
+                     .dimension = kTime,
+                     .fallback = "\"0.1 ms\"",
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "The first time step."},
+                    {.name = "adaptive",
+                     .kind = KeyKind::Flag,
+                     .fallback = "true",
+                     .doc = "Whether time steps adapt; otherwise all are the first."},
+                    {.name = "longest_step",
+                     .dimension = kTime,
+                     .fallback = "\"1 s\"",
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "Greatest time step."},
+                    {.name = "relaxation_time",
+                     .dimension = kTime,
+                     .fallback = "\"1 ms\"",
+                     .min = 0,
+                     .doc = "In which viscous drag alone slows every mass down by a factor e; 0: no drag."},
+                    {.name = "kinetic_damping",
+                     .kind = KeyKind::Flag,
+                     .fallback = "false",
+                     .doc = "Whether all masses are stopped whenever the kinetic energy has begun to fall."},
+                    {.name = "collisions",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"none\"",
+                     .choices = {"none", "inelastic", "balanced"},
+                     .doc = "What keeps leaflets apart besides contact terms: inelastic stops vertices that "
+                            "approach a near facet (Hammer et al. 2008); balanced also takes the forces "
+                            "that press them towards it (Hammer et al. 2011). What passes through all the "
+                            "same is counted in the result, and a run that comes to rest on collisions "
+                            "ends as stalled, as they are no part of the energy."},
+                    {.name = "collision_distance",
+                     .dimension = kLength,
+                     .min = 0,
+                     .excludes_min = true,
+                     .doc = "Below which a facet is near; default: 0.3 mean edge lengths."},
+                    {.name = "linear_solver",
+                     .kind = KeyKind::Choice,
+                     .fallback = "\"cholesky\"",
+                     .choices = {"cholesky", "conjugate_gradients"},
+                     .doc = "How backward differences solve for a step."}}},
+      .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
+}
+
+KeySpec paper_share(const char* name, const char* fallback, const char* what) {
+  return {.name = name,
+          .fallback = fallback,
+          .min = 0,
+          .max = 1,
+          .doc = std::string("Share of a correction of ") + what + " that is applied in one sweep."};
+}
+
+KeySpec paper_key() {
+  return {
+      .name = "paper",
+      .kind = KeyKind::Object,
+      .object = {.keys = {paper_share("stretch", "0.1", "edges"),
+                          paper_share("bending", "0.1", "hinges"),
+                          paper_share("area", "0.1", "areas (the paper gives none)"),
+                          paper_share("tether", "1", "chords"),
+                          paper_share("contact", "1", "contact"),
+                          {.name = "compliance",
+                           .fallback = "1e-5",
+                           .min = 0,
+                           .doc = "Compliance alpha of every constraint, in mm, s and masses of 1; 0: plain "
+                                  "position-based dynamics."},
+                          {.name = "flow",
+                           .fallback = "50",
+                           .min = 0,
+                           .doc = "Weight w of the flow field, a force on the mass 1 in mm and s."},
+                          {.name = "pressure",
+                           .fallback = "100",
+                           .min = 0,
+                           .doc = "Weight p of the pressure, a force on the mass 1 in mm and s."}}},
+      .doc =
+          "Numbers for stiffness \"paper\" and forces \"paper\"; the defaults are those of Walczak et al. "
+          "2019."};
+}
+
+KeySpec xpbd_key() {
+  return {
+      .name = "xpbd",
+      .kind = KeyKind::Object,
+      .object =
+          {.keys =
+               {{.name = "time_step",
+                 .dimension = kTime,
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Time step; default: 0.1 ms with stiffness \"material\", 5 ms with \"paper\"."},
+                {.name = "iterations",
+                 .kind = KeyKind::Integer,
+                 .fallback = "20",
+                 .min = 1,
+                 .max = 100000,
+                 .doc = "Sweeps over all constraints in a step; the paper has 3 and 20."},
+                {.name = "steps",
+                 .kind = KeyKind::Integer,
+                 .fallback = "2000",
+                 .min = 1,
+                 .doc = "Greatest number of time steps in a phase; it ends before where nothing moves any "
+                        "more."},
+                {.name = "motion_time",
+                 .dimension = kTime,
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc =
+                     "Time in which the prescribed nodes go their way, a piece in every step; default: half "
+                     "the time of all steps."},
+                {.name = "damping",
+                 .fallback = "0.05",
+                 .min = 0,
+                 .max = 1,
+                 .doc = "Share of its velocity that a node loses in a step."},
+                {.name = "thickness",
+                 .dimension = kLength,
+                 .fallback = "\"0.5 mm\"",
+                 .min = 0,
+                 .excludes_min = true,
+                 .doc = "Distance that contact keeps between facets, in place of that of the contact term."},
+                {.name = "stiffness",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"material\"",
+                 .choices = {"material", "paper"},
+                 .doc =
+                     "material: compliances and masses from the moduli, sections and density of the scene, "
+                     "so that the result can be compared; paper: the mass 1 and the numbers of the paper "
+                     "for all."},
+                {.name = "forces",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"scene\"",
+                 .choices = {"scene", "paper"},
+                 .doc = "scene: the loads of the scene; paper: flow field and pressure of the paper, by the "
+                        "set \"annulus\"."},
+                {.name = "phase",
+                 .kind = KeyKind::Choice,
+                 .fallback = "\"systole\"",
+                 .choices = {"systole", "diastole"},
+                 .doc =
+                     "systole: the forces as they are, they close a valve; diastole: turned round, they open "
+                     "it while the prescribed nodes go back. A start in the shape at rest is closed first."},
+                paper_key()}},
+      .doc =
+          "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of the "
+          "solver."};
+}
+
+}  // namespace
+
+KeySpec solver_key() {
+  return {.name = "solver",
+          .kind = KeyKind::Object,
+          .fallback = "{}",
+          .object =
+              {.keys = {{.name = "type",
+                         .kind = KeyKind::Choice,
+                         .fallback = "\"newton\"",
+                         .choices = {"newton", "lbfgs", "bfgs", "dynamic", "xpbd", "ceres", "nlopt"},
+                         .doc = "The method; ceres and nlopt need a build that has them."},
+                        {.name = "tolerance",
+                         .fallback = "1e-6",
+                         .min = 0,
+                         .max = 1,
+                         .excludes_min = true,
+                         .doc = "Greatest out-of-balance nodal force, relative to the greatest load or "
+                                "reaction, at which the result counts as converged."},
+                        {.name = "max_iterations",
+                         .kind = KeyKind::Integer,
+                         .fallback = "100000",
+                         .min = 0,
+                         .doc = "Greatest number of iterations over all steps."},
+                        {.name = "max_seconds",
+                         .kind = KeyKind::Quantity,
+                         .dimension = kTime,
+                         .min = 0,
+                         .excludes_min = true,
+                         .doc = "Greatest wall time; default: no limit."},
+                        {.name = "memory",
+                         .kind = KeyKind::Integer,
+                         .fallback = "12",
+                         .min = 1,
+                         .max = 1000,
+                         .doc = "Pairs of steps and gradient changes that lbfgs keeps."},
+                        {.name = "cascade",
+                         .kind = KeyKind::Flag,
+                         .fallback = "false",
+                         .doc = "Whether coarser meshes are made and solved first, each giving the next "
+                                "its start; the result is that of the scene's own mesh."},
+                        {.name = "continuation",
+                         .kind = KeyKind::Object,
+                         .object = {.keys = {{.name = "load_steps",
+                                              .kind = KeyKind::Integer,
+                                              .fallback = "1",
+                                              .min = 1,
+                                              .max = 100000,
+                                              .doc = "Equal steps of all loads."},
+                                             {.name = "stiffness_steps",
+                                              .kind = KeyKind::Integer,
+                                              .fallback = "1",
+                                              .min = 1,
+                                              .max = 100000,
+                                              .doc = "Steps of the stiffness, each by the same factor."},
+                                             {.name = "first_stiffness",
+                                              .fallback = "0.01",
+                                              .min = 0,
+                                              .excludes_min = true,
+                                              .doc = "Factor on the stiffness before the first step."}}},
+                         .doc = "Way to the full problem by easier ones, together with the prescribed "
+                                "motion; default: the full problem at once."},
+                        {.name = "threads",
+                         .kind = KeyKind::Integer,
+                         .fallback = "1",
+                         .min = 1,
+                         .max = 256,
+                         .doc = "Threads that assemble the Hessian or sweep the constraints of xpbd; the "
+                                "result does "
+                                "not depend on them."},
+                        {.name = "density",
+                         .dimension = kDensity,
+                         .fallback = "\"1060 kg/m^3\"",
+                         .min = 0,
+                         .excludes_min = true,
+                         .doc = "Mass density of membrane, chords and cables, for methods that move masses."},
+                        dynamics_key(),
+                        xpbd_key(),
+                        {.name = "globalisation",
+                         .kind = KeyKind::Choice,
+                         .fallback = "\"line_search\"",
+                         .choices = {"line_search", "trust_region"},
+                         .doc = "How newton keeps a step from going too far."},
+                        {.name = "preconditioned",
+                         .kind = KeyKind::Flag,
+                         .fallback = "false",
+                         .doc = "Whether lbfgs starts its recursion from a factorised Hessian."},
+                        {.name = "factorisation",
+                         .kind = KeyKind::Choice,
+                         .fallback = "\"auto\"",
+                         .choices = {"auto", "cholmod", "eigen"},
+                         .doc = "Sparse Cholesky method of newton, preconditioned lbfgs and the certificate; "
+                                "auto takes cholmod in a build that has it."},
+                        {.name = "certificate",
+                         .kind = KeyKind::Object,
+                         .object = {.keys = {{.name = "modes",
+                                              .kind = KeyKind::Integer,
+                                              .fallback = "0",
+                                              .min = 0,
+                                              .max = 1000,
+                                              .doc = "Smallest eigenvalues of the Hessian to compute, which "
+                                                     "needs a build with Spectra. More than none also counts "
+                                                     "zero and negative modes whatever the size."}}},
+                         .doc = "What the certificate of the result holds beyond the usual."}}},
+          .doc = "How the equilibrium is found."};
+}
+
+}  // namespace coapt

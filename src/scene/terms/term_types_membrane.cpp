@@ -1,0 +1,134 @@
+#include "core/error.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/cst_stvk.hpp"
+#include "energy/kernels/cst_tension_field.hpp"
+#include "energy/kernels/surface_tension.hpp"
+#include "scene/build/detail/build_membrane.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+std::vector<int> corner_nodes(const Triangles& all, const std::vector<int>& triangles) {
+  const Triangles covered = all(Eigen::all, triangles);
+  return {covered.data(), covered.data() + covered.size()};
+}
+
+MembraneProperties elastic_properties(const ElementValues& values, int t) {
+  return {values.number("young", t), values.number("poisson", t), values.number_or("thickness", t, 0),
+          values.number("prestress", t)};
+}
+
+TermPointer build_stvk(const TermSpec& spec, BuildContext& context) {
+  return build_membrane<CstStVK>(spec, context, elastic_properties, [](const MembraneElement& e) {
+    const MembraneProperties& m = e.properties;
+    return CstStVK::rest(e.X0, e.X1, e.X2, m.young, m.poisson, m.thickness, m.prestress);
+  });
+}
+
+TermPointer build_tension_field(const TermSpec& spec, BuildContext& context) {
+  return build_membrane<CstTensionField>(spec, context, elastic_properties, [](const MembraneElement& e) {
+    const MembraneProperties& m = e.properties;
+    return CstTensionField::rest(e.X0, e.X1, e.X2, m.young, m.poisson, m.thickness, m.prestress,
+                                 e.values.number("residual_stiffness", e.triangle));
+  });
+}
+
+std::vector<std::string> check_stvk(const Parameters& p) {
+  std::vector<std::string> defects;
+  const double young = p.number("young");
+  if (young > 0 && !p.has("thickness"))
+    defects.push_back("thickness: missing; needed where young is not zero");
+  if (young == 0 && p.number("prestress") == 0)
+    defects.push_back("young and prestress are both zero; one must be greater");
+  return defects;
+}
+
+// The keys of every elastic membrane. With a modulus of zero only prestress is left, which not all laws
+// allow.
+std::vector<KeySpec> elastic_keys(bool allows_zero_young) {
+  const KeySpec young{.name = "young",
+                      .dimension = kPressure,
+                      .required = true,
+                      .min = 0,
+                      .excludes_min = !allows_zero_young,
+                      .doc = allows_zero_young
+                                 ? "Young's modulus; zero for a membrane held by its prestress alone."
+                                 : "Young's modulus."};
+  const KeySpec thickness{
+      .name = "thickness",
+      .dimension = kLength,
+      .required = !allows_zero_young,
+      .min = 0,
+      .excludes_min = true,
+      .doc = allows_zero_young ? "Thickness at rest; needed where young is not zero." : "Thickness at rest."};
+  return {young,
+          {.name = "poisson",
+           .fallback = "0.45",
+           .min = -1,
+           .max = 0.4999,
+           .excludes_min = true,
+           .doc = "Poisson's ratio; 0.4999 for a nearly incompressible membrane."},
+          thickness,
+          {.name = "prestress",
+           .dimension = kForcePerLength,
+           .fallback = "0",
+           .min = 0,
+           .doc = "Isotropic stress resultant in the reference shape."},
+          region_key(),
+          triangle_values_key(),
+          vertex_values_key()};
+}
+
+std::vector<KeySpec> tension_field_keys() {
+  std::vector<KeySpec> keys = elastic_keys(false);
+  keys.insert(keys.end() - 3, {.name = "residual_stiffness",
+                               .fallback = "0",
+                               .min = 0,
+                               .max = 1,
+                               .doc = "Fraction of the compressive stiffness that is left where the membrane "
+                                      "is wrinkled or slack; 1 is cst_stvk."});
+  return keys;
+}
+
+TermPointer build_surface_tension(const TermSpec& spec, BuildContext& context) {
+  const TriangleMesh& mesh = context.model.mesh;
+  const std::vector<int> triangles = region_triangles(spec.parameters, mesh);
+  std::vector<SurfaceTension::Rest> rest(triangles.size(), {spec.parameters.number("tension")});
+  context.model.film_tension = std::max(context.model.film_tension, spec.parameters.number("tension"));
+  return std::make_unique<ElementTerm<SurfaceTension>>(spec.name, corner_nodes(mesh.triangles, triangles),
+                                                       std::move(rest));
+}
+
+}  // namespace
+
+std::vector<TermType> membrane_term_types() {
+  return {
+      {.name = "cst_stvk",
+       .summary = "Elastic membrane, St. Venant-Kirchhoff in plane stress, on constant-strain triangles; it "
+                  "resists compression too.",
+       .spec = {.keys = elastic_keys(true)},
+       .check = check_stvk,
+       .build = build_stvk},
+      {.name = "cst_tension_field",
+       .summary = "Elastic membrane that wrinkles instead of being compressed (tension field: taut, wrinkled "
+                  "or slack), on constant-strain triangles; like cst_stvk where it is taut.",
+       .spec = {.keys = tension_field_keys()},
+       .check = {},
+       .build = build_tension_field},
+      {.name = "surface_tension",
+       .summary = "Film of constant isotropic tension; its equilibria without pressure are minimal surfaces.",
+       .spec = {.keys = {{.name = "tension",
+                          .dimension = kForcePerLength,
+                          .required = true,
+                          .min = 0,
+                          .excludes_min = true,
+                          .doc = "Force per length of any cut."},
+                         region_key()}},
+       .check = {},
+       .build = build_surface_tension},
+  };
+}
+
+}  // namespace coapt

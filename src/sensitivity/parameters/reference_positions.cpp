@@ -1,0 +1,267 @@
+#include "sensitivity/parameters/reference_positions.hpp"
+
+#include "core/error.hpp"
+#include "energy/kernels/bending.hpp"
+#include "energy/kernels/spring.hpp"
+#include "sensitivity/detail/element_visit.hpp"
+#include "sensitivity/detail/rest_triangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+using Membranes = KernelList<CstStVK, CstTensionField, CstBilinear, CstNeoHookean, CstExponential,
+                             CstOrthotropic, CstMayNewmanYin, CstCrimpedFibre>;
+using Hinges = KernelList<BendingHinge>;
+
+constexpr double kStep = 3e-4;  // of differences, over the edge
+
+// visit(ElementTerm<Kernel>&) for a membrane or a hinge; false: it is neither.
+template <typename Visit>
+bool visit_shaped(EnergyTerm& term, const Visit& visit) {
+  return visit_element_term(Membranes{}, term, visit) || visit_element_term(Hinges{}, term, visit);
+}
+
+// The element with its nodes at X, of the same material and thickness. from: where they were.
+template <typename Rest>
+Rest reshaped(const Rest& rest, const Corners&, const Corners& X) {
+  return reshaped_triangle(rest, X);
+}
+BendingHinge::Rest reshaped(const BendingHinge::Rest& rest, const Corners& from, const Corners& X) {
+  const BendingHinge::Rest unit = BendingHinge::rest(from[0], from[1], from[2], from[3], 1);
+  return BendingHinge::rest(X[0], X[1], X[2], X[3], rest.stiffness / unit.stiffness);
+}
+
+using HingeVector = Eigen::Vector<double, 12>;
+
+// Energy in the first place, then the gradient.
+Eigen::Vector<double, 13> hinge_at(const BendingHinge::Rest& rest, const HingeVector& x) {
+  HingeVector g;
+  Eigen::Vector<double, 13> all;
+  all[0] = BendingHinge::evaluate(rest, x, &g, nullptr);
+  all.tail<12>() = g;
+  return all;
+}
+
+// Derivative of energy and gradient by a motion of the corners at rest.
+Eigen::Vector<double, 13> hinge_slope(const BendingHinge::Rest& rest, const Corners& X,
+                                      const HingeVector& motion, const HingeVector& x) {
+  const double size = motion.lpNorm<Eigen::Infinity>();
+  if (size == 0) return Eigen::Vector<double, 13>::Zero();
+  const double step = kStep * (X[1] - X[0]).norm() / size;
+  const auto at = [&](double s) {
+    Corners moved = X;
+    for (int a = 0; a < 4; ++a) moved[static_cast<size_t>(a)] += s * step * motion.segment<3>(3 * a);
+    return hinge_at(reshaped(rest, X, moved), x);
+  };
+  return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * step);
+}
+
+class ReferencePositions final : public Parameter {
+ public:
+  ReferencePositions(std::string name, std::vector<EnergyTerm*> terms, Points X, std::vector<int> nodes)
+      : Parameter(std::move(name)),
+        terms_(std::move(terms)),
+        X_(std::move(X)),
+        nodes_(std::move(nodes)),
+        number_(static_cast<size_t>(X_.cols()), -1) {
+    for (size_t k = 0; k < nodes_.size(); ++k)
+      number_[static_cast<size_t>(nodes_[k])] = 3 * static_cast<int>(k);
+    for (EnergyTerm* term : terms_) {
+      std::vector<size_t>& touched = touched_.emplace_back();
+      const Stencils& stencils = term->stencils();
+      for (size_t e = 0; e < static_cast<size_t>(stencils.count()); ++e) {
+        const int* first = &stencils.nodes[e * static_cast<size_t>(stencils.width)];
+        if (std::any_of(first, first + stencils.width, [&](int node) { return numbers(node) >= 0; }))
+          touched.push_back(e);
+      }
+    }
+  }
+
+  Vector value() const override { return X_(Eigen::all, nodes_).reshaped(); }
+
+  std::string defect(const Vector& value) const override {
+    const Points X = placed(value);
+    if (!X.allFinite()) return "parameter \"" + name() + "\": every number must be finite";
+    for (EnergyTerm* term : terms_)
+      for (int e = 0; e < term->stencils().count(); ++e) {
+        const int* n = &term->stencils().nodes[static_cast<size_t>(e) * term->stencils().width];
+        const Vec3 a = X.col(n[1]) - X.col(n[0]);
+        for (int k = 2; k < term->stencils().width; ++k)
+          if (const Vec3 b = X.col(n[k]) - X.col(n[0]);
+              !(a.cross(b).norm() > 1e-12 * std::max(a.squaredNorm(), b.squaredNorm())))
+            return "parameter \"" + name() + "\": element " + std::to_string(e) + " of term \"" +
+                   term->name() + "\" would have no area at rest";
+      }
+    return {};
+  }
+
+  void set(const Vector& value) override {
+    const Points X = placed(value);
+    for (size_t k = 0; k < terms_.size(); ++k)
+      visit_shaped(*terms_[k], [&](auto& term) {
+        auto rest = term.rest();
+        for (const size_t e : touched_[k])
+          rest[e] = reshaped(rest[e], corners(term, e, X_), corners(term, e, X));
+        term.set_rest(std::move(rest));
+      });
+    X_ = X;
+  }
+
+  // Of whole elements: one that shares a node with those of another parameter knows nothing of its changes.
+  std::vector<WrittenDatum> written() const override {
+    std::vector<WrittenDatum> data;
+    for (size_t k = 0; k < terms_.size(); ++k)
+      for (const size_t e : touched_[k])
+        data.push_back({WrittenDatum::Kind::Shape, terms_[k], static_cast<int>(e)});
+    return data;
+  }
+
+  Vector pull_back(const Points& x, const Points& weights) const override {
+    Vector result = none();
+    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+      add(term, e, t.pulled_back(element_positions(term, e, weights)), result);
+    });
+    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
+      const HingeVector w = element_positions(term, e, weights), at = element_positions(term, e, x);
+      HingeVector slope = HingeVector::Zero();
+      for (int i = 0; i < 12; ++i)
+        if (numbers(term.stencils().nodes[4 * e + i / 3]) >= 0)
+          slope[i] = hinge_slope(term.rest()[e], X, HingeVector::Unit(i), at).template tail<12>().dot(w);
+      add(term, e, slope, result);
+    });
+    return result;
+  }
+
+  void push_forward(const Points& x, const Vector& change, Points& g) const override {
+    Points motion = Points::Zero(3, X_.cols());
+    for (size_t k = 0; k < nodes_.size(); ++k)
+      motion.col(nodes_[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k));
+    const auto scatter = [&](const auto& term, size_t e, const auto& slope) {
+      for (int a = 0; a < slope.size() / 3; ++a)
+        g.col(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]) +=
+            slope.template segment<3>(3 * a);
+    };
+    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+      scatter(term, e, t.pushed_forward(element_positions(term, e, motion)));
+    });
+    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
+      const Eigen::Vector<double, 13> slope =
+          hinge_slope(term.rest()[e], X, element_positions(term, e, motion), element_positions(term, e, x));
+      scatter(term, e, HingeVector(slope.tail<12>()));
+    });
+  }
+
+  Vector energy_derivative(const Points& x, const EnergyTerm& wanted) const override {
+    Vector result = none();
+    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+      if (&term == &wanted) add(term, e, t.energy_slope(), result);
+    });
+    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
+      if (&term != &wanted) return;
+      HingeVector slope;
+      for (int i = 0; i < 12; ++i)
+        slope[i] = hinge_slope(term.rest()[e], X, HingeVector::Unit(i), element_positions(term, e, x))[0];
+      add(term, e, slope, result);
+    });
+    return result;
+  }
+
+ private:
+  int numbers(int node) const { return number_[static_cast<size_t>(node)]; }  // first of a node; -1: none
+
+  Points placed(const Vector& value) const {
+    Points X = X_;
+    for (size_t k = 0; k < nodes_.size(); ++k)
+      X.col(nodes_[k]) = value.segment<3>(3 * static_cast<Eigen::Index>(k));
+    return X;
+  }
+
+  static Corners corners(const EnergyTerm& term, size_t e, const Points& X) {
+    Corners corners{};
+    for (int a = 0; a < term.stencils().width; ++a)
+      corners[static_cast<size_t>(a)] =
+          X.col(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]);
+    return corners;
+  }
+
+  template <typename Slope>
+  void add(const EnergyTerm& term, size_t e, const Slope& slope, Vector& result) const {
+    for (int a = 0; a < term.stencils().width; ++a)
+      if (const int first =
+              numbers(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]);
+          first >= 0)
+        result.segment<3>(first) += slope.template segment<3>(3 * a);
+  }
+
+  // visit_triangle(term, element, derivatives) of every triangle that has one of the nodes.
+  template <typename Visit>
+  void visit(const Points& x, const Visit& visit_triangle) const {
+    for (size_t k = 0; k < terms_.size(); ++k)
+      visit_element_term(Membranes{}, *terms_[k], [&]<typename Kernel>(ElementTerm<Kernel>& term) {
+        for (const size_t e : touched_[k])
+          visit_triangle(
+              term, e,
+              RestTriangle::at<Kernel>(term.rest()[e], corners(term, e, X_), element_positions(term, e, x)));
+      });
+  }
+
+  template <typename Visit>
+  void visit_hinges(const Visit& visit_hinge) const {
+    for (size_t k = 0; k < terms_.size(); ++k)
+      visit_element_term(Hinges{}, *terms_[k], [&](auto& term) {
+        for (const size_t e : touched_[k]) visit_hinge(term, e, corners(term, e, X_));
+      });
+  }
+
+  std::vector<EnergyTerm*> terms_;
+  Points X_;
+  std::vector<int> nodes_;
+  std::vector<int> number_;                   // per node
+  std::vector<std::vector<size_t>> touched_;  // elements of each term that have one of the nodes
+};
+
+// Whether X is the shape at rest that the term was built from.
+bool is_shape_of(EnergyTerm& term, const Points& X) {
+  bool is_same = true;
+  visit_element_term(Membranes{}, term, [&](auto& membrane) {
+    for (size_t e = 0; e < membrane.rest().size() && is_same; ++e) {
+      const int* n = &membrane.stencils().nodes[3 * e];
+      is_same = has_shape(membrane.rest()[e], {X.col(n[0]), X.col(n[1]), X.col(n[2])});
+    }
+  });
+  return is_same;
+}
+
+}  // namespace
+
+std::unique_ptr<Parameter> make_reference_positions(std::string name, const Objective& objective, Points X,
+                                                    std::vector<int> nodes) {
+  const std::string where = "parameter \"" + name + "\": ";
+  std::vector<std::string> defects;
+  for (const int node : nodes)
+    if (node < 0 || node >= objective.node_count())
+      defects.push_back(where + "there is no node " + std::to_string(node));
+  if (X.cols() != objective.node_count())
+    throw InputError(where + "the rest shape has " + std::to_string(X.cols()) + " nodes, the objective " +
+                     std::to_string(objective.node_count()));
+  std::vector<EnergyTerm*> terms;
+  for (const auto& term : objective.terms()) {
+    if (term->type() == Spring::kType)
+      defects.push_back(
+          where + "term \"" + term->name() + "\" (" + std::string(term->type()) +
+          ") has springs that know nothing of the triangles at rest that they stand for; a rest "
+          "shape can change under membranes of constant-strain triangles (cst_...) and bending");
+    if (!visit_shaped(*term, [](const auto&) {})) continue;
+    terms.push_back(term.get());
+    if (!is_shape_of(*term, X))
+      defects.push_back(where + "the given rest shape is not that of term \"" + term->name() + "\"");
+  }
+  if (!defects.empty()) throw InputError(defects);
+  return std::make_unique<ReferencePositions>(std::move(name), std::move(terms), std::move(X),
+                                              std::move(nodes));
+}
+
+}  // namespace coapt

@@ -1,0 +1,248 @@
+#include "solve/cascade.hpp"
+
+#include "core/error.hpp"
+#include "mesh/distance/separate.hpp"
+#include "mesh/remesh/prolong.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/contact_pairs.hpp"
+#include "scene/build/thinning.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string_view>
+
+namespace coapt {
+namespace {
+
+constexpr int kFewestTriangles = 500;  // of a coarse mesh
+constexpr size_t kMostCoarseMeshes = 4;
+constexpr double kLeastCoarsening = 0.67;  // a mesh with more than this share of the next is no help
+constexpr double kCoarseTolerance = 1e-3;
+constexpr double kMostResidual = 1e6;  // of a start
+constexpr double kGapPerEdge = 0.1;    // left between facets that are pushed apart, of the mean edge
+
+// One step from a mesh of the cascade to the next coarser one.
+struct Step {
+  Coarsening coarsening;
+  std::vector<int> kept;  // vertex of the scene's own mesh of each coarse vertex
+  Points X;               // vertices of the finer mesh
+};
+
+// The options for a mesh whose vertices are `kept` of the finest.
+CoarsenOptions narrowed(const CoarsenOptions& finest, const Step& last) {
+  std::vector<int> number(finest.kinds.size(), -1);
+  CoarsenOptions options;
+  options.share = finest.share;
+  options.lines = last.coarsening.lines;
+  for (size_t k = 0; k < last.kept.size(); ++k) {
+    const auto v = static_cast<size_t>(last.kept[k]);
+    number[v] = static_cast<int>(k);
+    options.kinds.push_back(finest.kinds[v]);
+  }
+  for (const int v : finest.keep) options.keep.push_back(number[static_cast<size_t>(v)]);
+  return options;
+}
+
+// From fine to coarse.
+std::vector<Step> coarser_meshes(const Scene& scene, const Groundwork& ground) {
+  std::vector<Step> steps;
+  steps.reserve(kMostCoarseMeshes);
+  const TriangleMesh* mesh = &ground.model.mesh;
+  const CoarsenOptions finest = coarsen_options(scene, ground);
+  while (steps.size() < kMostCoarseMeshes && finest.share * mesh->triangle_count() >= kFewestTriangles) {
+    Step step{coarsen(*mesh, steps.empty() ? finest : narrowed(finest, steps.back())), {}, mesh->vertices};
+    if (step.coarsening.mesh.triangle_count() > kLeastCoarsening * mesh->triangle_count()) break;
+    step.kept = step.coarsening.kept;
+    if (!steps.empty())
+      for (int& v : step.kept) v = steps.back().kept[static_cast<size_t>(v)];
+    steps.push_back(std::move(step));
+    mesh = &steps.back().coarsening.mesh;
+  }
+  return steps;
+}
+
+// Positions of all nodes of the finer mesh; the points of the networks follow the vertices.
+Points finer(const Step& step, const Points& x) {
+  const Eigen::Index coarse_count = step.coarsening.mesh.vertex_count(), fine_count = step.X.cols();
+  Points result(3, fine_count + x.cols() - coarse_count);
+  result.leftCols(fine_count) = prolonged(step.coarsening, step.X, x.leftCols(coarse_count));
+  result.rightCols(x.cols() - coarse_count) = x.rightCols(x.cols() - coarse_count);
+  return result;
+}
+
+// Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
+// their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
+// edge.
+bool make_startable(Points& x, const Model& model) {
+  if (model.objective->step_limiting_term() == nullptr) return true;
+  const Triangles facets = all_facets(model);
+  SeparationOptions options;
+  options.membrane_count = model.mesh.triangle_count();
+  if (pairs_to_separate(x, facets, options.membrane_count, {}).empty()) return true;
+  const double edge = mean_edge_length(model.X, model.mesh.triangles);
+  options.gap = kGapPerEdge * edge;
+  for (const auto& node : model.objective->fixed().colwise()) options.is_held.push_back(node.any());
+  Separation separation = separate(x, facets, options);
+  if (!separation.pairs_left.empty() || separation.largest_displacement > edge) return false;
+  x = std::move(separation.x);
+  return true;
+}
+
+// Whether a solver gets anywhere from this start. On slivers a shape that was carried over may bend and
+// stretch beyond measure: starts at up to 4e4 were seen to converge, one at 2e7 to stall.
+bool is_bearable(const Problem& problem) {
+  Vector g;
+  problem.objective.limit_stress(problem.q0);
+  problem.objective.gradient(problem.q0, g);
+  const double residual = problem.objective.relative_residual(g);
+  problem.objective.release_stress_limits();
+  return residual < kMostResidual;
+}
+
+bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
+
+class Cascade {
+ public:
+  Cascade(const SolverMaker& make_solver, const StopRule& stop, const Observer& observer)
+      : make_solver_(make_solver), stop_(stop), observer_(observer) {}
+
+  // Solves a mesh of the cascade and notes it as a level.
+  Result level(const Problem& problem, const Model& model, double tolerance) {
+    StopRule stop = stop_;
+    stop.tolerance = std::max(tolerance, stop_.tolerance);
+    stop.max_seconds = std::max(0.0, stop_.max_seconds - (wall_seconds() - wall_start_));
+    const std::unique_ptr<Solver> solver = make_solver_(model);
+    Result result = solve(*solver, problem, stop, observer_);
+    outcome.levels.push_back({model.mesh.triangle_count(), result.iterations, result.status, result.residual,
+                              wall_seconds() - level_wall_, cpu_seconds() - level_cpu_});
+    level_wall_ = wall_seconds();
+    level_cpu_ = cpu_seconds();
+    return result;
+  }
+
+  // Makes the result that of the whole.
+  void finish(Result result) {
+    const double before = wall_seconds() - wall_start_ - result.wall_s;
+    for (Iteration& iteration : result.trace) iteration.seconds += before;
+    result.phase_s["coarse_levels"] = before;
+    result.wall_s += before;
+    result.cpu_s = cpu_seconds() - cpu_start_;
+    outcome.result = std::move(result);
+  }
+
+  void warn(std::string_view sentence) { outcome.warnings.emplace_back(sentence); }
+
+  CascadeOutcome outcome;
+
+ private:
+  const SolverMaker& make_solver_;
+  const StopRule& stop_;
+  const Observer& observer_;
+  double wall_start_ = wall_seconds(), cpu_start_ = cpu_seconds();
+  double level_wall_ = wall_start_, level_cpu_ = cpu_start_;
+};
+
+// The start of a problem as it stands, for a run that was interrupted before it came to it.
+Result judged(const Problem& problem, Status reason, Solver& solver) {
+  StopRule stop;
+  stop.max_iterations = 0;
+  Result result = solve(solver, problem, stop);
+  result.status = reason;
+  result.message = reason == Status::Cancelled ? "cancelled" : "stopped at the time limit";
+  result.message += " on a coarse mesh of the cascade; the shape found there was kept";
+  return result;
+}
+
+// Solves the coarser meshes. The shape on the scene's own mesh that the last of them gives, and why they
+// ended; no shape where one of them failed.
+struct Start {
+  Points x;
+  Status status = Status::Converged;
+};
+std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, Cascade& cascade) {
+  const std::vector<Step> steps = coarser_meshes(scene, ground);
+  if (steps.empty()) {
+    cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
+    return std::nullopt;
+  }
+  Start start;
+  for (size_t k = steps.size(); k-- > 0;) {
+    const TriangleMesh& mesh = steps[k].coarsening.mesh;
+    const std::string name =
+        "The mesh of " + std::to_string(mesh.triangle_count()) + " triangles of the cascade ";
+    std::string failure;
+    try {
+      Model model = build(scene, thinned(ground, mesh, steps[k].kept));
+      const bool is_coarsest = start.x.size() == 0;
+      if (!is_coarsest && !make_startable(start.x, model))
+        throw InputError("the shape found on a coarser one passes through itself there");
+      const Problem problem =
+          is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
+                      : problem_at(start.x, model);
+      const Result result = cascade.level(problem, model, kCoarseTolerance);
+      start = {model.objective->positions(result.q), result.status};
+      if (result.status != Status::Converged) failure = result.message;
+    } catch (const InputError& error) {
+      failure = error.what();
+      start.status = Status::NonFinite;
+    }
+    if (was_interrupted(start.status)) {
+      for (size_t j = k + 1; j-- > 0;) start.x = finer(steps[j], start.x);
+      return start;
+    }
+    if (!failure.empty()) {
+      cascade.warn(name + "was not solved (" + failure + "); the scene's own was solved from its own start.");
+      return std::nullopt;
+    }
+    start.x = finer(steps[k], start.x);
+  }
+  return start;
+}
+
+}  // namespace
+
+CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
+                             const SolverMaker& make_solver, const StopRule& stop, const Observer& observer,
+                             const StabilityOptions& stability) {
+  Cascade cascade(make_solver, stop, observer);
+  std::optional<Start> start = coarse_start(scene, ground, cascade);
+  if (start && !make_startable(start->x, model)) {
+    cascade.warn(
+        "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
+    start.reset();
+  }
+  if (start) {
+    Problem problem = problem_at(start->x, model);
+    problem.stability = stability;
+    if (was_interrupted(start->status)) {
+      cascade.finish(judged(problem, start->status, *make_solver(model)));
+      return std::move(cascade.outcome);
+    }
+    if (!is_bearable(problem)) {
+      cascade.warn(
+          "The start that the cascade gave is bent or stretched beyond measure: the mesh was solved from its "
+          "own start.");
+      model.objective->prescribe(model.X);
+      start.reset();
+    }
+  }
+  if (start) {
+    Problem problem = problem_at(start->x, model);
+    problem.stability = stability;
+    Result result = cascade.level(problem, model, stop.tolerance);
+    if (result.status == Status::Converged || result.status == Status::IterationLimit ||
+        was_interrupted(result.status)) {
+      cascade.finish(std::move(result));
+      return std::move(cascade.outcome);
+    }
+    cascade.warn("The start that the cascade gave led nowhere (" + result.message +
+                 "): the mesh was solved from its own start.");
+    model.objective->prescribe(model.X);
+  }
+  cascade.finish(
+      cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation, stability}, model,
+                    stop.tolerance));
+  return std::move(cascade.outcome);
+}
+
+}  // namespace coapt

@@ -1,0 +1,29 @@
+// What a program may want otherwise than the scene says.
+#pragma once
+
+#include "mesh/distance/intersections.hpp"
+#include "optim/solver.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace coapt {
+
+struct RunOptions {
+  std::string solver;                 // empty: the scene's
+  std::optional<double> tolerance;    // empty: the scene's
+  std::optional<double> max_seconds;  // empty: the scene's
+  std::optional<int> modes;           // smallest eigenvalues in the certificate; empty: the scene's
+  std::optional<int> frame_interval;  // accepted iterates from frame to frame, at least 1; empty: the scene's
+  std::optional<bool> writes_page;    // report.html; empty: as the scene says
+  std::filesystem::path folder;       // empty: the scene's, see result_folder() of run.hpp
+  bool writes = true;                 // false: measures only
+  Observer observer;                  // may be empty
+
+  // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
+  FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
+  IntersectionJudge judge;  // of the result
+};
+
+}  // namespace coapt

@@ -1,0 +1,115 @@
+#include "solve/solve_scene.hpp"
+
+#include "core/error.hpp"
+#include "formats/json/suggestion.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/masses.hpp"
+#include "scene/build/xpbd_body.hpp"
+#include "xpbd/solver_xpbd.hpp"
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kCollisionDistance = 0.3;  // of dynamics, over the mean edge length
+
+FactorisationFactory chosen_factorisation(const FactorisationTable& table, const std::string& name) {
+  if (name == "auto") return table.contains("cholmod") ? table.at("cholmod") : make_eigen_factorisation;
+  if (const auto found = table.find(name); found != table.end()) return found->second;
+  throw InputError("factorisation \"" + name + "\" is not in this build; use \"auto\" or \"eigen\"");
+}
+
+SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name) {
+  const auto found = solvers.find(name);
+  if (found == solvers.end()) {
+    std::vector<std::string> known;
+    for (const auto& [key, factory] : solvers) known.push_back(key);
+    throw InputError("solver \"" + name + "\" is not known" + suggestion(name, known) +
+                     "; this build has: " + listed(known));
+  }
+  return found->second;
+}
+
+// What the scene says of the method, and what the method may ask of the body that it moves.
+SolverOptions solver_options(const SolverSpec& spec, const std::vector<TermSpec>& terms,
+                             const FactorisationFactory& factorisation, const Model& model) {
+  SolverOptions options;
+  options.memory = spec.memory;
+  options.is_preconditioned = spec.is_preconditioned;
+  options.globalisation = spec.globalisation;
+  options.factorisation = factorisation;
+  options.dynamic = spec.dynamic;
+  if (options.dynamic.collision_distance == 0 && model.mesh.triangle_count() > 0)
+    options.dynamic.collision_distance =
+        kCollisionDistance * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
+  options.surface = [&model] { return TriangleMesh{model.X, model.mesh.triangles, {}, {}}; };
+  options.masses = [&model, density = spec.density] { return lumped_masses(model, density); };
+  options.xpbd = spec.xpbd;
+  options.xpbd_body = [&model, terms] { return xpbd_body(model, terms); };
+  return options;
+}
+
+StopRule stop_rule(const Scene& scene, const RunOptions& options) {
+  StopRule stop;
+  stop.tolerance = options.tolerance.value_or(scene.solver.tolerance);
+  stop.max_iterations = scene.solver.max_iterations;
+  const double seconds = options.max_seconds.value_or(scene.solver.max_seconds);
+  stop.max_seconds = seconds > 0 ? seconds : kInfinity;
+  if (!(stop.tolerance > 0 && stop.tolerance <= 1))
+    throw InputError("--tolerance: must be above 0 and at most 1, a residual relative to the largest force");
+  if (std::isnan(seconds)) throw InputError("--max-seconds: must be a number of seconds");
+  return stop;
+}
+
+}  // namespace
+
+SolverTable scene_solvers() {
+  SolverTable solvers = built_in_solvers();
+  add_xpbd_solver(solvers);
+  return solvers;
+}
+
+SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
+  SolveSetup setup;
+  setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
+  const FactorisationFactory factorisation =
+      chosen_factorisation(options.factorisations, scene.solver.factorisation);
+  setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
+                       factorisation](const Model& model) {
+    return make(solver_options(spec, terms, factorisation, model));
+  };
+  setup.stop = stop_rule(scene, options);
+  setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
+  setup.observer = options.observer;
+  return setup;
+}
+
+CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
+                           const SolveSetup& setup) {
+  if (scene.solver.cascade)
+    return solve_cascade(scene, ground, model, setup.make_solver, setup.stop, setup.observer,
+                         setup.stability);
+  CascadeOutcome outcome;
+  outcome.result =
+      solve(*setup.make_solver(model),
+            {*model.objective, model.q0, model.motion, scene.solver.continuation, setup.stability},
+            setup.stop, setup.observer);
+  return outcome;
+}
+
+Result solve_along_path(const Scene& scene, const Points& x, Model& model, const SolveSetup& setup) {
+  Objective& objective = *model.objective;
+  objective.prescribe(model.X);
+  return solve(*setup.make_solver(model),
+               {objective, objective.unknowns(x), model.motion, scene.solver.continuation, setup.stability},
+               setup.stop, setup.observer);
+}
+
+Result solve_again(const Points& x, Model& model, const SolveSetup& setup) {
+  Problem problem = problem_at(x, model);
+  problem.stability = setup.stability;
+  return solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
+}
+
+}  // namespace coapt

@@ -1,0 +1,27 @@
+#include "stress/energy_judge.hpp"
+
+#include "stress/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+
+std::string energy_rise(const Result& result, Objective& objective, const Points& start) {
+  constexpr double kRunaway = 100;  // times the size at the start
+  const double extent = objective.extent(objective.unknowns(start));
+  if (!(objective.extent(result.q) < kRunaway * extent)) return "";
+  double greatest = 0;
+  for (const Iteration& iteration : result.trace) greatest = std::max(greatest, std::abs(iteration.energy));
+  const double rounding = 1e-11 * greatest + 1e-13 * objective.largest_force() * extent;
+  for (size_t k = 1; k < result.trace.size(); ++k) {
+    const Iteration &before = result.trace[k - 1], &now = result.trace[k];
+    if (now.round != before.round || now.energy <= before.energy + rounding) continue;
+    return "in iteration " + std::to_string(now.iteration) + " the energy rises from " +
+           short_number(before.energy) + " by " + short_number(now.energy - before.energy) + ", rounding " +
+           short_number(rounding) + " mJ";
+  }
+  return "";
+}
+
+}  // namespace coapt

@@ -1,0 +1,231 @@
+#include "study/bench/accuracy.hpp"
+
+#include "core/error.hpp"
+#include "report/report_page.hpp"
+#include "results/frames.hpp"
+#include "run/run_parts.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/refining.hpp"
+#include "study/bench/discretisation.hpp"
+#include "study/detail/method_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+
+namespace coapt {
+namespace {
+
+constexpr double kFirstTolerance = 1e-3, kLeastTolerance = 1e-10;
+constexpr double kAlgebraicShare = 0.1;  // of the wanted accuracy
+constexpr double kGoingOn = 1e-4;        // of the residual, to see how far the shape still goes
+constexpr double kRoundOff = 1e-12;      // residual below which nothing is gained
+constexpr double kClearlySmaller = 0.5;  // a residual that tells how far the shape still goes
+constexpr int kMostTightenings = 4;
+
+struct SolvedMesh {
+  size_t cuts = 0;
+  Model model;
+  Report report;  // begun
+  CascadeOutcome outcome;
+  const Result& result() const { return outcome.result; }
+  bool has_converged() const { return result().status == Status::Converged; }
+  TriangleMesh closed() const { return surface_at(model, model.objective->positions(result().q)); }
+};
+
+// The tolerance at which an error that goes with the residual is at most `wanted`: a power of ten below.
+double tighter(double tolerance, double error_mm, double wanted_mm) {
+  return std::max(kLeastTolerance,
+                  tolerance * std::pow(10, std::floor(std::log10(0.5 * wanted_mm / error_mm))));
+}
+
+class Search {
+ public:
+  Search(const Scene& scene, const SolverTable& solvers, double wanted_mm, const RunOptions& options,
+         int most_triangles)
+      : scene_(scene),
+        setup_(solve_setup(scene, solvers, options)),
+        going_on_(solve_setup(scene, solvers, refining(solvers, options))),
+        options_(options),
+        most_triangles_(most_triangles),
+        most_seconds_(setup_.stop.max_seconds) {
+    going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
+    estimate.wanted_mm = wanted_mm;
+    estimate.tolerance = kFirstTolerance;
+    grounds_.push_back(lay_groundwork(scene));
+    build(scene, grounds_.back());
+    build(scene, ground(1));  // what a finer mesh cannot have is said before the first solve
+  }
+
+  SolvedMesh solve() {
+    SolvedMesh mesh = tightened(solved(0));
+    std::vector<TriangleMesh> shapes = {mesh.closed()};
+    while (mesh.has_converged() && estimate.algebraic_mm) {
+      if (4L * mesh.model.mesh.triangle_count() > most_triangles_) break;
+      SolvedMesh finer = solved(mesh.cuts + 1);
+      if (!finer.has_converged()) return finer;
+      shapes.push_back(finer.closed());
+      const MeshDistances distances = distances_between_meshes(shapes);
+      estimate.levels.back().to_previous = distances.to_next.back();
+      const DiscretisationEstimate found = estimate_discretisation(distances);
+      estimate.order = found.order;
+      mesh = std::move(finer);
+      estimate.discretisation_mm = std::nullopt;
+      if (!orders_agree(distances)) continue;
+      const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {
+        return error <= (1 - kAlgebraicShare) * estimate.wanted_mm;
+      });
+      const bool is_enough = fine_enough != found.error_mm.end();
+      const auto chosen = is_enough ? static_cast<size_t>(fine_enough - found.error_mm.begin()) : mesh.cuts;
+      estimate.discretisation_mm = found.error_mm[chosen];
+      // What the farthest point is beside the 95th percentile, as the distance to the finest mesh shows it.
+      const DistanceFigures& seen =
+          chosen < mesh.cuts ? distances.to_finest[chosen] : distances.to_next.back();
+      if (seen.p95 > 0) greatest_mm = found.error_mm[chosen] * seen.max / seen.p95;
+      if (!is_enough) continue;
+      return tightened(chosen == mesh.cuts ? std::move(mesh) : solved(chosen));
+    }
+    return mesh.cuts == 0 ? std::move(mesh) : tightened(std::move(mesh));
+  }
+
+  const SolveSetup& setup() const { return setup_; }
+
+  AccuracyEstimate estimate;
+  double greatest_mm = 0;  // error of the mesh at the farthest point, where it is known for the rest
+
+ private:
+  static RunOptions refining(const SolverTable& solvers, RunOptions options) {
+    if (solvers.contains(kRefiningSolver)) options.solver = kRefiningSolver;
+    options.modes = 0;
+    return options;
+  }
+
+  const Groundwork& ground(size_t cuts) {
+    while (grounds_.size() <= cuts) grounds_.push_back(refined(grounds_.back()));
+    return *std::next(grounds_.begin(), static_cast<std::ptrdiff_t>(cuts));
+  }
+
+  double seconds_left() const { return std::max(0.0, most_seconds_ - (wall_seconds() - start_)); }
+
+  SolvedMesh solved(size_t cuts) {
+    setup_.stop.tolerance = estimate.tolerance;
+    setup_.stop.max_seconds = seconds_left();
+    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .report = {}, .outcome = {}};
+    begin_report(scene_, setup_, mesh.model, options_, mesh.report);
+    mesh.outcome = solve_recorded(scene_, ground(cuts), mesh.model, setup_, mesh.report);
+    const Result& result = mesh.result();
+    estimate.levels.push_back({mesh.model.mesh.triangle_count(), estimate.tolerance, result.status,
+                               result.iterations, result.wall_s, result.cpu_s});
+    return mesh;
+  }
+
+  // The mesh solved to the tolerance that its algebraic error needs, which is in the estimate afterwards.
+  SolvedMesh tightened(SolvedMesh mesh) {
+    for (int tightening = 0; mesh.has_converged(); ++tightening) {
+      estimate.algebraic_mm = algebraic_error(mesh);
+      const double wanted = kAlgebraicShare * estimate.wanted_mm;
+      if (!estimate.algebraic_mm || *estimate.algebraic_mm <= wanted || tightening == kMostTightenings ||
+          estimate.tolerance <= kLeastTolerance)
+        break;
+      estimate.tolerance = tighter(estimate.tolerance, *estimate.algebraic_mm, wanted);
+      mesh = solved(mesh.cuts);
+    }
+    return mesh;
+  }
+
+  // How far the farthest vertex still goes. The error falls as the residual does, so the way to a smaller one
+  // tells all of it. Empty where no smaller one was found.
+  std::optional<double> algebraic_error(const SolvedMesh& mesh) {
+    const double residual = mesh.result().residual;
+    if (residual <= kRoundOff) return 0;
+    going_on_.stop.tolerance = std::max(kRoundOff, kGoingOn * residual);
+    going_on_.stop.max_seconds = seconds_left();
+    Model model = build(scene_, ground(mesh.cuts));
+    const Points x = mesh.model.objective->positions(mesh.result().q);
+    const Result result = solve_again(x, model, going_on_);
+    const double ratio = result.residual / residual;
+    if (!(ratio <= kClearlySmaller)) return std::nullopt;
+    const TriangleMesh before = surface_at(model, x),
+                       after = surface_at(model, model.objective->positions(result.q));
+    return (after.vertices - before.vertices).colwise().norm().maxCoeff() / (1 - ratio);
+  }
+
+  const Scene& scene_;
+  SolveSetup setup_, going_on_;
+  const RunOptions& options_;
+  int most_triangles_;
+  double most_seconds_, start_ = wall_seconds();
+  std::list<Groundwork> grounds_;  // the scene's own first; the others refer to it
+};
+
+void check(const Scene& scene, double wanted_mm, const RunOptions& options) {
+  std::vector<std::string> defects;
+  if (!(wanted_mm > 0 && std::isfinite(wanted_mm)))
+    defects.emplace_back("--accuracy: must be a length above 0, for example 0.1mm");
+  if (!scene.mesh)
+    defects.push_back("--accuracy: " + scene.file.string() +
+                      " has no mesh that could be refined; use --tolerance");
+  if (options.tolerance)
+    defects.emplace_back("--accuracy: chooses the tolerance itself; leave --tolerance out");
+  if (options.frame_interval)
+    defects.emplace_back("--accuracy: solves several meshes and writes no frames; leave --frames out");
+  if (!defects.empty()) throw InputError(defects);
+}
+
+// What is known where the error is not.
+std::string last_change(const AccuracyEstimate& estimate) {
+  for (auto level = estimate.levels.rbegin(); level != estimate.levels.rend(); ++level)
+    if (const auto& change = level->to_previous)
+      return ", as no two refinements in a row agree in their order; the last moved 95 % of the surface by "
+             "up to " +
+             page_number(change->p95, 2) + " mm, its farthest point by " + page_number(change->max, 2) +
+             " mm";
+  return ", as there was no finer mesh to compare";
+}
+
+std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh, double greatest_mm) {
+  const std::string where = " on " + std::to_string(mesh.model.mesh.triangle_count()) +
+                            " triangles at tolerance " + page_number(estimate.tolerance);
+  const std::string wanted = " (wanted: " + page_number(estimate.wanted_mm) + " mm)";
+  if (!mesh.has_converged()) return "not known, as the solve" + where + " did not converge" + wanted;
+  const std::optional<double> total = estimate.total_mm();
+  if (!total) return "not known" + where + (estimate.discretisation_mm ? "" : last_change(estimate)) + wanted;
+  return page_number(*total, 2) + " mm by estimate for 95 % of the surface, " +
+         page_number(greatest_mm + *estimate.algebraic_mm, 2) + " mm at its farthest point" + where + wanted;
+}
+
+}  // namespace
+
+RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
+                          const RunOptions& options, int most_triangles) {
+  check(scene, wanted_mm, options);
+  Search search(scene, solvers, wanted_mm, options, most_triangles);
+  RunReport run;
+  if (options.writes) {
+    run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
+    prepare_result_folder(run.folder);
+    remove_frames(run.folder);
+  }
+  SolvedMesh mesh = search.solve();
+  AccuracyEstimate estimate = std::move(search.estimate);
+  if (!mesh.has_converged()) estimate.discretisation_mm = estimate.algebraic_mm = std::nullopt;
+  const std::optional<double> total = estimate.total_mm();
+  estimate.cuts = static_cast<int>(mesh.cuts);
+  estimate.is_reached = total && *total <= wanted_mm;
+  estimate.message = described(estimate, mesh, search.greatest_mm);
+
+  SolveSetup setup = search.setup();
+  setup.stop.tolerance = estimate.tolerance;
+  run.report = std::move(mesh.report);
+  if (!estimate.is_reached)
+    run.report.warnings.push_back("The wanted accuracy was not reached: " + estimate.message + ".");
+  if (scene.frame_interval > 0)
+    run.report.warnings.emplace_back(
+        "Frames are not written for a wanted accuracy, as several meshes are solved.");
+  run.report.accuracy = std::move(estimate);
+  run.model = std::move(mesh.model);
+  finish_run(setup, std::move(mesh.outcome), options, run);
+  return run;
+}
+
+}  // namespace coapt

@@ -1,0 +1,159 @@
+#include "study/detail/method_verdict.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+std::string digits(double value, const char* format = "%.3g") {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string spaced(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+const Result& result_of(const ComparedMethod& method) { return method.run->report.result; }
+
+bool has_converged(const ComparedMethod& method) { return result_of(method).status == Status::Converged; }
+
+// Positions in the coordinates of the input, of all that is compared.
+Points compared_points(const Model& model, const Points& x) {
+  const Eigen::Index count = model.mesh.triangle_count() > 0 ? model.mesh.vertex_count() : x.cols();
+  return x.leftCols(count).colwise() + model.origin;
+}
+
+std::string energy_text(const Result& result) {
+  return digits(result.energy, "%.9g") + " mJ (" +
+         spaced(stability_name(result.certificate.stability.verdict)) + ")";
+}
+
+std::string not_converged_text(const ComparedMethod& method) {
+  const Result& result = result_of(method);
+  return spaced(status_name(result.status)) + " at residual " + digits(result.residual);
+}
+
+double energy_above(const ComparedMethod& reference, const ComparedMethod& method) {
+  const Result &there = result_of(reference), &here = result_of(method);
+  Objective& objective = *reference.run->model.objective;
+  if (!objective.has_circulatory_force()) return here.energy - there.energy;
+  const Vector q = objective.unknowns(method.run->report.fields.x);
+  objective.follow_path(there.q);
+  return objective.value(q) - objective.value(there.q);
+}
+
+std::string energies_text(const ComparedMethod& reference, const ComparedMethod& method) {
+  const std::string both = "energy " + energy_text(result_of(method)) + ", of " + reference.name + " " +
+                           energy_text(result_of(reference));
+  if (!reference.run->model.objective->has_circulatory_force()) return both;
+  return both + ", each of a potential of its own; " + digits(*method.energy_above) +
+         " mJ above it on the straight way between them";
+}
+
+struct RefinedShape {
+  Points x;  // of all that is compared
+  double residual = 0, energy = 0;
+  bool is_cancelled = false;
+};
+
+RefinedShape refined_shape(RunReport& run, const SolveSetup& setup) {
+  const Result result = solve_again(run.report.fields.x, run.model, setup);
+  return {compared_points(run.model, run.model.objective->positions(result.q)), result.residual,
+          result.energy, result.status == Status::Cancelled};
+}
+
+// From an unstable state newton would go on to a stable one, which says nothing about where the method stood.
+bool may_be_refined(const ComparedMethod& method) {
+  return !is_unstable(result_of(method).certificate.stability.verdict);
+}
+
+// Nothing where it was cancelled on the way.
+std::optional<RefinedPair> refined_pair(ComparedMethod& reference, ComparedMethod& method,
+                                        const SolveSetup& setup) {
+  const RefinedShape there = refined_shape(*reference.run, setup), here = refined_shape(*method.run, setup);
+  if (there.is_cancelled || here.is_cancelled) return std::nullopt;
+  return RefinedPair{setup.stop.tolerance, here.residual, there.residual,
+                     here.energy,          there.energy,  apart(here.x, there.x).max};
+}
+
+void say(ComparedMethod& method, Verdict verdict, const std::string& what) {
+  method.verdict = verdict;
+  method.message = std::string(verdict_name(verdict)) + ": " + what;
+}
+
+void judge_equilibria(ComparedMethod& reference, ComparedMethod& method, double same_mm,
+                      const std::optional<SolveSetup>& refining) {
+  const double largest = method.gap->same_vertex.max;
+  const std::string distance = "at most " + digits(largest) + " mm apart";
+  if (largest <= same_mm) return say(method, Verdict::SameEquilibrium, distance);
+  if (refining && may_be_refined(reference) && may_be_refined(method)) {
+    method.refined = refined_pair(reference, method, *refining);
+    if (!method.refined)
+      return say(method, Verdict::NotConverged,
+                 distance + "; cancelled before it was clear whether these are two equilibria");
+  }
+  const std::string after = method.refined
+                                ? ", " + digits(method.refined->largest_mm) +
+                                      " mm after going on to residuals " + digits(method.refined->residual) +
+                                      " and " + digits(method.refined->reference_residual)
+                                : "";
+  if (method.refined && method.refined->largest_mm <= same_mm)
+    return say(method, Verdict::SameEquilibrium, "as solved " + distance + after);
+  method.energy_above = energy_above(reference, method);
+  say(method, Verdict::AnotherBranch,
+      "up to " + digits(largest) + " mm apart" + after + "; " + energies_text(reference, method));
+}
+
+std::string gap_text(const MethodGap& gap) {
+  if (!gap.surfaces)
+    return "mean " + digits(gap.same_vertex.mean) + ", max " + digits(gap.same_vertex.max) + " mm";
+  const DistanceFigures distance = both_directions(*gap.surfaces);
+  return "mean " + digits(distance.mean) + ", 95 % " + digits(distance.p95) + ", max " +
+         digits(distance.max) + " mm";
+}
+
+}  // namespace
+
+VertexDistance apart(const Points& a, const Points& b) {
+  if (a.cols() == 0) return {};
+  const Eigen::RowVectorXd distances = (a - b).colwise().norm();
+  return {distances.mean(), distances.maxCoeff()};
+}
+
+void measure_gap(const ComparedMethod& reference, ComparedMethod& method) {
+  const Model &there = reference.run->model, &here = method.run->model;
+  Fields& fields = method.run->report.fields;
+  MethodGap gap;
+  gap.same_vertex =
+      apart(compared_points(here, fields.x), compared_points(there, reference.run->report.fields.x));
+  if (here.mesh.triangle_count() > 0) {
+    TriangleMesh closed = surface_at(there, reference.run->report.fields.x);
+    closed.vertices.colwise() += there.origin - here.origin;
+    gap.surfaces = reference_distance(surface_at(here, fields.x), closed, fields.method_distance);
+  }
+  method.gap = gap;
+}
+
+void judge_method(ComparedMethod& reference, ComparedMethod& method, double same_mm,
+                  const std::optional<SolveSetup>& refining) {
+  if (!method.run) return;
+  const bool is_reference = &method == &reference;
+  if (is_reference)
+    return say(method, Verdict::Reference, has_converged(method) ? "converged" : not_converged_text(method));
+  if (!reference.run) return say(method, Verdict::NoReference, reference.name + " failed");
+  if (method.model != reference.model)
+    return say(method, Verdict::ModelGap,
+               gap_text(*method.gap) + (has_converged(method) ? "" : "; " + not_converged_text(method)));
+  if (!has_converged(method)) return say(method, Verdict::NotConverged, not_converged_text(method));
+  if (!has_converged(reference))
+    return say(method, Verdict::NotConverged,
+               "the reference " + reference.name + ", " + not_converged_text(reference));
+  judge_equilibria(reference, method, same_mm, refining);
+}
+
+}  // namespace coapt

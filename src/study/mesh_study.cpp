@@ -1,0 +1,137 @@
+#include "study/mesh_study.hpp"
+
+#include "core/error.hpp"
+#include "formats/mesh_io.hpp"
+#include "results/study_files.hpp"
+#include "scene/build/build.hpp"
+#include "scene/build/groundwork.hpp"
+#include "scene/build/refining.hpp"
+#include "solve/solve_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+
+namespace coapt {
+namespace {
+
+MeshLevel solved_level(const Scene& scene, const Groundwork& ground, const SolveSetup& setup,
+                       const IntersectionJudge& judge) {
+  Model model = build(scene, ground);
+  const Result result = solve_scene(scene, ground, model, setup).result;
+  const Fields fields = compute_fields(model, model.objective->positions(result.q));
+  const Metrics metrics = measure(model, result.q, fields, judge);
+  MeshLevel level;
+  level.triangles = model.mesh.triangle_count();
+  level.vertices = model.mesh.vertex_count();
+  level.status = result.status;
+  level.residual = result.residual;
+  level.iterations = result.iterations;
+  level.wall_s = result.wall_s;
+  level.cpu_s = result.cpu_s;
+  level.intersections = metrics.intersections;
+  level.orifice_area_mm2 = metrics.orifice_area_mm2;
+  level.max_chord_force_n = metrics.max_chord_force_n;
+  level.closed = surface_at(model, fields.x);
+  if (model.closed_reference) level.to_reference = distance_between(level.closed, *model.closed_reference);
+  return level;
+}
+
+void compare(MeshLevel& level, const MeshLevel& before) {
+  if (level.status != Status::Converged || before.status != Status::Converged) return;
+  level.to_previous = distance_between(level.closed, before.closed);
+  if (before.to_previous && level.to_previous->mean > 0)
+    level.order = std::log2(before.to_previous->mean / level.to_previous->mean);
+}
+
+OrderedJson optional_number(const std::optional<double>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
+}
+
+OrderedJson mean_of(const std::optional<DistanceFigures>& distance) {
+  if (!distance) return nullptr;
+  return {{"mean_mm", distance->mean}, {"p95_mm", distance->p95}, {"max_mm", distance->max}};
+}
+
+std::string surface_file(const MeshLevel& level) {
+  return "closed_" + std::to_string(level.triangles) + ".obj";
+}
+
+}  // namespace
+
+bool MeshStudy::has_converged() const {
+  return std::all_of(levels.begin(), levels.end(),
+                     [](const MeshLevel& level) { return level.status == Status::Converged; });
+}
+
+MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels, const RunOptions& options,
+                     const std::function<void(const MeshLevel&)>& report) {
+  if (levels < 1) throw InputError("--levels: the mesh must be cut at least once");
+  const SolveSetup setup = solve_setup(scene, solvers, options);
+  std::list<Groundwork> grounds;  // which refer to the first
+  grounds.push_back(lay_groundwork(scene));
+  if (grounds.front().model.mesh.triangle_count() == 0)
+    throw InputError(scene.file.string() + ": mesh: missing; there is nothing to refine");
+  MeshStudy study{
+      scene.file.filename().string(), setup.solver, setup.stop.tolerance, grounds.front().model.origin, {}};
+  for (int k = 0; k < levels; ++k) grounds.push_back(refined(grounds.back()));
+  build(scene, *std::next(grounds.begin()));  // what a finer mesh cannot have is said before the first solve
+  for (const Groundwork& ground : grounds) {
+    MeshLevel level = solved_level(scene, ground, setup, options.judge);
+    if (!study.levels.empty()) compare(level, study.levels.back());
+    study.levels.push_back(std::move(level));
+    if (report) report(study.levels.back());
+    if (study.levels.back().status == Status::Cancelled) break;
+  }
+  return study;
+}
+
+void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& study) {
+  OrderedJson json = {{"scene", study.scene_file},
+                      {"solver", study.solver},
+                      {"tolerance", study.tolerance},
+                      {"converged", study.has_converged()},
+                      {"levels", OrderedJson::array()}};
+  std::ostringstream csv = csv_begun(
+      "triangles,vertices,status,residual,iterations,wall_s,cpu_s,intersections,mean_to_previous_mm,"
+      "p95_to_previous_mm,max_to_previous_mm,order,orifice_area_mm2,max_chord_force_n,mean_to_reference_mm");
+  const auto cell = [&](const std::optional<double>& value) {
+    csv << ',';
+    if (value) csv << *value;
+  };
+  for (const MeshLevel& level : study.levels) {
+    json["levels"].push_back(
+        {{"triangles", level.triangles},
+         {"vertices", level.vertices},
+         {"status", std::string(status_name(level.status))},
+         {"residual", std::isfinite(level.residual) ? OrderedJson(level.residual) : OrderedJson(nullptr)},
+         {"iterations", level.iterations},
+         {"wall_s", level.wall_s},
+         {"cpu_s", level.cpu_s},
+         {"intersections", level.intersections},
+         {"distance_to_previous", mean_of(level.to_previous)},
+         {"order", optional_number(level.order)},
+         {"orifice_area_mm2", optional_number(level.orifice_area_mm2)},
+         {"max_chord_force_n", optional_number(level.max_chord_force_n)},
+         {"distance_to_reference", mean_of(level.to_reference)},
+         {"file", surface_file(level)}});
+    csv << level.triangles << ',' << level.vertices << ',' << status_name(level.status) << ','
+        << level.residual << ',' << level.iterations << ',' << level.wall_s << ',' << level.cpu_s << ','
+        << level.intersections;
+    const bool is_compared = level.to_previous.has_value();
+    cell(is_compared ? std::optional(level.to_previous->mean) : std::nullopt);
+    cell(is_compared ? std::optional(level.to_previous->p95) : std::nullopt);
+    cell(is_compared ? std::optional(level.to_previous->max) : std::nullopt);
+    cell(level.order);
+    cell(level.orifice_area_mm2);
+    cell(level.max_chord_force_n);
+    cell(level.to_reference ? std::optional(level.to_reference->mean) : std::nullopt);
+    csv << '\n';
+    TriangleMesh closed = level.closed;
+    closed.vertices.colwise() += study.origin;
+    write_mesh(folder / surface_file(level), closed);
+  }
+  write_study(folder, "mesh_study", json, csv.str());
+}
+
+}  // namespace coapt

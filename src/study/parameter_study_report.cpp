@@ -1,0 +1,148 @@
+#include "core/components.hpp"
+#include "formats/json/json_text.hpp"
+#include "formats/whole_file.hpp"
+#include "report/report_page.hpp"
+#include "results/csv_row.hpp"
+#include "results/study_files.hpp"
+#include "study/parameter_study.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace coapt {
+namespace {
+
+constexpr const char* kShown[] = {"orifice_area_mm2",     "regurgitant_area_mm2", "coaptation_area_mm2",
+                                  "coaptation_length_mm", "coaptation_height_mm", "tenting_height_mm",
+                                  "prolapse_height_mm",   "max_chord_force_n",    "max_principal_strain"};
+
+OrderedJson as_json(const ParameterStudy& study) {
+  OrderedJson json = {{"version", version()},
+                      {"scene", study.scene_file},
+                      {"metric", study.metric},
+                      {"best", study.is_greatest_best ? "greatest" : "least"},
+                      {"point_count", study.point_count},
+                      {"finished", study.results.size()},
+                      {"converged", study.has_converged()},
+                      {"sweeps", OrderedJson::array()},
+                      {"points", OrderedJson::array()}};
+  for (const Sweep& sweep : study.sweeps)
+    json["sweeps"].push_back({{"key", sweep.path}, {"values", sweep.values}});
+  int rank = 0;
+  for (const size_t place : ranked(study)) {
+    const PointResult& result = study.results[place];
+    OrderedJson point = {{"rank", ++rank},
+                         {"number", result.number},
+                         {"folder", point_folder({}, result.number).string()},
+                         {"values", OrderedJson::object()},
+                         {"status", result.status},
+                         {"message", result.message},
+                         {"residual", number_json(result.residual)},
+                         {"iterations", result.iterations},
+                         {"wall_s", number_json(result.wall_s)},
+                         {"metrics", OrderedJson::object()}};
+    for (size_t k = 0; k < study.sweeps.size(); ++k) point["values"][study.sweeps[k].path] = result.values[k];
+    for (const auto& [name, value] : result.metrics) point["metrics"][name] = number_json(value);
+    json["points"].push_back(std::move(point));
+  }
+  return json;
+}
+
+std::string csv_of(const ParameterStudy& study) {
+  std::string header = "rank,number";
+  for (const Sweep& sweep : study.sweeps) header += "," + csv_text(sweep.path);
+  header += ",status,residual,iterations,wall_s";
+  const std::vector<MetricRow> metrics = metric_rows(Metrics());
+  for (const MetricRow& row : metrics) header += "," + row.name;
+  std::ostringstream csv = csv_begun(header);
+  long rank = 0;
+  for (const size_t place : ranked(study)) {
+    const PointResult& result = study.results[place];
+    Row row(csv);
+    row.count(++rank);
+    row.count(static_cast<long>(result.number));
+    for (const std::string& value : result.values) row.text(value);
+    row.text(result.status);
+    row.number(result.residual);
+    row.count(result.iterations);
+    row.number(result.wall_s);
+    for (const MetricRow& metric : metrics) row.number(result.metric(metric.name));
+    csv << '\n';
+  }
+  return csv.str();
+}
+
+std::vector<std::string> shown_metrics(const ParameterStudy& study) {
+  std::vector<std::string> names{study.metric};
+  for (const char* name : kShown)
+    if (name != study.metric) names.emplace_back(name);
+  return names;
+}
+
+PageTable point_table(const ParameterStudy& study) {
+  PageTable table{.caption = "Points, the best first", .columns = {{"rank"}}};
+  for (const Sweep& sweep : study.sweeps) table.columns.push_back({sweep.path, true});
+  table.columns.push_back({"status", true});
+  for (const std::string& name : shown_metrics(study)) table.columns.push_back({name});
+  int rank = 0;
+  for (const size_t place : ranked(study)) {
+    const PointResult& result = study.results[place];
+    std::vector<PageCell> row{{std::to_string(++rank)}};
+    for (const std::string& value : result.values) row.push_back({value});
+    row.push_back({result.status, result.has_converged() ? Tone::Good : Tone::Bad,
+                   result.has_converged() ? "" : result.message});
+    for (const std::string& name : shown_metrics(study)) {
+      const std::optional<double> value = result.metric(name);
+      row.push_back({value ? page_number(*value) : "–"});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.note = "Ranked by " + study.metric + ", the " + (study.is_greatest_best ? "greatest" : "least") +
+               " first. All figures stand in study.csv, and each point's own page in its folder.";
+  return table;
+}
+
+// The metric along the last sweep, one line for each combination of the others.
+PagePlot metric_plot(const ParameterStudy& study, const std::string& metric) {
+  PagePlot plot{.title = metric + " against " + study.sweeps.back().path,
+                .x = {study.sweeps.back().path},
+                .y = {metric}};
+  for (const PointResult& result : study.results) {
+    std::string name;
+    for (size_t k = 0; k + 1 < study.sweeps.size(); ++k)
+      name += (k == 0 ? "" : ", ") + study.sweeps[k].path + " = " + result.values[k];
+    if (name.empty()) name = metric;
+    if (plot.series.empty() || plot.series.back().name != name) plot.series.push_back({.name = name});
+    if (const std::optional<double> value = result.metric(metric))
+      plot.series.back().points.push_back(
+          {std::strtod(result.values.back().c_str(), nullptr), *value, !result.has_converged()});
+  }
+  return plot;
+}
+
+}  // namespace
+
+std::string parameter_study_json(const ParameterStudy& study) { return json_text(as_json(study), 2) + "\n"; }
+
+std::string parameter_study_page(const ParameterStudy& study) {
+  Page page{.title = "Study of " + study.scene_title};
+  page.lead = std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
+              (study.has_converged() ? ", all converged" : "; not every point converged");
+  page.tone = study.has_converged() ? Tone::Good : Tone::Bad;
+  page.sections.push_back({"Points", {point_table(study)}});
+  PageSection plots{"Figures", {}};
+  for (const std::string& name : shown_metrics(study)) {
+    const bool has_values = std::any_of(study.results.begin(), study.results.end(),
+                                        [&](const PointResult& r) { return r.metric(name).has_value(); });
+    if (has_values && plots.blocks.size() < 4) plots.blocks.push_back(metric_plot(study, name));
+  }
+  page.sections.push_back(std::move(plots));
+  return report_page(page);
+}
+
+void write_parameter_study(const std::filesystem::path& folder, const ParameterStudy& study) {
+  write_study(folder, "study", as_json(study), csv_of(study));
+  formats::write_whole(folder / "report.html", parameter_study_page(study));
+}
+
+}  // namespace coapt

@@ -1,0 +1,389 @@
+#include "core/components.hpp"
+#include "formats/json/json_text.hpp"
+#include "formats/whole_file.hpp"
+#include "report/compared_view.hpp"
+#include "results/csv_row.hpp"
+#include "results/result_warnings.hpp"
+#include "results/study_files.hpp"
+#include "tuning/chord_tuning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kMainShare = 0.3;  // of a unit direction: lengths that are named in it
+
+const char* bound_name(const TunedLength& length) {
+  return length.at_bound < 0 ? "lower" : length.at_bound > 0 ? "upper" : "none";
+}
+
+OrderedJson length_json(const TunedLength& length) {
+  return {{"name", length.name},
+          {"chords", length.chords},
+          {"before_mm", length.before},
+          {"after_mm", length.after},
+          {"factor", length.factor},
+          {"low_mm", length.low},
+          {"high_mm", length.high},
+          {"bound", bound_name(length)},
+          {"slack", length.is_slack},
+          {"extension_mm", number_json(length.extension)},
+          {"standard_deviation_mm", number_json(length.deviation)},
+          {"determined",
+           std::isnan(length.deviation) ? OrderedJson(nullptr) : OrderedJson(length.is_determined)}};
+}
+
+// A direction of the spectrum: the lengths that it mixes most, each with its share.
+std::vector<std::pair<std::string, double>> main_lengths(const ChordTuning& found, Eigen::Index k) {
+  std::vector<std::pair<std::string, double>> lengths;
+  for (size_t j = 0; j < found.lengths.size(); ++j)
+    if (const double share = found.determinacy->directions(static_cast<Eigen::Index>(j), k);
+        std::abs(share) > kMainShare)
+      lengths.emplace_back(found.lengths[j].name, share);
+  return lengths;
+}
+
+bool is_determined(const ChordTuning& found, Eigen::Index k) {
+  return found.determinacy->direction_deviation[k] <= found.determined;
+}
+
+OrderedJson direction_json(const ChordTuning& found, Eigen::Index k) {
+  const Determinacy& spectrum = *found.determinacy;
+  OrderedJson lengths = OrderedJson::object();
+  for (const auto& [name, share] : main_lengths(found, k)) lengths[name] = share;
+  return {{"singular_value", number_json(spectrum.singular_values[k])},
+          {"standard_deviation_mm", number_json(spectrum.direction_deviation[k])},
+          {"determined", is_determined(found, k)},
+          {"main_lengths", lengths}};
+}
+
+OrderedJson trial_json(const ChordTuning& found, const TuningTrial& trial, int number) {
+  OrderedJson json = {
+      {"solve", number},
+      {"status", std::string(status_name(trial.status))},
+      {"cost", number_json(trial.cost)},
+      {"rms_distance_mm", number_json(std::sqrt(trial.misfit))},
+      {"best", trial.is_best},
+      {"drawn_to_target", trial.is_aided},
+      {"iterations", trial.iterations},
+      {"lost_branch_mm", trial.lost_branch ? number_json(trial.lost_branch->distance) : OrderedJson(nullptr)},
+      {"seconds", trial.seconds},
+      {"factors", OrderedJson::array()}};
+  size_t metric = 0;
+  for (const auto& [name, weight] : {std::pair("smooth_orifice_mm2", found.orifice_weight),
+                                     std::pair("smooth_chord_force_n", found.force_weight)})
+    if (weight > 0)
+      json[name] =
+          metric < trial.metrics.size() ? number_json(trial.metrics[metric++]) : OrderedJson(nullptr);
+  for (const double factor : trial.value) json["factors"].push_back(factor);
+  return json;
+}
+
+OrderedJson metrics_json(const ChordTuning& found) {
+  OrderedJson metrics = OrderedJson::object();
+  const std::vector<MetricRow> before = metric_rows(found.before.report.metrics);
+  const std::vector<MetricRow> after =
+      found.after ? metric_rows(found.after->report.metrics) : std::vector<MetricRow>();
+  for (size_t k = 0; k < before.size(); ++k)
+    metrics[before[k].name] = {
+        {"unit", before[k].unit},
+        {"before", number_json(before[k].value)},
+        {"after", k < after.size() ? number_json(after[k].value) : OrderedJson(nullptr)}};
+  return metrics;
+}
+
+OrderedJson state_json(const RunReport& run) {
+  const Result& result = run.report.result;
+  return {{"status", std::string(status_name(result.status))}, {"message", result.message},
+          {"residual", number_json(result.residual)},          {"iterations", result.iterations},
+          {"folder", run.folder.filename().string()},          {"warnings", run.report.warnings}};
+}
+
+std::string csv_of(const ChordTuning& found) {
+  std::ostringstream csv = csv_begun(
+      "name,chords,before_mm,after_mm,factor,low_mm,high_mm,bound,slack,extension_mm,standard_deviation_mm,"
+      "determined");
+  for (const TunedLength& length : found.lengths) {
+    Row row(csv);
+    row.text(length.name);
+    row.count(length.chords);
+    for (const double value : {length.before, length.after, length.factor, length.low, length.high})
+      row.number(value);
+    row.text(bound_name(length));
+    row.text(length.is_slack ? "yes" : "no");
+    row.number(length.extension);
+    row.number(length.deviation);
+    row.text(std::isnan(length.deviation) ? "" : length.is_determined ? "yes" : "no");
+    csv << '\n';
+  }
+  return csv.str();
+}
+
+PageTable figure_table(const ChordTuning& found) {
+  PageTable table{.caption = "Every figure before and after",
+                  .columns = {{"figure", true}, {"unit", true}, {"before"}, {"after"}, {"change"}},
+                  .note = "Definitions: docs/metrics.md."};
+  const auto cell = [](const std::optional<double>& value) {
+    return PageCell{value ? page_number(*value) : "–"};
+  };
+  if (std::isfinite(found.misfit_before()))
+    table.rows.push_back(
+        {{"rms_distance_mm", Tone::Plain, "Root mean square distance of the vertices from the target."},
+         {"mm"},
+         cell(found.misfit_before()),
+         cell(found.misfit_after()),
+         cell(found.misfit_after() - found.misfit_before())});
+  const std::vector<MetricRow> before = metric_rows(found.before.report.metrics);
+  const std::vector<MetricRow> after =
+      found.after ? metric_rows(found.after->report.metrics) : std::vector<MetricRow>();
+  for (size_t k = 0; k < before.size(); ++k) {
+    const std::optional<double> then = k < after.size() ? after[k].value : std::nullopt;
+    std::optional<double> change;
+    if (then && before[k].value) change = *then - *before[k].value;
+    if (before[k].value || then)
+      table.rows.push_back({{before[k].name, Tone::Plain, before[k].meaning},
+                            {before[k].unit},
+                            cell(before[k].value),
+                            cell(then),
+                            cell(change)});
+  }
+  return table;
+}
+
+PageTable length_table(const ChordTuning& found) {
+  PageTable table{.caption = "Rest lengths",
+                  .columns = {{"name", true},
+                              {"before [mm]"},
+                              {"after [mm]"},
+                              {"change [mm]"},
+                              {"standard deviation [mm]"},
+                              {"remarks", true}}};
+  for (const TunedLength& length : found.lengths) {
+    std::string remarks;
+    const auto remark = [&](bool holds, const std::string& text) {
+      if (holds) remarks += (remarks.empty() ? "" : ", ") + text;
+    };
+    remark(length.chords > 1, "mean of " + std::to_string(length.chords) + " chords");
+    remark(length.at_bound != 0, std::string("at its ") + bound_name(length) + " bound");
+    remark(length.is_slack, "slack");
+    const bool is_open = found.determinacy && !length.is_determined;
+    remark(is_open, "not determined by the target");
+    remark(is_open && !length.is_slack && length.is_hardly_taut, "hardly taut");
+    table.rows.push_back({{length.name},
+                          {page_number(length.before, 6)},
+                          {page_number(length.after, 6)},
+                          {page_number(length.after - length.before)},
+                          {page_number(length.deviation)},
+                          {remarks, is_open || length.at_bound != 0 ? Tone::Caution : Tone::Plain}});
+  }
+  if (found.determinacy)
+    table.note = "Standard deviation where the distance of every vertex from the target is off by " +
+                 page_number(found.noise) +
+                 " mm (standard deviation, independent from vertex to vertex); above " +
+                 page_number(found.determined) + " mm a length counts as not determined.";
+  return table;
+}
+
+PagePlot history_plot(const ChordTuning& found) {
+  PagePlot plot{.title = "Cost of each solve", .x = {"solve"}, .y = {"cost", Scale::Logarithmic}};
+  PageSeries all{.name = "each", .is_joined = false}, best{.name = "best so far"};
+  int number = 1, rejected = 0, aided = 0;
+  double least = kInfinity;
+  for (const TuningTrial& trial : found.tuning.best.history) {
+    ++number;
+    if (!std::isfinite(trial.cost)) {
+      ++(trial.is_aided ? aided : rejected);
+      continue;
+    }
+    least = std::min(least, trial.cost);
+    all.points.push_back({static_cast<double>(number), trial.cost, trial.lost_branch.has_value(),
+                          trial.lost_branch ? "another branch of equilibria" : ""});
+    best.points.push_back({static_cast<double>(number), least});
+  }
+  plot.series = {best, all};
+  if (aided > 0)
+    plot.note =
+        std::to_string(aided) +
+        " solves had springs that drew the leaflets to the target; they have no cost and are not shown. ";
+  if (rejected > 0)
+    plot.note += std::to_string(rejected) + " solves did not converge; they have no cost and are not shown.";
+  return plot;
+}
+
+PagePlot spectrum_plot(const ChordTuning& found) {
+  PagePlot plot{.title = "Singular value of each combination of lengths",
+                .x = {"combination, best determined first"},
+                .y = {"singular value [mm/mm]", Scale::Logarithmic}};
+  PageSeries known{.name = "determined", .is_joined = false},
+      open{.name = "not determined", .is_joined = false};
+  const Determinacy& spectrum = *found.determinacy;
+  int without = 0;
+  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k) {
+    if (!std::isfinite(spectrum.direction_deviation[k])) {
+      ++without;  // its value is rounding
+      continue;
+    }
+    PageSeries& series = is_determined(found, k) ? known : open;
+    series.points.push_back({static_cast<double>(k + 1), spectrum.singular_values[k], false,
+                             "standard deviation " + page_number(spectrum.direction_deviation[k]) + " mm"});
+  }
+  for (const PageSeries& series : {known, open})
+    if (!series.points.empty()) plot.series.push_back(series);
+  plot.note =
+      "Root mean square of how far the distances from the target move where the lengths change by 1 mm along "
+      "the combination.";
+  if (without > 0) plot.note += " Not shown: " + std::to_string(without) + " that have no influence on them.";
+  return plot;
+}
+
+std::string combination_text(const ChordTuning& found, Eigen::Index k) {
+  std::string text;
+  for (const auto& [name, share] : main_lengths(found, k)) {
+    if (text.empty())
+      text = share < 0 ? "−" : "";
+    else
+      text += share < 0 ? " − " : " + ";
+    text += page_number(std::abs(share), 2) + " " + name;
+  }
+  return text.empty() ? "many lengths, a little of each" : text;
+}
+
+PageTable spectrum_table(const ChordTuning& found) {
+  PageTable table{.caption = "Combinations of lengths",
+                  .columns = {{"combination"},
+                              {"singular value [mm/mm]"},
+                              {"standard deviation [mm]"},
+                              {"determined", true},
+                              {"lengths with the greatest shares", true}}};
+  const Determinacy& spectrum = *found.determinacy;
+  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k) {
+    const bool is_known = is_determined(found, k);
+    table.rows.push_back({{std::to_string(k + 1)},
+                          {page_number(spectrum.singular_values[k])},
+                          {page_number(spectrum.direction_deviation[k])},
+                          {is_known ? "yes" : "no", is_known ? Tone::Plain : Tone::Caution},
+                          {combination_text(found, k)}});
+  }
+  table.note =
+      "Unit directions in the lengths, from the singular values of the derivatives of all distances: "
+      "docs/tuning.md. Lengths with a share above " +
+      page_number(kMainShare) + " are named; – is a standard deviation without bound.";
+  return table;
+}
+
+PageList messages(const ChordTuning& found) {
+  PageList list;
+  list.items.push_back({found.tuning.message, found.has_converged() ? Tone::Good : Tone::Caution});
+  list.items.push_back({std::to_string(found.solves) + " solves by " + found.method + " in " +
+                        page_number(found.seconds) + " s, " + std::to_string(found.tuning.failed) +
+                        " of them rejected because they did not converge"});
+  if (!found.target.empty()) list.items.push_back({"target: " + found.target});
+  if (found.tuning.lost_branches > 0)
+    list.items.push_back({std::to_string(found.tuning.lost_branches) +
+                              (found.tuning.lost_branches == 1 ? " trial" : " trials") +
+                              " ended on another branch of equilibria than the shape it came from",
+                          Tone::Caution});
+  if (found.tuning.anchor && !found.tuning.anchor->is_same_branch)
+    list.items.push_back({"the best shape " + found.tuning.anchor->message, Tone::Caution});
+  if (found.determinacy && !found.is_explained)
+    list.items.push_back({"a target that is off by " + page_number(found.noise) +
+                              " mm does not explain what the fit leaves: it is trapped, or the model is "
+                              "another; no length counts as determined",
+                          Tone::Caution});
+  const auto add = [&](const char* name, const RunReport& run) {
+    const Result& result = run.report.result;
+    list.items.push_back({std::string(name) + ": " + result.message,
+                          result.status == Status::Converged ? Tone::Plain : Tone::Bad});
+    for (const std::string& warning : result_warnings(run.report))
+      list.items.push_back({std::string(name) + ": " + warning, Tone::Caution});
+  };
+  add("before", found.before);
+  if (found.after) add("after", *found.after);
+  return list;
+}
+
+OrderedJson anchor_json(const std::optional<AnchorCheck>& anchor) {
+  if (!anchor) return nullptr;
+  return {{"same_branch", anchor->is_same_branch},
+          {"message", anchor->message},
+          {"back_mm", number_json(anchor->back)},
+          {"here_mm", number_json(anchor->here)},
+          {"travel_mm", number_json(anchor->travel)}};
+}
+
+}  // namespace
+
+std::string chord_tuning_json(const ChordTuning& found) {
+  const Tuning& tuning = found.tuning;
+  OrderedJson json = {
+      {"version", version()},
+      {"scene", found.scene_file},
+      {"status", std::string(tuning_status_name(tuning.status))},
+      {"converged", found.has_converged()},
+      {"message", tuning.message},
+      {"method", found.method},
+      {"target", found.target.empty() ? OrderedJson(nullptr) : OrderedJson(found.target)},
+      {"weights",
+       {{"distance_per_mm2", found.distance_weight},
+        {"orifice_per_mm2", found.orifice_weight},
+        {"force_per_n", found.force_weight},
+        {"change_per_mm2", found.change_weight}}},
+      {"cost", {{"before", number_json(tuning.cost_before)}, {"after", number_json(tuning.cost_after)}}},
+      {"rms_distance_mm",
+       {{"before", number_json(found.misfit_before())}, {"after", number_json(found.misfit_after())}}},
+      {"solves", found.solves},
+      {"failed_solves", tuning.failed},
+      {"lost_branches", tuning.lost_branches},
+      {"anchor", anchor_json(tuning.anchor)},
+      {"seconds", number_json(found.seconds)},
+      {"tuned_scene", found.tuned_scene.empty() ? OrderedJson(nullptr) : OrderedJson(found.tuned_scene)},
+      {"before", state_json(found.before)},
+      {"after", found.after ? state_json(*found.after) : OrderedJson(nullptr)},
+      {"lengths", OrderedJson::array()},
+      {"noise_mm", found.noise},
+      {"determined_mm", found.determined},
+      {"explained_by_noise", found.determinacy ? OrderedJson(found.is_explained) : OrderedJson(nullptr)},
+      {"undetermined", found.determinacy ? OrderedJson::array() : OrderedJson(nullptr)},
+      {"spectrum", found.determinacy ? OrderedJson::array() : OrderedJson(nullptr)},
+      {"metrics", metrics_json(found)},
+      {"history", OrderedJson::array()}};
+  for (const TunedLength& length : found.lengths) json["lengths"].push_back(length_json(length));
+  if (found.determinacy) {
+    for (const TunedLength& length : found.lengths)
+      if (!length.is_determined) json["undetermined"].push_back(length.name);
+    for (Eigen::Index k = 0; k < found.determinacy->singular_values.size(); ++k)
+      json["spectrum"].push_back(direction_json(found, k));
+  }
+  int number = 1;
+  for (const TuningTrial& trial : tuning.best.history)
+    json["history"].push_back(trial_json(found, trial, ++number));
+  return json_text(json, 2) + "\n";
+}
+
+std::string chord_tuning_page(const ChordTuning& found) {
+  Page page{.title = "Chord lengths of " + found.scene_title};
+  page.lead = std::string(tuning_status_name(found.tuning.status)) + ": cost " +
+              page_number(found.tuning.cost_before) + " before, " + page_number(found.tuning.cost_after) +
+              " after";
+  page.tone = found.has_converged() ? Tone::Good : Tone::Caution;
+  page.sections.push_back({"Tuning", {messages(found)}});
+  if (!found.tuning.best.history.empty()) page.sections.back().blocks.push_back(history_plot(found));
+  std::vector<ComparedShape> shapes = {{"before", &found.before.model, &found.before.report}};
+  if (found.after) shapes.push_back({"after", &found.after->model, &found.after->report});
+  if (const auto view = compared_view(shapes, shapes.size() - 1, "tuning", "Before ↔ after"))
+    page.sections.push_back({"Shapes", {shape_view_html(*view)}});
+  page.sections.push_back({"Lengths", {length_table(found)}});
+  if (found.determinacy)
+    page.sections.push_back({"What the target determines", {spectrum_plot(found), spectrum_table(found)}});
+  page.sections.push_back({"Figures", {figure_table(found)}});
+  return report_page(page);
+}
+
+void write_chord_tuning(const ChordTuning& found) {
+  write_study(found.folder, "tuning", OrderedJson::parse(chord_tuning_json(found)), csv_of(found));
+  formats::write_whole(found.folder / "report.html", chord_tuning_page(found));
+}
+
+}  // namespace coapt

@@ -1,0 +1,203 @@
+#include "valve/generators/mitral_chords.hpp"
+
+#include "valve/generators/chord_junctions.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace coapt {
+namespace {
+
+constexpr int kTips = 4;               // per muscle
+constexpr int kMuscles = 2;            // anterolateral, posteromedial
+constexpr double kSystolicMotion = 1;  // of the tips towards the mid-anterior annulus [mm]
+
+struct Insertion {
+  double u, t;
+};
+
+// One chord: a trunk and its fan.
+struct Fan {
+  std::string material;
+  double area;  // of the trunk [mm^2]
+  std::vector<Insertion> insertions;
+};
+
+// `count` insertions at equal steps inside (from, to); the fractions run from the anterolateral commissure
+// along either leaflet, and are mirrored for the posteromedial muscle.
+Fan spread(const MitralShape& shape, int muscle, MitralLeaflet leaflet, Fan fan, double from, double to,
+           double t, int count) {
+  for (int i = 0; i < count; ++i) {
+    double fraction = from + (to - from) * (i + 0.5) / count;
+    if ((leaflet == MitralLeaflet::Posterior) != (muscle == 1)) fraction = 1 - fraction;
+    fan.insertions.push_back({mitral_coordinate(shape, leaflet, fraction), t});
+  }
+  return fan;
+}
+
+// The chords of one muscle in the order of the header.
+std::vector<Fan> fans_of_muscle(const MitralShape& shape, int muscle, int branches) {
+  constexpr double kEdgeFrom = 0.05, kMiddle = 0.5;  // the commissural chord holds the rest
+  const double scale = shape.dimensions.chord_area_scale;
+  const Fan primary = {"primary", 0.4 * scale, {}}, secondary = {"secondary", 0.8 * scale, {}};
+  const Fan strut = {"strut", 1.2 * scale, {}};
+  const MitralLeaflet anterior = MitralLeaflet::Anterior, posterior = MitralLeaflet::Posterior;
+  std::vector<Fan> fans;
+  auto add_primary = [&](MitralLeaflet leaflet, int chords) {
+    const double width = (kMiddle - kEdgeFrom) / chords;
+    for (int i = 0; i < chords; ++i)
+      fans.push_back(spread(shape, muscle, leaflet, primary, kEdgeFrom + i * width,
+                            kEdgeFrom + (i + 1) * width, 1, branches));
+  };
+  add_primary(anterior, 3);
+  fans.push_back(spread(shape, muscle, anterior, secondary, 0.12, 0.28, 0.7, branches));
+  fans.push_back(spread(shape, muscle, anterior, strut, 0.26, 0.40, 0.6, branches));
+  add_primary(posterior, 4);
+  fans.push_back(spread(shape, muscle, posterior, secondary, 0.08, 0.22, 0.65, branches));
+  fans.push_back(spread(shape, muscle, posterior, secondary, 0.26, 0.40, 0.65, branches));
+  Fan commissural = spread(shape, muscle, anterior, primary, 0, kEdgeFrom, 1, 2);
+  for (const Insertion& insertion : spread(shape, muscle, posterior, primary, 0, kEdgeFrom, 1, 2).insertions)
+    commissural.insertions.push_back(insertion);
+  commissural.insertions.push_back({muscle == 0 ? 0 : shape.anterior_share, 1});
+  fans.push_back(commissural);
+  return fans;
+}
+
+Points papillary_tips(const MitralDimensions& d) {
+  Points tips(3, kMuscles * kTips);
+  for (int muscle = 0; muscle < kMuscles; ++muscle) {
+    const double side = muscle == 0 ? 1 : -1;
+    const Vec3 centre(side * d.papillary_distance / 2, d.papillary_offset, -d.papillary_depth);
+    int tip = muscle * kTips;
+    tips.col(tip++) = centre + Vec3(-side * 1.0, 3.5, 0);   // towards the anterior leaflet
+    tips.col(tip++) = centre + Vec3(side * 1.5, 1.0, 0.8);  // towards the commissure
+    tips.col(tip++) = centre + Vec3(side * 1.0, -2, 0.4);   // towards the posterior leaflet, lateral
+    tips.col(tip++) = centre + Vec3(-side * 0.5, -5, -0.6);
+  }
+  return tips;
+}
+
+// Tips muscle by muscle, and how many the first one has.
+struct MuscleTips {
+  Points tips;
+  int first_count;
+};
+
+MuscleTips by_muscle(const Points& tips) {
+  std::vector<int> order;
+  for (int i = 0; i < tips.cols(); ++i)
+    if (tips(0, i) > 0) order.push_back(i);
+  const int first_count = static_cast<int>(order.size());
+  for (int i = 0; i < tips.cols(); ++i)
+    if (!(tips(0, i) > 0)) order.push_back(i);
+  return {tips(Eigen::all, order), first_count};
+}
+
+// Vertices at which primary chords (the free edge) and the others (the inside) may end.
+struct InsertionSites {
+  std::vector<int> free_edge, inside;
+};
+
+InsertionSites insertion_sites(const MitralMesh& mesh) {
+  InsertionSites sites;
+  sites.free_edge = mesh.free_edge;
+  for (int v = 0; v < mesh.leaflets.vertex_count(); ++v)
+    if (mesh.coordinates(1, v) > 0 && mesh.coordinates(1, v) < 1) sites.inside.push_back(v);
+  return sites;
+}
+
+int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::vector<int>& sites,
+                   const Insertion& insertion) {
+  const Vec3 point = mitral_open_point(shape, insertion.u, insertion.t);
+  return *std::min_element(sites.begin(), sites.end(), [&](int a, int b) {
+    return (mesh.leaflets.vertices.col(a) - point).squaredNorm() <
+           (mesh.leaflets.vertices.col(b) - point).squaredNorm();
+  });
+}
+
+// Builds the network chord by chord.
+struct MitralChordBuilder {
+  const MitralShape& shape;
+  const MitralMesh& mesh;
+  const int first_count;  // tips of the anterolateral muscle
+  const InsertionSites sites = insertion_sites(mesh);
+  ChordNetwork network = {};
+  std::vector<Vec3> junctions = {};
+
+  Vec3 middle(const Fan& fan, bool is_closed) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Insertion& i : fan.insertions)
+      sum += is_closed ? mitral_closed_point(shape, i.u, i.t) : mitral_open_point(shape, i.u, i.t);
+    return sum / static_cast<double>(fan.insertions.size());
+  }
+
+  void add(const Fan& fan, int muscle) {
+    const Vec3 closed_middle = middle(fan, true), open_middle = middle(fan, false);
+    const int tip =
+        nearest_tip(network.papillary, muscle == 0 ? 0 : first_count,
+                    muscle == 0 ? first_count : static_cast<int>(network.papillary.cols()), open_middle);
+    const Vec3 closed_tip = network.papillary_closed.col(tip), open_tip = network.papillary.col(tip);
+    const Vec3 closed_junction = closed_tip + kJunctionPlace * (closed_middle - closed_tip);
+
+    const int count = static_cast<int>(fan.insertions.size());
+    JunctionLimits limits;  // ends and lengths: of the trunk, then of the branches
+    limits.ends.resize(3, count + 1);
+    limits.ends.col(0) = open_tip;
+    limits.rest_lengths = {(closed_junction - closed_tip).norm()};
+    std::vector<int> vertices;
+    for (int i = 0; i < count; ++i) {
+      const Insertion& insertion = fan.insertions[i];
+      const bool is_inside = insertion.t < 1;
+      const int v = nearest_vertex(shape, mesh, is_inside ? sites.inside : sites.free_edge, insertion);
+      const double u = mesh.coordinates(0, v), t = mesh.coordinates(1, v);
+      vertices.push_back(v);
+      limits.ends.col(i + 1) = mesh.leaflets.vertices.col(v);
+      limits.rest_lengths.push_back((mitral_closed_point(shape, u, t) - closed_junction).norm());
+      if (!is_inside) continue;  // a chord to the belly must not run through the leaflet below its insertion
+      for (const double height : {t, 1.0})
+        limits.planes.push_back({mitral_open_point(shape, u, height), mitral_open_normal(shape, u, height)});
+    }
+    const Vec3 start = open_tip + kJunctionPlace * (open_middle - open_tip);
+    const Vec3 junction = settle_junction(start, limits);
+    std::vector<double>& rest_lengths = limits.rest_lengths;
+    for (int i = 0; i <= count; ++i)
+      rest_lengths[i] = std::max(rest_lengths[i], (junction - limits.ends.col(i)).norm());
+
+    const ChordEnd node = {ChordEnd::Kind::Junction, static_cast<int>(junctions.size())};
+    junctions.push_back(junction);
+    network.chords.push_back(
+        {{ChordEnd::Kind::Papillary, tip}, node, rest_lengths[0], fan.area, fan.material, 1});
+    for (int i = 0; i < count; ++i)
+      network.chords.push_back({node,
+                                {ChordEnd::Kind::Leaflet, vertices[i]},
+                                rest_lengths[i + 1],
+                                fan.area / count,
+                                fan.material,
+                                2});
+  }
+};
+
+}  // namespace
+
+ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int branches,
+                           const Points& tips) {
+  const MuscleTips muscles = by_muscle(tips.cols() > 0 ? tips : papillary_tips(shape.dimensions));
+  MitralChordBuilder builder{shape, mesh, muscles.first_count};
+  ChordNetwork& network = builder.network;
+  network.papillary = muscles.tips;
+  const Vec3 target = mitral_closed_point(shape, mitral_coordinate(shape, MitralLeaflet::Anterior, 0.5), 0);
+  network.papillary_closed = network.papillary;
+  for (int i = 0; i < network.papillary.cols(); ++i)
+    network.papillary_closed.col(i) += kSystolicMotion * (target - network.papillary.col(i)).normalized();
+  for (int muscle = 0; muscle < kMuscles; ++muscle)
+    for (const Fan& fan : fans_of_muscle(shape, muscle, branches)) builder.add(fan, muscle);
+  network.junctions.resize(3, static_cast<int>(builder.junctions.size()));
+  for (size_t i = 0; i < builder.junctions.size(); ++i)
+    network.junctions.col(static_cast<int>(i)) = builder.junctions[i];
+  return network;
+}
+
+}  // namespace coapt

@@ -1,0 +1,125 @@
+#include "valve/valve_check.hpp"
+
+#include "mesh/mesh_check.hpp"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <charconv>
+
+namespace coapt {
+namespace {
+
+// Generous: from the valves of mice to those of whales, and what a heart can do to them.
+constexpr std::array<double, 2> kLeafletSize = {0.5, 500};   // largest extent [mm]
+constexpr std::array<double, 2> kThickness = {0.001, 20};    // [mm]
+constexpr std::array<double, 2> kChordArea = {1e-6, 300};    // [mm2]
+constexpr std::array<double, 2> kPressure = {1.3e-6, 0.13};  // 0.01 to 1000 mmHg [MPa]
+constexpr double kMpaPerMmhg = 133.322387415e-6;             // conventional mmHg, BIPM SI brochure
+constexpr double kLeastFacing = 0.05;  // projected over whole area below which a side is not told
+
+constexpr double kFoldedCosine = -0.99985;  // between the normals of two neighbours: an angle of 1 degree
+
+std::string shown(double value) {
+  char buffer[40];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
+}
+
+bool is_within(double value, const std::array<double, 2>& range) {
+  return value >= range[0] && value <= range[1];
+}
+
+std::string range_text(const std::array<double, 2>& range, double factor = 1) {
+  return shown(range[0] * factor) + " to " + shown(range[1] * factor);
+}
+
+// Zero for a sliver, whose normal says nothing.
+Vec3 normal_unless_sliver(const TriangleMesh& mesh, int t) {
+  const Vec3 a = mesh.vertices.col(mesh.triangles(0, t));
+  const Vec3 u = mesh.vertices.col(mesh.triangles(1, t)) - a, v = mesh.vertices.col(mesh.triangles(2, t)) - a;
+  const Vec3 n = u.stableNormalized().cross(v.stableNormalized());
+  return n.norm() * kSliverAspect < 1 ? Vec3(Vec3::Zero()) : Vec3(n.normalized());
+}
+
+// Along the edge, from its lower to its higher vertex. Neighbours run in opposite directions, unless one of
+// them is turned over.
+bool runs_upward(const TriangleMesh& mesh, int t, const Edge& edge) {
+  for (int k = 0; k < 3; ++k)
+    if (mesh.triangles(k, t) == edge.a) return mesh.triangles((k + 1) % 3, t) == edge.b;
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
+  constexpr size_t kFew = 10;
+  size_t count = 0;
+  std::string pairs;
+  for (const Edge& edge : edges(leaflets.triangles)) {
+    if (edge.triangles.size() != 2) continue;
+    const int s = edge.triangles[0], t = edge.triangles[1];
+    const int sign = runs_upward(leaflets, s, edge) == runs_upward(leaflets, t, edge) ? -1 : 1;
+    if (!(sign * normal_unless_sliver(leaflets, s).dot(normal_unless_sliver(leaflets, t)) < kFoldedCosine))
+      continue;
+    if (++count > kFew) continue;
+    pairs.append(pairs.empty() ? "(" : ", (").append(std::to_string(s)).append(", ");
+    pairs.append(std::to_string(t)).append(")");
+  }
+  if (count == 0) return {};
+  if (count > kFew) pairs.append(" and ").append(std::to_string(count - kFew)).append(" more");
+  return {"neighbouring triangles are folded onto each other: " + pairs +
+          "; bending and contact have no direction there. Unfold the mesh, or move the corners apart."};
+}
+
+std::vector<std::string> size_doubts(const Valve& valve) {
+  std::vector<std::string> doubts;
+  if (valve.leaflets.triangle_count() > 0) {
+    const Points& x = valve.leaflets.vertices;
+    const double size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    if (!is_within(size, kLeafletSize))
+      doubts.push_back("the leaflets are " + shown(size) + " mm across; valves have " +
+                       range_text(kLeafletSize) +
+                       " mm. Check the unit of the mesh (`units` of a valve JSON).");
+  }
+  if (valve.thickness > 0 && !is_within(valve.thickness, kThickness))
+    doubts.push_back("the leaflets are " + shown(valve.thickness) + " mm thick; valves have " +
+                     range_text(kThickness) + " mm. Check the unit of the thickness.");
+  if (valve.pressure > 0 && !is_within(valve.pressure, kPressure))
+    doubts.push_back("the pressure is " + shown(valve.pressure / kMpaPerMmhg) + " mmHg; hearts have " +
+                     range_text({0.01, 1000}) + " mmHg. Check the unit of the pressure.");
+  std::vector<int> odd;
+  for (size_t k = 0; k < valve.chords.chords.size(); ++k)
+    if (const double area = valve.chords.chords[k].area; area > 0 && !is_within(area, kChordArea))
+      odd.push_back(static_cast<int>(k));
+  if (!odd.empty())
+    doubts.push_back(
+        std::to_string(odd.size()) + " chords, the first of them " + std::to_string(odd.front()) + " with " +
+        shown(valve.chords.chords[static_cast<size_t>(odd.front())].area) +
+        " mm2, have a cross-section outside " + range_text(kChordArea) + " mm2. Check the unit of `area`.");
+  return doubts;
+}
+
+// A funnel shows its tips the area of its rim at the annulus less that at the free edge, whatever it does in
+// between: the sum of area vectors is a matter of the rims alone.
+std::vector<std::string> pressure_side_doubts(const Valve& valve) {
+  const TriangleMesh& mesh = valve.leaflets;
+  if (valve.chords.papillary.cols() == 0 || valve.annulus.empty() || mesh.triangle_count() == 0) return {};
+  Vec3 annulus = Vec3::Zero();
+  for (const int v : valve.annulus) annulus += mesh.vertices.col(v);
+  annulus /= static_cast<double>(valve.annulus.size());
+  const Vec3 axis = (valve.chords.papillary.rowwise().mean() - annulus).normalized();
+  double facing = 0, whole = 0;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 area = area_vector(mesh.vertices, mesh.triangles.col(t));
+    facing += area.dot(axis);
+    whole += area.norm();
+  }
+  if (!(facing < -kLeastFacing * whole)) return {};
+  return {
+      "the normals of the leaflets point away from the papillary tips, so the pressure acts on the wrong "
+      "side (" +
+      shown(-facing) + " of " + shown(whole) +
+      " mm2 face the other way); turn all triangles over, or set the side of the pressure."};
+}
+
+}  // namespace coapt

@@ -1,0 +1,147 @@
+#include "xpbd/system.hpp"
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kUsualElongation = 0.01;  // at which the slope of a law is taken before it was taut
+
+ConstraintSense pulls(bool only) { return only ? ConstraintSense::PullsOnly : ConstraintSense::BothWays; }
+
+// Compliance and stiffness of a constraint: its own, or the paper's.
+struct Hardness {
+  bool is_paper = false;
+  XpbdPaper paper = {};
+
+  double alpha(double stiffness) const { return is_paper ? paper.compliance : 1 / stiffness; }
+  double share(double of_paper) const { return is_paper ? of_paper : 1; }
+};
+
+std::vector<StretchConstraint> stretch_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<StretchConstraint> all;
+  for (const XpbdEdge& e : body.edges)
+    if (e.stiffness > 0)
+      all.push_back({{e.a, e.b},
+                     e.length,
+                     hardness.alpha(e.stiffness),
+                     hardness.share(hardness.paper.stretch),
+                     pulls(e.only_tension && !hardness.is_paper)});
+  return all;
+}
+
+std::vector<AreaConstraint> area_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<AreaConstraint> all;
+  for (const XpbdArea& a : body.areas)
+    if (a.stiffness > 0)
+      all.push_back({a.nodes, a.area, hardness.alpha(a.stiffness), hardness.share(hardness.paper.area),
+                     pulls(a.only_growth && !hardness.is_paper)});
+  return all;
+}
+
+std::vector<FilmConstraint> film_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<FilmConstraint> all;
+  if (hardness.is_paper) return all;  // the paper has none
+  for (const XpbdFilm& film : body.films)
+    if (film.tension > 0) all.push_back({film.nodes, film.tension});
+  return all;
+}
+
+std::vector<BendingConstraint> bending_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<BendingConstraint> all;
+  for (const XpbdHinge& hinge : body.hinges)
+    if (hinge.stiffness > 0)
+      all.push_back({hinge.nodes, hinge.angle, hardness.alpha(hinge.stiffness),
+                     hardness.share(hardness.paper.bending)});
+  return all;
+}
+
+std::vector<StretchConstraint> tether_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<StretchConstraint> all;
+  for (const XpbdTether& t : body.tethers)
+    if (hardness.is_paper ? t.length > 0 : !t.law && t.stiffness > 0)
+      all.push_back({{t.a, t.b},
+                     t.length,
+                     hardness.alpha(t.stiffness),
+                     hardness.share(t.is_edge ? hardness.paper.stretch : hardness.paper.tether),
+                     pulls(t.only_tension && !(hardness.is_paper && t.is_edge))});
+  return all;
+}
+
+std::vector<LineConstraint> line_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<LineConstraint> all;
+  if (hardness.is_paper) return all;
+  for (const XpbdTether& t : body.tethers)
+    if (t.law)
+      all.push_back({{t.a, t.b},
+                     t.length,
+                     t.law,
+                     t.law((1 + kUsualElongation) * t.length).stiffness,
+                     pulls(t.only_tension)});
+  return all;
+}
+
+}  // namespace
+
+XpbdSystem::XpbdSystem(const XpbdBody& body, const Points& x,
+                       const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed, const Vector& masses,
+                       const XpbdOptions& options)
+    : options_(options), dt2_(std::pow(xpbd_time_step(options), 2)), w_(3, x.cols()), x_(x), before_(x) {
+  const Hardness hardness{options.stiffness == XpbdStiffness::Paper, options.paper};
+  for (Eigen::Index node = 0; node < x.cols(); ++node)
+    for (int c = 0; c < 3; ++c) w_(c, node) = fixed(c, node) ? 0 : hardness.is_paper ? 1 : 1 / masses[node];
+  const int count = static_cast<int>(x.cols());
+  stretches_ = {stretch_constraints(body, hardness), count};
+  areas_ = {area_constraints(body, hardness), count};
+  films_ = {film_constraints(body, hardness), count};
+  bends_ = {bending_constraints(body, hardness), count};
+  tethers_ = {tether_constraints(body, hardness), count};
+  lines_ = {line_constraints(body, hardness), count};
+  if (body.has_contact)
+    contact_.emplace(body, options.thickness, hardness.is_paper ? hardness.paper.compliance : 0,
+                     hardness.share(hardness.paper.contact));
+}
+
+void XpbdSystem::step(const Points& force, const Points& prescribed) {
+  const Points start = x_;
+  x_ += (1 - options_.damping) * (x_ - before_) + dt2_ * w_.cwiseProduct(force);
+  if (contact_)
+    for (Eigen::Index node = 0; node < x_.cols(); ++node) {
+      const Vec3 move = x_.col(node) - start.col(node);
+      const double length = move.norm(), most = contact_->longest_move();
+      if (length > most) x_.col(node) = start.col(node) + most / length * move;
+    }
+  x_ = (w_.array() > 0).select(x_, prescribed);
+  before_ = start;
+  const auto each = [&](const auto& act) {
+    act(stretches_);
+    act(areas_);
+    act(films_);
+    act(bends_);
+    act(tethers_);
+    act(lines_);
+  };
+  each([](auto& constraints) { constraints.begin_step(); });
+  if (contact_) contact_->begin_step(start, x_);
+  for (int k = 0; k < options_.iterations; ++k) {
+    each([&](auto& constraints) { constraints.sweep(dt2_, w_, x_, options_.threads); });
+    if (contact_) contact_->sweep(dt2_, w_, x_, options_.threads);
+  }
+}
+
+double XpbdSystem::largest_move() const {
+  return x_.cols() == 0 ? 0 : std::sqrt((x_ - before_).colwise().squaredNorm().maxCoeff());
+}
+
+double XpbdSystem::kinetic_energy() const {
+  double twice = 0;
+  for (Eigen::Index k = 0; k < w_.size(); ++k)
+    if (const double w = w_.data()[k]; w > 0) twice += std::pow(x_.data()[k] - before_.data()[k], 2) / w;
+  return 0.5 * twice / dt2_;
+}
+
+size_t XpbdSystem::constraint_count() const {
+  return stretches_.size() + areas_.size() + films_.size() + bends_.size() + tethers_.size() + lines_.size();
+}
+
+}  // namespace coapt

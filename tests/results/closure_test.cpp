@@ -1,0 +1,224 @@
+// Coaptation, orifice, tenting and prolapse of valves for which they are known.
+#include "mesh/mesh_topology.hpp"
+#include "mesh/shapes.hpp"
+#include "results/coaptation_height.hpp"
+#include "results/metrics.hpp"
+#include "results/result_surfaces.hpp"
+#include "support/trough_valve.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// open: the shape that tells which side is up.
+Model valve_model(TriangleMesh mesh, const std::vector<int>& annulus, double range) {
+  Model model;
+  model.X = mesh.vertices;
+  model.mesh = std::move(mesh);
+  model.sets["annulus"] = annulus;
+  model.contact_range = range;
+  model.objective = std::make_unique<Objective>(model.X, FixedMask::Constant(3, model.X.cols(), false),
+                                                std::vector<std::unique_ptr<EnergyTerm>>{});
+  return model;
+}
+
+Metrics measured(const Model& model, const Points& x) {
+  return measure(model, model.objective->unknowns(x), compute_fields(model, x));
+}
+
+Model trough_model(const Trough& shape, double range = 0.3) {
+  TroughValve valve = trough_valve(shape);
+  return valve_model(std::move(valve.mesh), valve.annulus, range);
+}
+
+// With a range of 0.3 contact reaches 0.1 up the slopes, to where they are 0.1 further apart.
+constexpr double kBeyond = 16 * 0.104;
+
+TEST(Closure, OfATroughHasTheLineHeightAndAreaOfItsGroove) {
+  const Model model = trough_model({});
+  const Metrics m = measured(model, model.X);
+  EXPECT_NEAR(m.coaptation_length_mm.value(), 16, 0.1);
+  EXPECT_NEAR(m.coaptation_height_mm.value(), 4, 0.1);
+  EXPECT_NEAR(m.coaptation_area_mm2.value(), 64 + kBeyond, 0.1);
+  EXPECT_NEAR(m.tenting_height_mm.value(), 3, 0.05);
+  EXPECT_NEAR(m.tenting_volume_mm3.value(), 480, 6);
+  EXPECT_EQ(m.prolapse_height_mm.value(), 0);
+  ASSERT_EQ(m.closure->line.size(), 1u);
+  for (const auto& p : m.closure->line[0].points.colwise()) {
+    EXPECT_NEAR(p[0], 0, 0.1);
+    EXPECT_NEAR(p[2], -3, 0.05);
+  }
+}
+
+TEST(Closure, ClosesTheSlitBetweenLeafletsInContactAndNoWiderOne) {
+  const Model near = trough_model({.gap = 0.2}, 0.3);
+  const Metrics closed = measured(near, near.X);
+  EXPECT_NEAR(closed.orifice_area_mm2.value(), 0.2 * 16, 1e-3);
+  EXPECT_EQ(closed.regurgitant_area_mm2.value(), 0);
+  const Model far = trough_model({.gap = 1}, 0.3);
+  const Metrics open = measured(far, far.X);
+  EXPECT_NEAR(open.orifice_area_mm2.value(), 16, 1e-3);
+  EXPECT_NEAR(open.regurgitant_area_mm2.value(), 16, 0.5);
+  EXPECT_EQ(open.coaptation_length_mm.value(), 0);
+  EXPECT_EQ(open.contact_facets, 0);
+  ASSERT_EQ(open.closure->orifices.size(), 1u);
+  EXPECT_NEAR(open.closure->orifices[0].outline.area, 16, 0.01);
+}
+
+TEST(Closure, FollowsAGrooveThatInclinesWhereverTheValveLies) {
+  Trough shape{.slope = 0.25};
+  Model model = trough_model(shape);
+  const double length = 16 * std::sqrt(1 + 0.0625);
+  EXPECT_NEAR(measured(model, model.X).coaptation_length_mm.value(), length, 0.15);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Vec3(2, -1, 1).normalized()).toRotationMatrix();
+  model.X = (turn * model.X).colwise() + Vec3(30, 200, -100);
+  model.mesh.vertices = model.X;
+  const Metrics m = measured(model, model.X);
+  EXPECT_NEAR(m.coaptation_length_mm.value(), length, 0.15);
+  EXPECT_NEAR(m.coaptation_height_mm.value(), 4 * std::cos(std::atan(0.25)), 0.15);  // across the line
+  EXPECT_NEAR(m.tenting_volume_mm3.value(), 480, 6);
+}
+
+TEST(Closure, ConvergesWithTheMesh) {
+  const Model model = trough_model({.fineness = 3});
+  const Metrics m = measured(model, model.X);
+  EXPECT_NEAR(m.coaptation_length_mm.value(), 16, 0.05);
+  EXPECT_NEAR(m.coaptation_area_mm2.value(), 64 + kBeyond, 0.1);
+  EXPECT_NEAR(m.coaptation_height_mm.value(), 4, 0.05);
+}
+
+TEST(Closure, GivesEachLeafletItsShare) {
+  const Model model = trough_model({});
+  const Metrics m = measured(model, model.X);
+  ASSERT_EQ(m.closure->leaflets.size(), 2u);
+  double contact = 0, volume = 0;
+  long vertices = 0, facets = 0;
+  for (const LeafletMetrics& leaflet : m.closure->leaflets) {
+    EXPECT_NEAR(leaflet.coaptation_length_mm, 16, 0.1) << leaflet.name;
+    EXPECT_NEAR(leaflet.coaptation_height_mm, 4, 0.1) << leaflet.name;
+    EXPECT_NEAR(leaflet.tenting_volume_mm3, 240, 6) << leaflet.name;
+    contact += leaflet.contact_area_mm2;
+    volume += leaflet.tenting_volume_mm3;
+    vertices += leaflet.contact_vertices;
+    facets += leaflet.contact_facets;
+  }
+  EXPECT_EQ(m.closure->leaflets[0].name, "anterior");
+  EXPECT_NEAR(contact, 2 * m.coaptation_area_mm2.value(), 1e-9);
+  EXPECT_NEAR(volume, m.tenting_volume_mm3.value(), 1e-9);
+  EXPECT_EQ(vertices, m.contact_vertices);
+  EXPECT_EQ(facets, m.contact_facets);
+}
+
+TEST(Closure, WritesItsLineAndOutlinesWithOneValueForEachStretch) {
+  Model model = trough_model({});
+  model.origin = Vec3(5, 0, 0);
+  const Metrics m = measured(model, model.X);
+  const VtpSurface line = coaptation_line(model, *m.closure), orifice = orifice_outlines(model, *m.closure);
+  EXPECT_EQ(line.lines.cols(), line.vertices.cols() - 1);
+  EXPECT_NEAR(line.vertices.row(0).mean(), 5, 0.05);
+  ASSERT_EQ(line.line_arrays.size(), 4u);
+  EXPECT_TRUE((line.line_arrays[1].values.array() == 0).all());
+  EXPECT_TRUE((line.line_arrays[2].values.array() == 1).all());
+  EXPECT_NEAR(line.line_arrays[3].values.mean(), 4, 0.1);
+  EXPECT_EQ(orifice.lines.cols(), orifice.vertices.cols());
+}
+
+// A disc of radius 10 bulged by a height; its rim is the annulus.
+struct Bulge {
+  TriangleMesh mesh;
+  std::vector<int> rim;
+};
+Bulge bulge(double height) {
+  Bulge result{disc(10, 4000), {}};
+  result.rim = boundary_loops(result.mesh.triangles).at(0);
+  const auto square = result.mesh.vertices.colwise().squaredNorm();
+  result.mesh.vertices.row(2) = (height * (1 - square.array() / 100)).matrix();
+  return result;
+}
+
+TEST(Closure, TellsADomeAboveTheAnnulusFromOneBelow) {
+  const Bulge below = bulge(-4), above = bulge(2.5);
+  const Model model = valve_model(below.mesh, below.rim, 0.2);
+  const Metrics hanging = measured(model, below.mesh.vertices);
+  EXPECT_NEAR(hanging.tenting_volume_mm3.value(), kPi * 100 * 4 / 2, 0.01 * kPi * 200);
+  EXPECT_NEAR(hanging.tenting_height_mm.value(), 4, 1e-2);
+  EXPECT_EQ(hanging.prolapse_height_mm.value(), 0);
+  EXPECT_NEAR(hanging.orifice_area_mm2.value(), 0, 1e-3);
+  const Metrics prolapsed = measured(model, above.mesh.vertices);
+  EXPECT_NEAR(prolapsed.prolapse_height_mm.value(), 2.5, 1e-2);
+  EXPECT_NEAR(prolapsed.tenting_volume_mm3.value(), 0, 0.1);
+}
+
+TEST(Closure, DoesNotTakeASaddleShapedAnnulusForProlapse) {
+  Bulge flat = bulge(-4);
+  const Model model = valve_model(flat.mesh, flat.rim, 0.2);
+  Points saddle = flat.mesh.vertices;
+  saddle.row(2) = 0.03 * (saddle.row(0).array().square() - saddle.row(1).array().square());
+  const Metrics m = measured(model, saddle);  // up to 3 above the annulus plane
+  EXPECT_NEAR(m.prolapse_height_mm.value(), 0, 0.01);
+  EXPECT_LT(m.tenting_volume_mm3.value(), 0.02 * kPi * 100 * 3);
+}
+
+TEST(Closure, CountsAnOpenFunnelDownToItsRimAsTented) {
+  const WeldedMesh welded = weld(grid_sheet(80, 6, [](double u, double v) {
+    const double radius = 4 + 6 * v, angle = u == 1 ? 0 : 2 * kPi * u;
+    return Vec3(radius * std::cos(angle), radius * std::sin(angle), -3 * (1 - v));
+  }));
+  const TriangleMesh& funnel = welded.mesh;
+  std::vector<int> rim;
+  for (int k = 0; k < 80; ++k) rim.push_back(welded.new_index[static_cast<size_t>(6 * 81 + k)]);
+  const Model model = valve_model(funnel, rim, 0.2);
+  const Metrics m = measured(model, funnel.vertices);
+  EXPECT_NEAR(m.tenting_volume_mm3.value(), kPi * 3 / 3 * (100 + 40 + 16), 0.01 * kPi * 156);
+  EXPECT_NEAR(m.regurgitant_area_mm2.value(), kPi * 16, 0.01 * kPi * 16);
+  EXPECT_NEAR(m.tenting_height_mm.value(), 3, 0.05);
+  EXPECT_TRUE(m.closure->line.empty());
+}
+
+TEST(Closure, FindsTheFoldOfOneLeafletAsALineOfItsOwn) {
+  // One sheet, no regions: it dips into a fold 0.2 wide and 5 deep along y.
+  const TriangleMesh sheet = grid_sheet(120, 40, [](double u, double v) {
+    const double s = 30 * u - 15, way = std::abs(s), sign = s < 0 ? -1 : 1;
+    if (way < 5) return Vec3(sign * std::min(0.1, way), 16 * v - 8, -6 + way);
+    return Vec3(sign * (0.1 + 0.995 * (way - 5)), 16 * v - 8, -1 + 0.1 * (way - 5));
+  });
+  const Model model = valve_model(sheet, {0, 120, 120 + 40 * 121, 40 * 121}, 0.3);
+  const Metrics m = measured(model, sheet.vertices);
+  EXPECT_NEAR(m.coaptation_length_mm.value(), 16, 0.2);
+  EXPECT_TRUE(m.closure->leaflets.empty());
+  EXPECT_NEAR(m.coaptation_height_mm.value(), 4.5, 0.6);  // two rings around the bottom are neighbours
+}
+
+TEST(Closure, CostsNothingWithoutAnnulusAndContact) {
+  Model model = valve_model(disc(5, 100), {}, 0);
+  model.sets.clear();
+  const Fields fields = compute_fields(model, model.X);
+  EXPECT_EQ(fields.gap.size(), 0);
+  EXPECT_TRUE(fields.is_contact.empty() && fields.is_contact_facet.empty());
+  EXPECT_FALSE(measured(model, model.X).closure);
+}
+
+TEST(CoaptationHeight, IsMeasuredAcrossTheLineAndEndsWithIt) {
+  Seam seam;
+  seam.points.resize(3, 2);
+  seam.points << 0, 10, 0, 0, 0, 0;
+  seam.triangles = {{0, 1}};
+  const std::vector<Station> places = stations({seam}, 1);
+  ASSERT_EQ(places.size(), 10u);
+  EXPECT_NEAR((places[3].point - Vec3(3.5, 0, 0)).norm(), 0, 1e-12);
+  const std::vector<double> heights = heights_at(places, {{3.4, 0, -2}, {3.6, 1, -1}, {14, 0, -7}}, 1);
+  EXPECT_NEAR(heights[3], 2, 1e-12);
+  EXPECT_TRUE(std::isnan(heights[9]));
+  EXPECT_NEAR(ninth_decile(heights), 2, 1e-12);
+  EXPECT_EQ(ninth_decile({}), 0);
+}
+
+}  // namespace
+}  // namespace coapt

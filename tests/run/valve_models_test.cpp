@@ -1,0 +1,159 @@
+// Published models of valves, and springs as the usual leaflets: from the valve to the scene to the closed
+// shape.
+#include "exchange/valve_models.hpp"
+
+#include "core/error.hpp"
+#include "exchange/import.hpp"
+#include "run/judged_scene.hpp"
+#include "run/run.hpp"
+#include "scene/build/build.hpp"
+#include "solve/solve_scene.hpp"
+#include "support/sanitized.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/xpbd_bodies.hpp"
+#include "valve/generators/mitral.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace coapt {
+namespace {
+
+class ValveModels : public testing::TestWithParam<std::string> {
+ protected:
+  // The generated valve with the springs of the model.
+  Scene valve(const std::string& contact, const std::string& solver, double tolerance, int triangles = 625) {
+    Valve valve = mitral_valve({.triangles = triangles});
+    ImportOptions options;
+    options.contact = contact;
+    options.tolerance = tolerance;
+    apply_valve_model(GetParam(), valve, options);
+    write_valve_scene(valve, folder_.path(), options);
+    Scene scene = load_scene(folder_.path() / "scene.json");
+    scene.solver.type = solver;
+    return scene;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_P(ValveModels, HasTheParametersOfItsSource) {
+  const Scene scene = valve("none", "newton", 1e-8);
+  const Model model = build(scene);
+  EXPECT_NEAR(model.applied_pressure, GetParam() == "hammer-2008" ? 0.016 : 0.013, 1e-12);
+  EXPECT_EQ(model.membrane[0].thickness, 1);
+  EXPECT_EQ(std::count_if(scene.terms.begin(), scene.terms.end(),
+                          [](const TermSpec& t) { return t.type == "spring"; }),
+            2);
+}
+
+TEST_P(ValveModels, ClosesInTimeAsWithoutIt) {
+  struct Closed {
+    std::string solver;
+    Points x;
+    double energy;
+    const Metrics metrics;
+  };
+  std::vector<Closed> closed;
+  for (const char* solver : {"newton", "lbfgs", "dynamic"}) {
+    RunOptions how;
+    how.writes = false;
+    const RunReport done = run(valve("none", solver, 1e-8), scene_solvers(), how);
+    const Result& result = done.report.result;
+    std::printf("%s, %s: %d iterations, residual %.1e, energy %.6f mJ, orifice %.2f of %.1f mm2\n",
+                GetParam().c_str(), solver, result.iterations, result.residual, result.energy,
+                done.report.metrics.orifice_area_mm2.value(), done.report.metrics.annulus_area_mm2.value());
+    ASSERT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
+    EXPECT_LT(done.report.metrics.orifice_area_mm2.value(),
+              0.02 * done.report.metrics.annulus_area_mm2.value())
+        << solver;
+    closed.push_back({solver, done.report.fields.x, result.energy, done.report.metrics});
+  }
+  for (const Closed& other : closed)
+    EXPECT_NEAR(other.energy, closed[0].energy, 0.02 * std::abs(closed[0].energy)) << other.solver;
+}
+
+TEST_P(ValveModels, ClosesBehindTheBarrierWithoutAnIntersectionOnTheWay) {
+  for (const char* solver : {"newton", "dynamic"}) {
+    const JudgedScene judged = solve_judged(valve("barrier", solver, 1e-6, is_sanitized() ? 200 : 625));
+    expect_contact_without_intersection(GetParam() + ", " + solver, judged);
+    EXPECT_LT(judged.metrics.orifice_area_mm2.value(), 0.02 * judged.metrics.annulus_area_mm2.value())
+        << solver;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ValveModels, testing::ValuesIn(valve_model_names()), [](const auto& instance) {
+  return instance.param.substr(instance.param.find('-') + 1);
+});
+
+// The sizes of the sources: at once, in time, and by position-based dynamics, which comes to rest near a
+// closed shape without being one of the energy.
+TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
+  for (const std::string& model : valve_model_names())
+    for (const int triangles : {625, 2500, 10000})
+      for (const char* solver : {"newton", "dynamic", "xpbd"}) {
+        const TemporaryFolder folder;
+        Valve valve = mitral_valve({.triangles = triangles});
+        ImportOptions options;
+        options.contact = "barrier";
+        options.tolerance = 1e-6;
+        apply_valve_model(model, valve, options);
+        write_valve_scene(valve, folder.path(), options);
+        Scene scene = load_scene(folder.path() / "scene.json");
+        const bool is_static = solver != std::string("xpbd");
+        scene.solver.type = solver;
+        scene.solver.cascade = solver == std::string("newton");
+        editable(scene.solver.xpbd).steps = 400;
+        if (triangles > 5000) editable(scene.solver.xpbd).thickness = 0.2;  // edges are 0.4 mm long
+        const JudgedScene judged = solve_judged(scene);
+        const std::string name = model + ", " + solver + ", " + std::to_string(triangles);
+        if (is_static)
+          expect_contact_without_intersection(name, judged);
+        else
+          EXPECT_EQ(judged.intersections, 0) << name;
+        const double orifice = judged.metrics.orifice_area_mm2.value();
+        std::printf("%s: orifice %.2f mm2, residual %.1e, %.0f s\n", name.c_str(), orifice,
+                    judged.outcome.result.residual, judged.outcome.result.cpu_s);
+        EXPECT_LT(orifice, (is_static ? 0.02 : 0.05) * judged.metrics.annulus_area_mm2.value()) << name;
+      }
+}
+
+TEST(ValveModels, NamesThoseThereAre) {
+  Valve valve = mitral_valve({.triangles = 300});
+  ImportOptions options;
+  try {
+    apply_valve_model("hamer-2008", valve, options);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean \"hammer-2008\""), std::string::npos)
+        << error.what();
+  }
+}
+
+// Linear springs in the place of the usual membrane, and of another program's linear shells.
+TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
+  const TemporaryFolder folder;
+  const Valve valve = mitral_valve({.triangles = 300});
+  write_valve_scene(valve, folder.path(), {.membrane = "spring"});
+  const Scene scene = load_scene(folder.path() / "scene.json");
+  EXPECT_EQ(scene.terms[0].type, "spring");
+  EXPECT_EQ(scene.terms[1].type, "bending");
+  EXPECT_NO_THROW(build(scene));
+  // A valve JSON with springs keeps them.
+  Valve sprung = valve;
+  ImportOptions options;
+  apply_valve_model("hammer-2011", sprung, options);
+  write_valve_scene(sprung, folder.path() / "a", options);
+  import_valve(folder.path() / "a" / "valve.json", folder.path() / "b");
+  EXPECT_EQ(load_scene(folder.path() / "b" / "scene.json").terms[0].type, "spring");
+  import_valve(folder.path() / "a" / "valve.json", folder.path() / "c",
+               {.membrane = "spring", .young = "2 MPa"});
+  const Scene linear = load_scene(folder.path() / "c" / "scene.json");
+  EXPECT_EQ(linear.terms[0].type, "spring");
+  EXPECT_EQ(linear.terms[0].parameters.number("young"), 2);
+}
+
+}  // namespace
+}  // namespace coapt
