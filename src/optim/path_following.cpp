@@ -134,8 +134,8 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
     if (ends_the_run(status)) return status;
   }
   q = best;
-  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
-         number(contraction) + " a round)";
+  note = "the outer iterations of the follower pressure on free edges did not converge (last contraction " +
+         number(contraction) + " an iteration)";
   return Status::Stalled;
 }
 
