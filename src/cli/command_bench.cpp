@@ -149,10 +149,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--tolerances", arguments->tolerances,
                       "On the residual, with commas between them (default: 1e-2,1e-4,1e-6,1e-8)");
   command
-      ->add_option(
-          "--levels", arguments->levels,
-          "How often the mesh is cut into four and benchmarked again (default: 1); one more is solved "
-          "once")
+      ->add_option("--levels", arguments->levels,
+                   "How often the mesh is refined 1:4 and benchmarked again (default: 1); one more is solved "
+                   "once")
       ->check(CLI::Range(0, 4));
   command->add_option("--repeats", arguments->repeats, "Of each run, for its time (default: 3)")
       ->check(CLI::Range(1, 1000));

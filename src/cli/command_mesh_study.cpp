@@ -59,7 +59,7 @@ void study(const MeshStudyArguments& arguments, int& exit_code) {
 void add_mesh_study_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<MeshStudyArguments>();
   CLI::App* command = app.add_subcommand(
-      "mesh-study", "How far the solution moves when every triangle is cut into four, again and again");
+      "mesh-study", "How far the solution moves under uniform 1:4 refinement of the mesh, again and again");
   add_study_arguments(*command, *arguments);
   command
       ->add_option("--levels", arguments->levels,

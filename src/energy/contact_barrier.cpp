@@ -16,7 +16,7 @@ constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the ran
 constexpr double kParallel = 1e-3;     // sin^2 of the angle below which two edges count as parallel
 constexpr double kKeptDistance = 0.2;  // share of its distance that a pair keeps in one step
 constexpr double kTooClose = 1e-2;     // of the range: closer than this the barrier is too soft
-constexpr double kStiffening = 10;
+constexpr double kStiffening = 10;     // factor on the strength of a barrier that proves too soft
 
 Triangles side_by_side(const Triangles& a, const Triangles& b) {
   Triangles both(3, a.cols() + b.cols());

@@ -92,7 +92,7 @@ struct KinkSearch {
 
   // Are the remainders of the finest decade above the noise bounded by what the curvature changes?
   bool explains_slope(const std::vector<Rung>& ladder) const {
-    constexpr double kMargin = 1.1;
+    constexpr double kMargin = 1.1;  // on the remainder that the change of curvature explains
     size_t count = 0;
     while (count < ladder.size() && ladder[count].second > noise) ++count;
     double greatest = 0;  // change of curvature within the step so far, from the finest up

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kFirstDamping = 1e-3;   // of the greatest diagonal of J^T J
 constexpr double kLeastDamping = 1e-12;  // likewise: keeps the system definite
-constexpr double kMostDamping = 1e12;
-constexpr double kLeastShare = 1e-3;  // of the gain that was to be expected, which a step must bring
-constexpr double kFailedDamping = 10;
-constexpr double kWorthwhile = 1e-3;  // of the value, that a trial should gain: fewer than
-constexpr int kIdle = 6;              // that many in a row that do not are slow progress along a kink
+constexpr double kMostDamping = 1e12;    // of the same: no smaller step is tried
+constexpr double kLeastShare = 1e-3;     // of the gain that was to be expected, which a step must bring
+constexpr double kFailedDamping = 10;    // factor on the damping after a failed step
+constexpr double kWorthwhile = 1e-3;     // of the value, that a trial should gain
+constexpr int kIdle = 6;                 // trials in a row that gain less: slow progress along a kink
 
 using Indices = std::vector<Eigen::Index>;
 

@@ -60,7 +60,8 @@ class LimitedMemory final : public InverseHessian {
   }
 
  private:
-  static constexpr int kRenewal = 25;  // iterations
+  static constexpr int kRenewal = 25;  // iterations after which the preconditioner is factorised anew
+  // Shifts of the first factor and of later ones, times force over length.
   static constexpr double kFirstShift = 1, kLaterShift = 1e-2;
 
   struct Pair {

@@ -6,9 +6,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kSufficientDecrease = 1e-4;
-constexpr double kCurvature = 0.9;
-constexpr int kMaxEvaluations = 40;
+constexpr double kSufficientDecrease = 1e-4;  // share of the slope that the energy has to fall by
+constexpr double kCurvature = 0.9;            // share of the slope that may be left
+constexpr int kMaxEvaluations = 40;           // in one search
 
 // What the search remembers of a point; the vectors stay with the last one evaluated.
 struct Sample {

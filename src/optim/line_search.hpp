@@ -18,7 +18,7 @@ struct LinePoint {
   double promised(double taken) const { return -slope * taken * (1 - 0.5 * taken); }
 };
 
-constexpr double kFewKept = 0.3;  // of a promised decrease
+constexpr double kFewKept = 0.3;  // share of a promised decrease below which a step has failed its promise
 
 // Puts another point in the place of `to`, or leaves it as it is and returns false.
 using Replacement = std::function<bool(LinePoint& to)>;

@@ -11,15 +11,15 @@
 namespace coapt {
 namespace {
 
-constexpr double kFirstShift = 5;  // times force over length of the scene
-constexpr double kFall = 0.2;      // of the shift after a step that kept its promise
-constexpr double kRise = 4;        // after one that was shortened much
-constexpr double kMostShiftOverUnit = 1e9;
+constexpr double kFirstShift = 5;                // times force over length of the scene
+constexpr double kFall = 0.2;                    // of the shift after a step that kept its promise
+constexpr double kRise = 4;                      // after one that was shortened much
+constexpr double kMostShiftOverUnit = 1e9;       // beyond it no step is found
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
 constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
 constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
-constexpr double kForcing = 1e-3;                // GMRES, relative
-constexpr int kKrylovVectors = 20;
+constexpr double kForcing = 1e-3;                // relative residual of GMRES
+constexpr int kKrylovVectors = 20;               // of GMRES with the exact tangent
 
 // Iterates in a row near an equilibrium that better neither the energy nor the residual, before the rest is
 // left to round-off. Towards a flat minimum, as after a saddle, 34 were seen; far from one the monitor
@@ -41,10 +41,10 @@ constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
 
 // Rounding of the kinks, as a share of the element's length.
-constexpr double kOverloaded = 3;  // residual of a start that asks for it
-constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;
-constexpr double kSharpen = 0.3;   // its fall
-constexpr double kSettled = 0.03;  // residual at which it falls
+constexpr double kOverloaded = 3;                            // residual of a start that asks for it
+constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;  // widest and least rounding
+constexpr double kSharpen = 0.3;                             // fall of the rounding
+constexpr double kSettled = 0.03;                            // residual at which it falls
 
 class Newton {
  public:

@@ -10,8 +10,8 @@
 namespace coapt {
 namespace {
 
-constexpr int kMaxRounds = 100;  // renewals of a load without potential
-constexpr int kMaxRoundsWithoutGain = 12;
+constexpr int kMaxRounds = 100;            // renewals of a load without potential
+constexpr int kMaxRoundsWithoutGain = 12;  // of them in a row that better nothing
 constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
 constexpr double kBranchTolerance = 1e-4;  // and an intermediate load, which has to stay on its branch
 constexpr double kLeastMotion = 1e-4;  // of the whole prescribed motion, that collisions may leave of a step
@@ -134,8 +134,8 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
     if (ends_the_run(status)) return status;
   }
   q = best;
-  note = "the renewal of the follower pressure on free edges did not settle (last contraction " +
-         number(contraction) + " a round)";
+  note = "the outer iterations of the follower pressure on free edges did not converge (last contraction " +
+         number(contraction) + " an iteration)";
   return Status::Stalled;
 }
 

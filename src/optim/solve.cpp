@@ -20,7 +20,7 @@ constexpr int kMostTurns = 3;        // of the lines along which films move
 constexpr int kMostAttempts = 4;     // to leave saddles in one run
 constexpr double kNear = 1e-3;       // residual of what is all but an equilibrium
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
-constexpr int kKickTrials = 8;
+constexpr int kKickTrials = 8;       // lengths that are tried, each a quarter of the last
 
 std::string residual_text(double value) {
   char text[32];

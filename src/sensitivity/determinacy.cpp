@@ -8,8 +8,8 @@
 namespace coapt {
 namespace {
 
-constexpr double kNoShare = 1e-6;
-constexpr double kOutlier = 6;  // standard deviations
+constexpr double kNoShare = 1e-6;  // share in an undetermined direction that counts as none
+constexpr double kOutlier = 6;     // standard deviations
 
 }  // namespace
 

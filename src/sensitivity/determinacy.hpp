@@ -14,7 +14,7 @@ struct Determinacy {
   Vector singular_values, direction_deviation;
 };
 
-inline constexpr double kNoInfluence = 1e-8;
+inline constexpr double kNoInfluence = 1e-8;  // singular value, over the greatest, that determines nothing
 
 // jacobian: of the residuals by the numbers, which are of like size (one row for each residual, as many
 // columns as numbers, at least one); noise: standard deviation of each residual. The estimate is the

@@ -150,7 +150,7 @@ std::vector<Switch> switches_between(const Objective& objective, const ElementSt
 }
 
 std::vector<Switch> kinks_at(const Objective& objective, const Points& x) {
-  constexpr double kBillionth = 1e-9;
+  constexpr double kBillionth = 1e-9;  // growth and shrinkage between which what switches is at a kink
   if (x.cols() == 0) return {};
   const Vec3 centre = x.rowwise().mean();
   const Points growth = kBillionth * (x.colwise() - centre);

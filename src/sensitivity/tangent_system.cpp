@@ -7,10 +7,10 @@ namespace coapt {
 namespace {
 
 constexpr double kLeastShift = 1e-11;  // of the mean of the diagonal: holds what has no stiffness at all
-constexpr double kMostShift = 1e-3;
-constexpr int kRefinements = 8;
-constexpr double kInner = 0.1;         // of the tolerance: GMRES measures its residual behind the factor,
-constexpr double kLeastInner = 3e-12;  // and loses more than this to round-off
+constexpr double kMostShift = 1e-3;    // beyond it there is no factor
+constexpr int kRefinements = 8;        // of a solution by GMRES
+constexpr double kInner = 0.1;         // of the tolerance, which GMRES is asked for behind the factor
+constexpr double kLeastInner = 3e-12;  // below it GMRES loses its residual to round-off
 
 void shift_diagonal(SparseMatrix& h, double shift) {
   for (int c = 0; c < h.outerSize(); ++c)

@@ -39,7 +39,7 @@ class TangentSystem {
   int negative_modes() const { return negative_modes_; }
 
  private:
-  static constexpr int kVectors = 40;
+  static constexpr int kVectors = 40;  // of GMRES
 
   double solve(const Vector& b, Vector& x, double tolerance, double skew_sign);
   void multiply(const Vector& v, double skew_sign, Vector& product);

@@ -21,7 +21,7 @@ constexpr int kStaleFactor =
 constexpr double kSuspicious = 1;  // jump over the predicted travel
 constexpr double kNotBack = 0.1;   // of the jump, that a shape may miss its start by when it comes back
 constexpr double kNoise = 1e-7;    // of the extent: jumps below say nothing
-constexpr int kHalvings = 6;
+constexpr int kHalvings = 6;       // of a Newton step that betters nothing
 
 double greatest(const Points& v) {
   return v.cols() == 0 ? 0 : std::sqrt(v.colwise().squaredNorm().maxCoeff());

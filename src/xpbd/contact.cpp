@@ -11,8 +11,8 @@ namespace {
 constexpr double kCorrection = 0.125;  // h: that sweeps may add to the predicted move
 
 // The lesser is the longest move of a step: neighbours on a flat sheet stay out of the search.
-constexpr double kLongestOverThickness = 6;  // h
-constexpr double kLongestOverEdge = 0.2;     // mean edge lengths
+constexpr double kLongestOverThickness = 6;  // thicknesses: the longest predicted move
+constexpr double kLongestOverEdge = 0.2;     // mean edge lengths: likewise
 
 }  // namespace
 

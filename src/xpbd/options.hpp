@@ -33,7 +33,7 @@ struct XpbdPaper {
   double flow = 50;                                                          // w, weight of the flow field
   double pressure = 100;                                                     // p, weight of the pressure
 };
-inline constexpr double kXpbdPaperTimeStep = 0.005;  // [s]
+inline constexpr double kXpbdPaperTimeStep = 0.005;  // the paper's [s]
 
 // With true masses the pressure of a closed valve moves a free node by half a metre in the paper's time step,
 // and by a fifth of a millimetre in this one [s].

@@ -103,7 +103,7 @@ class ColouredConstraints {
   }
 
  private:
-  static constexpr size_t kWorthThreads = 1024;
+  static constexpr size_t kWorthThreads = 1024;  // constraints that are worth the start of a thread
 
   std::vector<K> constraints_;
   std::vector<int> first_;

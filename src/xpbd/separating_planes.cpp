@@ -12,8 +12,8 @@ constexpr double kLongestPlane = 0.2;  // mean edge lengths: neighbours on a fla
 constexpr double kSkin = 0.25;  // of the longest move: what nodes may go before pairs are looked for again
 constexpr double kKept = 0.25;  // share of its distance that a pair keeps
 constexpr double kLeast = 0.1;  // of the thickness: nothing comes nearer
-constexpr double kShareOfRest = 0.5;
-constexpr int kSlides = 8;  // sweeps over the planes of a node
+constexpr double kShareOfRest = 0.5;  // of the distance at rest, which a pair has to keep
+constexpr int kSlides = 8;            // sweeps over the planes of a node
 
 double longest(const Points& d) {
   return d.cols() == 0 ? 0 : std::sqrt(d.colwise().squaredNorm().maxCoeff());

@@ -18,7 +18,7 @@ constexpr int kRestingSteps = 50;      // in a row
 constexpr double kLittle = 0.01;       // of the longest move: an advance not worth another
 constexpr int kMostAdvances = 8;       // by planes placed anew, in which a step gets as far as it can
 
-constexpr const char* kUnsettled = "; the sweeps have not settled: more iterations or a shorter time_step";
+constexpr const char* kUnsettled = "; the sweeps have not converged: more iterations or a shorter time_step";
 
 std::string text(const char* format, double value) {
   char buffer[64];

@@ -6,7 +6,7 @@
 namespace coapt {
 namespace {
 
-constexpr int kLeafSize = 4;
+constexpr int kLeafSize = 4;  // facets in a leaf
 
 }  // namespace
 

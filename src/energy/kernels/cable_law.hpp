@@ -103,7 +103,7 @@ struct CableLaw {
   }
 
  private:
-  static constexpr double kMostElongation = 10;
+  static constexpr double kMostElongation = 10;  // within which the limit of stress is looked for
 
   // The law up to the limit, its tangent beyond.
   static CurveValue continued(const Rest& rest, double rho) {

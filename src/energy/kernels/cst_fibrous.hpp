@@ -165,7 +165,7 @@ struct CstFibrous {
     const double missing = std::max(1 / std::sqrt(wide) - narrow.value, 1e-3 * (1 - narrow.value));
     Eigen::Vector2d a = std::sqrt(std::max(missing, 1e-16)) * narrow.direction;
     PlaneEnergy w = at(law, c.widened(a));
-    constexpr int kMost = 60;
+    constexpr int kMost = 60;       // steps towards what wrinkles take up
     constexpr double kLast = 1e-9;  // of a: the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
       const Eigen::Vector2d g = traction(w, a);

@@ -131,7 +131,7 @@ struct CstIsotropic {
   // exponential, the geometric mean of the bracket.
   static double free_width(const Law& law, double l1) {
     double low = kThinnest, high = l1, l2 = std::clamp(law.free_width(l1), kThinnest, l1);
-    constexpr int kMost = 200;
+    constexpr int kMost = 200;      // steps towards the stress-free width
     constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
     constexpr double kGain = 0.3;   // of the stress that Newton's step has to leave at most
     double last = std::numeric_limits<double>::infinity();

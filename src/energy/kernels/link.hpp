@@ -41,7 +41,7 @@ struct Link {
   static double evaluate_with(const Rest& rest, const Eigen::Vector<double, 6>& x,
                               Eigen::Vector<double, 6>* g, Eigen::Matrix<double, 6, 6>* H,
                               double least_across) {
-    constexpr double kCoincident = 1e-12;  // of the length
+    constexpr double kCoincident = 1e-12;  // of the length: ends nearer than this have no direction
     const Vec3 difference = x.tail<3>() - x.head<3>();
     const double l = difference.norm(), k = rest.stiffness, excess = l - rest.length;
     if (g == nullptr) return 0.5 * k * excess * excess;

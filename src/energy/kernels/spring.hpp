@@ -82,7 +82,7 @@ struct Spring {
  private:
   // Without derivatives where the ends coincide.
   static AxialLaw directed(const Rest& rest, double l) {
-    constexpr double kCoincident = 1e-12;  // of the length
+    constexpr double kCoincident = 1e-12;  // of the length: ends nearer than this have no direction
     AxialLaw law = elastic(rest, l / rest.length - 1);
     if (l < kCoincident * rest.length) law.force = law.stiffness = 0;
     return law;

@@ -213,9 +213,9 @@ struct InvariantLaw {
   double balanced_volume(double l1, double l2, double thin2) const {
     const double plane = l1 * l1 + l2 * l2, least_distortion = std::sqrt(0.5 * plane / thin2);
     const double width = least_distortion - 1;
-    constexpr int kMost = 200;
-    constexpr double kLast = 1e-9;  // of J: the error that a step this small leaves is its square
-    constexpr double kMostLogit = 700;
+    constexpr int kMost = 200;          // steps towards the change of volume
+    constexpr double kLast = 1e-9;      // of J: the error that a step this small leaves is its square
+    constexpr double kMostLogit = 700;  // beyond it exp() overflows
     const auto share = [](double u) { return 1 / (1 + std::exp(-u)); };  // s
     const auto volume_of = [&](double u) {
       return u < 0 ? 1 + width * share(u) : least_distortion - width * share(-u);

@@ -46,7 +46,7 @@ struct OgdenLine {
  private:
   // exp(a) + 2 exp(-a/2) - 3, whose first terms cancel where a is small.
   static double sum_of_powers(double a, double grown, double shrunk) {
-    constexpr double kSmall = 0.05;
+    constexpr double kSmall = 0.05;  // exponent below which ten terms of the series are exact to round-off
     if (std::abs(a) > kSmall) return grown + 2 * shrunk;
     double term = 1, half = 2, sum = 0;
     for (int k = 1; k <= 10; ++k) {

@@ -13,12 +13,12 @@ namespace {
 constexpr int kMostIterations = 6;  // of Newton's method in a step
 constexpr int kFew = 2, kMany = 4;  // that make the next step longer, or shorter
 constexpr double kGrowth = 2;       // below 1 + sqrt(2), up to which the method is stable
-constexpr double kShrinkage = 0.5;
-constexpr double kEnough = 2;  // out of balance, relative to the static force, at which a step ends
-constexpr double kDecrease = 1e-4;
-constexpr int kTrials = 12;
-constexpr int kKrylovVectors = 30;
-constexpr double kForcing = 1e-2;
+constexpr double kShrinkage = 0.5;  // of the step after one that took many
+constexpr double kEnough = 2;       // out of balance, relative to the static force, at which a step ends
+constexpr double kDecrease = 1e-4;  // share of the decrease promised by the slope that a step must keep
+constexpr int kTrials = 12;         // halvings of a step
+constexpr int kKrylovVectors = 30;  // of GMRES
+constexpr double kForcing = 1e-2;   // relative residual of linear solves
 constexpr int kMostProducts = 300;  // of conjugate gradients in a solve; a shorter step is better conditioned
 constexpr int kProjectedRun = 8;    // factorisations after an indefinite Hessian that do not ask for it again
 

@@ -5,7 +5,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kShareOfRest = 0.5;
+constexpr double kShareOfRest = 0.5;  // nearer than this share of the distance at rest counts as near
 
 PairCorners gather(const Points& x, const std::array<int, 4>& nodes) {
   PairCorners corners;

@@ -16,7 +16,7 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostDense = 240;  // unknowns
+constexpr int kMostDense = 240;  // unknowns up to which all eigenvalues are found
 
 LowestEigenvalues sorted(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& vectors) {
   std::vector<Eigen::Index> order(static_cast<size_t>(values.size()));
@@ -53,13 +53,13 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
 #ifdef COAPT_HAS_SPECTRA
 namespace {
 
-constexpr double kShift = 10;     // times the magnitude of the lowest eigenvalue of the symmetric part
-constexpr int kPowerSteps = 20;   // towards the greatest imaginary part
-constexpr double kMargin = 1.25;  // on what they find
-constexpr double kConverged = 1e-8;
+constexpr double kShift = 10;           // times the magnitude of the lowest eigenvalue of the symmetric part
+constexpr int kPowerSteps = 20;         // towards the greatest imaginary part
+constexpr double kMargin = 1.25;        // on the imaginary part that they find
+constexpr double kConverged = 1e-8;     // relative residual of an eigenpair
 constexpr int kFirst = 20, kMost = 80;  // eigenvalues that are asked for
-constexpr int kSubspace = 60;           // at least
-constexpr int kRestarts = 100;
+constexpr int kSubspace = 60;           // vectors of the Krylov space, at least
+constexpr int kRestarts = 100;          // of Arnoldi's method
 
 // K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
 SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,

@@ -7,8 +7,8 @@ namespace coapt {
 namespace {
 
 constexpr double kLeastShift = 1e-11;  // relative to the mean of the diagonal
-constexpr double kMostShift = 1e12;
-constexpr double kRaise = 10;
+constexpr double kMostShift = 1e12;    // times the first one: beyond it no factor is sought
+constexpr double kRaise = 10;          // factor on a shift without a factor
 
 }  // namespace
 

@@ -19,9 +19,9 @@ constexpr double kFarDrift = 100;             // drift, relative to the extent o
 constexpr double kCollapsed = 1e-2;           // area, relative to the start
 constexpr double kPinched = 0.02;             // share of the film that has collapsed
 constexpr double kNothing = 0.1;              // of its area is left
-constexpr double kFarFromEquilibrium = 1e-2;  // residual
+constexpr double kFarFromEquilibrium = 1e-2;  // residual above which a film may be pinching off
 constexpr int kFilmInterval = 5;              // the same, of films whose nodes do not slide
-constexpr int kCollapsedLooks = 4;            // in a row
+constexpr int kCollapsedLooks = 4;            // looks in a row that have to see it
 constexpr int kFilmLooks = 3;                 // the same, of films whose nodes do not slide
 
 double facet_area(const Points& x, int a, int b, int c) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-14;  // of an eigenvalue, relative to the greatest diagonal entry
 constexpr double kFree = 10;         // force of a free direction, times zero: chords pass it on to both ends
-constexpr int kInverseIterations = 60;
+constexpr int kInverseIterations = 60;  // towards the softest mode
 
 // Nodes that zero modes move: probes through a filter that damps the others.
 constexpr int kProbes = 6, kFilterSteps = 4;

@@ -8,8 +8,8 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostSteps = 20;
-constexpr int kStepHalvings = 4;
+constexpr int kMostSteps = 20;      // of Newton's method for the forces
+constexpr int kStepHalvings = 4;    // of a step that does not lessen the forces
 constexpr double kLeastFall = 0.1;  // of the norm of the forces, relative to what a linear model promises
 
 // Without pivoting for size: where a leading minor vanishes the step is no good, and the line search says so.

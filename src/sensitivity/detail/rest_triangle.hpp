@@ -51,7 +51,7 @@ Rest reshaped_triangle(Rest rest, const Corners& X) {
 // Whether a triangle with its corners at X has that shape, but for round-off.
 template <typename Rest>
 bool has_shape(Rest rest, const Corners& X) {
-  constexpr double kSameShape = 1e-8;  // relative
+  constexpr double kSameShape = 1e-8;  // relative difference of the metrics that counts as none
   const Eigen::Matrix2d own = shape_of(rest) * shape_of(rest).transpose(),
                         inverse = cst_shape(X[0], X[1], X[2]).inverse, wanted = inverse * inverse.transpose();
   return (wanted - own).norm() <= 2 * kSameShape * wanted.norm();

@@ -34,7 +34,7 @@ bool TuningTrials::begin() {
   } else {
     for (const TuningTrial& trial : best_.history) least_ = std::min(least_, trial.cost);
     if (!take_up_best()) {
-      failure_ = "the shape of the best trial so far did not settle: " + failure_;
+      failure_ = "the shape of the best trial so far did not converge: " + failure_;
       return false;
     }
   }

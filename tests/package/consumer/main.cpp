@@ -1,4 +1,4 @@
-// Inflates a disc with the installed library: the C++ quick start of the README.
+// Inflates a disc with the installed library: the program of docs/library.md.
 #include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/load_pressure.hpp"
