@@ -1,4 +1,5 @@
-"""Fails when a file or a function is longer than CONTRIBUTING.md allows. What was longer when the limits came stands in
+"""Fails when a file or a function is longer than CONTRIBUTING.md allows, a room of src has more lines, or a folder of it more
+files. What was longer when the limits came stands in
 tools/lengths.toml with its length, which may only fall: a greater one fails, and so does one that is not lowered in the
 list when the code got shorter, or left there when it came within the limit.
 
@@ -17,6 +18,7 @@ import tomllib
 
 LONGEST_FILE = {"src": 400, "bindings": 400, "tests": 500, "bench": 500}
 LONGEST_FUNCTION = {"src": 60, "bindings": 60}
+LARGEST_ROOM, LARGEST_FOLDER = 8500, 40  # lines; files
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HEAD = ("# Files and functions that were longer than CONTRIBUTING.md allows when the limits came, with their lines. None is\n"
         "# added, and no number rises (tools/check_lengths.py); `tools/check_lengths.py --lower` writes what got shorter.\n")
@@ -49,6 +51,18 @@ def long_functions(root: pathlib.Path) -> dict[str, int]:
                 name = f"{tag['path']}: {'::'.join([*scopes, tag['name']])}"
                 found[name] = max(lines, found.get(name, 0))
     return dict(sorted(found.items()))
+
+
+def large_rooms(root: pathlib.Path) -> list[str]:
+    found, lines = [], {}
+    for folder in sorted(path for path in (root / "src").rglob("*") if path.is_dir()):
+        files = list(folder.glob("*.[ch]pp"))
+        room = folder.relative_to(root / "src").parts[0]
+        lines[room] = lines.get(room, 0) + sum(file.read_text(encoding="utf-8").count("\n") for file in files)
+        if len(files) > LARGEST_FOLDER:
+            found.append(f"{folder.relative_to(root).as_posix()}: {len(files)} files; {LARGEST_FOLDER} are the most of a folder")
+    return found + [f"src/{room}: {count} lines; {LARGEST_ROOM} are the most of a room"
+                    for room, count in lines.items() if count > LARGEST_ROOM]
 
 
 def compare(kind: str, present: dict[str, int], listed: dict[str, int]) -> list[str]:
@@ -88,7 +102,7 @@ def main() -> int:
         listed = {kind: lowered(present[kind], listed[kind]) for kind in present}
         path.write_text(HEAD + "".join(table(kind, listed[kind]) for kind in listed), encoding="utf-8")
     problems = [*compare("file", present["files"], listed["files"]),
-                *compare("function", present["functions"], listed["functions"])]
+                *compare("function", present["functions"], listed["functions"]), *large_rooms(given.folder)]
     print("\n".join(problems) if problems else "lengths: as they should be")
     return 1 if problems else 0
 

@@ -146,6 +146,32 @@ RunIdentity identity(const Scene& scene, const RunOptions& options,
           options.tolerance.value_or(scene.solver.tolerance), accuracy_mm};
 }
 
+// Returns the exit code.
+int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
+  const Scene scene = load_scene(arguments.scene);
+  std::optional<double> accuracy_mm;
+  if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
+  SolverTable solvers = all_solvers();
+  std::optional<Checkpointing> checkpointing;
+  if (arguments.checkpoint.is_wanted()) {
+    checkpointing.emplace(arguments.checkpoint, identity(scene, options, accuracy_mm));
+    solvers = checkpointing->recorded(solvers);
+    options.observer = checkpointing->recorded(options.observer);
+  }
+  RunReport report =
+      accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
+  RunOptions again = options;
+  again.observer = make_observer();
+  search_branches(scene, all_solvers(), again, arguments.branches, report);
+  end_progress();
+  print_summary(report);
+  if (checkpointing) checkpointing->finish(arguments.scene);
+  const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
+  const Result& result = report.report.result;
+  if (!is_reached || result.status != Status::Converged) return kNotConverged;
+  return stability_doubt(result.certificate).empty() ? kConverged : kInDoubt;
+}
+
 }  // namespace
 
 void add_solve_command(CLI::App& app, int& exit_code) {
@@ -191,30 +217,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     options.factorisations = all_factorisations();
     options.judge = intersection_judge();
     options.observer = make_observer();
-    const Scene scene = load_scene(arguments->scene);
-    std::optional<double> accuracy_mm;
-    if (!arguments->accuracy.empty()) accuracy_mm = wanted_accuracy(arguments->accuracy);
-    SolverTable solvers = all_solvers();
-    std::optional<Checkpointing> checkpointing;
-    if (arguments->checkpoint.is_wanted()) {
-      checkpointing.emplace(arguments->checkpoint, identity(scene, options, accuracy_mm));
-      solvers = checkpointing->recorded(solvers);
-      options.observer = checkpointing->recorded(options.observer);
-    }
-    RunReport report =
-        accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
-    RunOptions again = options;
-    again.observer = make_observer();
-    search_branches(scene, all_solvers(), again, arguments->branches, report);
-    end_progress();
-    print_summary(report);
-    if (checkpointing) checkpointing->finish(arguments->scene);
-    const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
-    const Result& result = report.report.result;
-    if (!is_reached || result.status != Status::Converged)
-      exit_code = kNotConverged;
-    else
-      exit_code = stability_doubt(result.certificate).empty() ? kConverged : kInDoubt;
+    exit_code = solve_as_asked(*arguments, options);
   });
 }
 

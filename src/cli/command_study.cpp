@@ -75,6 +75,19 @@ void print_ranking(const ParameterStudy& study) {
   }
 }
 
+void print_study(const ParameterStudy& study, bool prints_json, const std::filesystem::path& folder) {
+  if (prints_json) {
+    std::fputs(parameter_study_json(study).c_str(), stdout);
+  } else {
+    print_ranking(study);
+    if (study.results.size() < study.point_count)
+      std::printf("%zu points are missing; the same command goes on with them\n",
+                  study.point_count - study.results.size());
+    std::printf("written to %s (study.json, study.csv, report.html and a folder for each point)\n",
+                folder.string().c_str());
+  }
+}
+
 void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const std::filesystem::path scene = arguments.scene;
@@ -126,16 +139,7 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
   for (std::optional<PointResult>& result : results)
     if (result) study.results.push_back(std::move(*result));
   write_parameter_study(folder, study);
-  if (arguments.prints_json) {
-    std::fputs(parameter_study_json(study).c_str(), stdout);
-  } else {
-    print_ranking(study);
-    if (study.results.size() < study.point_count)
-      std::printf("%zu points are missing; the same command goes on with them\n",
-                  study.point_count - study.results.size());
-    std::printf("written to %s (study.json, study.csv, report.html and a folder for each point)\n",
-                folder.string().c_str());
-  }
+  print_study(study, arguments.prints_json, folder);
   exit_code = study.has_converged() ? kConverged : kNotConverged;
 }
 

@@ -27,53 +27,74 @@ constexpr double kTentSide = 10000;                          // [mm]
 constexpr int kChainLinks = 40;
 constexpr int kTriangles = 2500;
 
-std::vector<Shape> shapes() {
-  return {
-      {"disc",
-       "Clamped disc under pressure, p a/(E h) = 0.01; exact: centre deflection 1.4138 mm (2.0 % less for "
-       "coarse meshes)",
-       R"([{ "nodes": "boundary", "fix": true }])",
-       R"([
+Shape disc_shape() {
+  return {"disc",
+          "Clamped disc under pressure, p a/(E h) = 0.01; exact: centre deflection 1.4138 mm (2.0 % less for "
+          "coarse meshes)",
+          R"([{ "nodes": "boundary", "fix": true }])",
+          R"([
     { "type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },
     { "type": "load_pressure", "value": "0.1 kPa", "model": "$MODEL" })",
-       "follower", [](int triangles) { return disc(10, triangles); }},
-      {"square",
-       "Prestressed square under a small pressure; exact for p -> 0: centre deflection 0.0737 p L^2/T",
-       R"([{ "nodes": "boundary", "fix": true }])",
-       R"([
+          "follower",
+          [](int triangles) { return disc(10, triangles); }};
+}
+
+Shape square_shape() {
+  return {"square",
+          "Prestressed square under a small pressure; exact for p -> 0: centre deflection 0.0737 p L^2/T",
+          R"([{ "nodes": "boundary", "fix": true }])",
+          R"([
     { "type": "cst_stvk", "young": 0, "prestress": "1 N/m", "thickness": "0.1 mm" },
     { "type": "load_pressure", "value": "1 Pa", "model": "$MODEL" })",
-       "follower", [](int triangles) { return square(10, triangles, CellPattern::Cross); }},
-      {"sphere", "Balloon, p R/(E h) = 0.2727; exact: radius 11 mm (stretch 1.1)",
-       R"([{ "nodes": { "nearest": [0, 0, -10] }, "fix": true }])",
-       R"([
+          "follower",
+          [](int triangles) { return square(10, triangles, CellPattern::Cross); }};
+}
+
+Shape sphere_shape() {
+  return {"sphere",
+          "Balloon, p R/(E h) = 0.2727; exact: radius 11 mm (stretch 1.1)",
+          R"([{ "nodes": { "nearest": [0, 0, -10] }, "fix": true }])",
+          R"([
     { "type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },
     { "type": "load_pressure", "value": "2.7272727272727 kPa", "model": "$MODEL" })",
-       "volume", [](int triangles) { return sphere(10, triangles); }},
-      {"tent", "Four-point tent: prestressed membrane, edge cables of constant force",
-       R"([
+          "volume",
+          [](int triangles) { return sphere(10, triangles); }};
+}
+
+Shape tent_shape() {
+  return {
+      "tent",
+      "Four-point tent: prestressed membrane, edge cables of constant force",
+      R"([
     { "nodes": { "nearest": [0, 0, 5000] }, "fix": true },
     { "nodes": { "nearest": [10000, 0, 0] }, "fix": true },
     { "nodes": { "nearest": [10000, 10000, 5000] }, "fix": true },
     { "nodes": { "nearest": [0, 10000, 0] }, "fix": true }
   ])",
-       R"([
+      R"([
     { "type": "cst_stvk", "young": 0, "prestress": "1 kN/m", "thickness": "1 mm" },
     { "type": "cable", "edges": "boundary", "tension": "10 kN" })",
-       "",
-       [](int triangles) {
-         return tent(
-             {.side = kTentSide, .corner_height = 5000, .edge_radius = 10000, .triangles = triangles});
-       }},
-      {"catenary",
-       "Chain of stiff links under its weight, length/span = 1.2; exact for a smooth chain: sag 29.23 mm",
-       "[]",
-       R"([
+      "",
+      [](int triangles) {
+        return tent({.side = kTentSide, .corner_height = 5000, .edge_radius = 10000, .triangles = triangles});
+      }};
+}
+
+Shape catenary_shape() {
+  return {"catenary",
+          "Chain of stiff links under its weight, length/span = 1.2; exact for a smooth chain: sag 29.23 mm",
+          "[]",
+          R"([
     { "type": "cable", "network": "chain.json", "young": "1 GPa" },
     { "type": "load_field", "direction": [0, 0, -1], "force": "$WEIGHT", "nodes": "junctions" })",
-       "", nullptr},
-      {"airbag", "Quarter of one sheet of a square airbag, diagonal 1.2 m, 5 kPa (Contri & Schrefler 1988)",
-       R"([
+          "",
+          nullptr};
+}
+
+Shape airbag_shape() {
+  return {"airbag",
+          "Quarter of one sheet of a square airbag, diagonal 1.2 m, 5 kPa (Contri & Schrefler 1988)",
+          R"([
     { "nodes": { "plane": { "axis": "x", "at": "$SIDE" } }, "fix": ["z"] },
     { "nodes": { "plane": { "axis": "y", "at": "$SIDE" } }, "fix": ["z"] },
     { "nodes": { "plane": { "axis": "x" } }, "fix": ["x"] },
@@ -82,21 +103,31 @@ std::vector<Shape> shapes() {
     { "nodes": { "nearest": [1000, 0, 0] }, "fix": ["y", "z"] },
     { "nodes": { "nearest": [0, 1000, 0] }, "fix": ["x", "z"] }
   ])",
-       R"([
+          R"([
     { "type": "cst_stvk", "young": "588 MPa", "poisson": 0.4, "thickness": "0.6 mm" },
     { "type": "load_pressure", "value": "5 kPa", "model": "$MODEL" })",
-       "volume", [](int triangles) { return square(kAirbagSide, triangles, CellPattern::Cross); }},
-      {"strip", "Long strip under pressure, p/(E h) = 0.01/L, plane strain; exact: sag 7.539 mm",
-       R"([
+          "volume",
+          [](int triangles) { return square(kAirbagSide, triangles, CellPattern::Cross); }};
+}
+
+Shape strip_shape() {
+  return {"strip",
+          "Long strip under pressure, p/(E h) = 0.01/L, plane strain; exact: sag 7.539 mm",
+          R"([
     { "nodes": "all", "fix": ["y"] },
     { "nodes": { "plane": { "axis": "x" } }, "fix": true },
     { "nodes": { "plane": { "axis": "x", "at": "100 mm" } }, "fix": true }
   ])",
-       R"([
+          R"([
     { "type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm" },
     { "type": "load_pressure", "value": "10 Pa", "model": "$MODEL" })",
-       "follower", [](int triangles) { return rectangle(100, 10, triangles); }},
-  };
+          "follower",
+          [](int triangles) { return rectangle(100, 10, triangles); }};
+}
+
+std::vector<Shape> shapes() {
+  return {disc_shape(),     square_shape(), sphere_shape(), tent_shape(),
+          catenary_shape(), airbag_shape(), strip_shape()};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

@@ -155,6 +155,35 @@ Tuning search(const PreparedTuning& ready, RunReport& before, const TuningGoal& 
   return tune(make, q, goal, method, own);
 }
 
+void note_options(const ChordTuningOptions& options, ChordTuning& found) {
+  found.distance_weight = distance_weight_of(options);
+  found.orifice_weight = options.orifice_weight;
+  found.force_weight = options.force_weight;
+  found.change_weight = change_weight_of(options);
+  found.noise = options.noise;
+  found.determined = options.determined;
+  if (found.distance_weight > 0)
+    found.target = options.target.empty() ? "reference.closed_surface of the scene" : options.target.string();
+}
+
+// The scene with the best factors, written beside the report and solved again from where the search ended.
+void solve_tuned(const std::string& text, const std::filesystem::path& scene, const PreparedTuning& ready,
+                 const SolverTable& solvers, RunOptions options, ChordTuning& found) {
+  found.tuned_scene = kTunedScene;
+  const std::filesystem::path file = found.folder / kTunedScene;
+  formats::write_whole(
+      file, tuned_scene_text(text, scene, found.folder, ready.chords, ready.groups, found.tuning.best.value));
+  const Scene tuned = load_scene(file);
+  const Groundwork ground = lay_groundwork(tuned);
+  RunReport& after = found.after.emplace();
+  after.model = build(tuned, ground);
+  options.folder = found.folder / "after";
+  options.observer = {};  // whoever interrupted the tuning wants what it found
+  const Points x = found.before.model.objective->positions(found.tuning.best.q);
+  run_built(tuned, ground, solve_setup(tuned, solvers, options), options, after, &x);
+  ++found.solves;
+}
+
 }  // namespace
 
 bool ChordTuning::has_converged() const {
@@ -180,14 +209,7 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
   found.scene_title = scene_title(ready.scene);
   const std::unique_ptr<BoundedMinimiser> method = minimisers.at(chord_tuning_method(options))();
   found.method = method->name();
-  found.distance_weight = distance_weight_of(options);
-  found.orifice_weight = options.orifice_weight;
-  found.force_weight = options.force_weight;
-  found.change_weight = change_weight_of(options);
-  found.noise = options.noise;
-  found.determined = options.determined;
-  if (found.distance_weight > 0)
-    found.target = options.target.empty() ? "reference.closed_surface of the scene" : options.target.string();
+  note_options(options, found);
   found.folder = run_options.folder.empty() ? result_folder(ready.scene) : run_options.folder;
   prepare_result_folder(found.folder);
 
@@ -227,21 +249,8 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
                               made.residuals->patch_sums(found.tuning.residuals.cwiseQuotient(noise)));
   }
 
-  const Vector& factors = found.tuning.best.value;
-  found.tuned_scene = kTunedScene;
-  const std::filesystem::path file = found.folder / kTunedScene;
-  formats::write_whole(file,
-                       tuned_scene_text(text, scene, found.folder, ready.chords, ready.groups, factors));
-  const Scene tuned = load_scene(file);
-  const Groundwork ground = lay_groundwork(tuned);
-  RunReport& after = found.after.emplace();
-  after.model = build(tuned, ground);
-  own.folder = found.folder / "after";
-  own.observer = {};  // whoever interrupted the tuning wants what it found
-  const Points x = model.objective->positions(found.tuning.best.q);
-  run_built(tuned, ground, solve_setup(tuned, solvers, own), own, after, &x);
-  ++found.solves;
-  found.lengths = tuned_lengths(ready, options, factors, found.determinacy, after);
+  solve_tuned(text, scene, ready, solvers, own, found);
+  found.lengths = tuned_lengths(ready, options, found.tuning.best.value, found.determinacy, *found.after);
   // A fit that the noise does not explain is trapped, or the model is another: it determines nothing.
   if (!found.is_explained)
     for (TunedLength& length : found.lengths) length.is_determined = false;

@@ -70,6 +70,16 @@ class Lengths(unittest.TestCase):
         self.write("\n" * 501, "tests/room/one_test.cpp")
         self.expect_defect("tests/room/one_test.cpp: 501 lines")
 
+    def test_finds_a_folder_of_many_files(self):
+        for number in range(41):
+            self.write("", f"src/room/f{number}.cpp")
+        self.expect_defect("src/room: 41 files")
+
+    def test_finds_a_large_room_over_its_folders(self):
+        for number in range(22):
+            self.write("\n" * 387, f"src/room/{'a' if number % 2 else 'b'}/f{number}.cpp")
+        self.expect_defect("src/room: 8514 lines")
+
     def test_what_is_listed_may_not_grow(self):
         self.write_list('"src/room/one.cpp" = 410', '"src/room/two.cpp: old" = 70')
         self.write("\n" * 410)

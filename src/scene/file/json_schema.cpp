@@ -36,6 +36,20 @@ OrderedJson vector_schema(const OrderedJson& entry) {
   return {{"type", "array"}, {"items", entry}, {"minItems", 3}, {"maxItems", 3}};
 }
 
+OrderedJson line_schema() {
+  const OrderedJson point = vector_schema(quantity_schema({.dimension = kLength}));
+  OrderedJson line;
+  line["anyOf"] = {reference("nodes"),
+                   {{"type", "array"}, {"items", point}, {"minItems", 2}, {"maxItems", 2}}};
+  return line;
+}
+
+OrderedJson direction_schema() {
+  OrderedJson direction;
+  direction["anyOf"] = {{{"enum", {"along", "across"}}}, vector_schema({{"type", "number"}})};
+  return direction;
+}
+
 OrderedJson value_schema(const KeySpec& key) {
   const OrderedJson text{{"type", "string"}, {"minLength", 1}};
   switch (key.kind) {
@@ -77,18 +91,10 @@ OrderedJson value_schema(const KeySpec& key) {
       target["anyOf"] = {text, object_schema(target_spec())};
       return one_or_list(target);
     }
-    case KeyKind::Line: {
-      const OrderedJson point = vector_schema(quantity_schema({.dimension = kLength}));
-      OrderedJson line;
-      line["anyOf"] = {reference("nodes"),
-                       {{"type", "array"}, {"items", point}, {"minItems", 2}, {"maxItems", 2}}};
-      return line;
-    }
-    case KeyKind::Direction: {
-      OrderedJson direction;
-      direction["anyOf"] = {{{"enum", {"along", "across"}}}, vector_schema({{"type", "number"}})};
-      return direction;
-    }
+    case KeyKind::Line:
+      return line_schema();
+    case KeyKind::Direction:
+      return direction_schema();
     case KeyKind::Object:
       return object_schema(key.object);
     case KeyKind::Objects:

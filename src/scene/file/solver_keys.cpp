@@ -163,110 +163,129 @@ KeySpec xpbd_key() {
           "solver."};
 }
 
+KeySpec continuation_key() {
+  return {.name = "continuation",
+          .kind = KeyKind::Object,
+          .object = {.keys = {{.name = "load_steps",
+                               .kind = KeyKind::Integer,
+                               .fallback = "1",
+                               .min = 1,
+                               .max = 100000,
+                               .doc = "Equal steps of all loads."},
+                              {.name = "stiffness_steps",
+                               .kind = KeyKind::Integer,
+                               .fallback = "1",
+                               .min = 1,
+                               .max = 100000,
+                               .doc = "Steps of the stiffness, each by the same factor."},
+                              {.name = "first_stiffness",
+                               .fallback = "0.01",
+                               .min = 0,
+                               .excludes_min = true,
+                               .doc = "Factor on the stiffness before the first step."}}},
+          .doc =
+              "Way to the full problem by easier ones, together with the prescribed "
+              "motion; default: the full problem at once."};
+}
+
+KeySpec certificate_key() {
+  return {.name = "certificate",
+          .kind = KeyKind::Object,
+          .object = {.keys = {{.name = "modes",
+                               .kind = KeyKind::Integer,
+                               .fallback = "0",
+                               .min = 0,
+                               .max = 1000,
+                               .doc = "Smallest eigenvalues of the Hessian to compute, which "
+                                      "needs a build with Spectra. More than none also counts "
+                                      "zero and negative modes whatever the size."}}},
+          .doc = "What the certificate of the result holds beyond the usual."};
+}
+
+// Which method, and when it ends.
+std::vector<KeySpec> method_keys() {
+  return {{.name = "type",
+           .kind = KeyKind::Choice,
+           .fallback = "\"newton\"",
+           .choices = {"newton", "lbfgs", "bfgs", "dynamic", "xpbd", "ceres", "nlopt"},
+           .doc = "The method; ceres and nlopt need a build that has them."},
+          {.name = "tolerance",
+           .fallback = "1e-6",
+           .min = 0,
+           .max = 1,
+           .excludes_min = true,
+           .doc = "Greatest out-of-balance nodal force, relative to the greatest load or "
+                  "reaction, at which the result counts as converged."},
+          {.name = "max_iterations",
+           .kind = KeyKind::Integer,
+           .fallback = "100000",
+           .min = 0,
+           .doc = "Greatest number of iterations over all steps."},
+          {.name = "max_seconds",
+           .kind = KeyKind::Quantity,
+           .dimension = kTime,
+           .min = 0,
+           .excludes_min = true,
+           .doc = "Greatest wall time; default: no limit."}};
+}
+
+// What methods may be told.
+std::vector<KeySpec> option_keys() {
+  return {{.name = "memory",
+           .kind = KeyKind::Integer,
+           .fallback = "12",
+           .min = 1,
+           .max = 1000,
+           .doc = "Pairs of steps and gradient changes that lbfgs keeps."},
+          {.name = "cascade",
+           .kind = KeyKind::Flag,
+           .fallback = "false",
+           .doc = "Whether coarser meshes are made and solved first, each giving the next "
+                  "its start; the result is that of the scene's own mesh."},
+          continuation_key(),
+          {.name = "threads",
+           .kind = KeyKind::Integer,
+           .fallback = "1",
+           .min = 1,
+           .max = 256,
+           .doc = "Threads that assemble the Hessian or sweep the constraints of xpbd; the "
+                  "result does "
+                  "not depend on them."},
+          {.name = "density",
+           .dimension = kDensity,
+           .fallback = "\"1060 kg/m^3\"",
+           .min = 0,
+           .excludes_min = true,
+           .doc = "Mass density of membrane, chords and cables, for methods that move masses."},
+          dynamics_key(),
+          xpbd_key(),
+          {.name = "globalisation",
+           .kind = KeyKind::Choice,
+           .fallback = "\"line_search\"",
+           .choices = {"line_search", "trust_region"},
+           .doc = "How newton keeps a step from going too far."},
+          {.name = "preconditioned",
+           .kind = KeyKind::Flag,
+           .fallback = "false",
+           .doc = "Whether lbfgs starts its recursion from a factorised Hessian."},
+          {.name = "factorisation",
+           .kind = KeyKind::Choice,
+           .fallback = "\"auto\"",
+           .choices = {"auto", "cholmod", "eigen"},
+           .doc = "Sparse Cholesky method of newton, preconditioned lbfgs and the certificate; "
+                  "auto takes cholmod in a build that has it."},
+          certificate_key()};
+}
+
 }  // namespace
 
 KeySpec solver_key() {
+  std::vector<KeySpec> keys = method_keys();
+  for (KeySpec& key : option_keys()) keys.push_back(std::move(key));
   return {.name = "solver",
           .kind = KeyKind::Object,
           .fallback = "{}",
-          .object =
-              {.keys = {{.name = "type",
-                         .kind = KeyKind::Choice,
-                         .fallback = "\"newton\"",
-                         .choices = {"newton", "lbfgs", "bfgs", "dynamic", "xpbd", "ceres", "nlopt"},
-                         .doc = "The method; ceres and nlopt need a build that has them."},
-                        {.name = "tolerance",
-                         .fallback = "1e-6",
-                         .min = 0,
-                         .max = 1,
-                         .excludes_min = true,
-                         .doc = "Greatest out-of-balance nodal force, relative to the greatest load or "
-                                "reaction, at which the result counts as converged."},
-                        {.name = "max_iterations",
-                         .kind = KeyKind::Integer,
-                         .fallback = "100000",
-                         .min = 0,
-                         .doc = "Greatest number of iterations over all steps."},
-                        {.name = "max_seconds",
-                         .kind = KeyKind::Quantity,
-                         .dimension = kTime,
-                         .min = 0,
-                         .excludes_min = true,
-                         .doc = "Greatest wall time; default: no limit."},
-                        {.name = "memory",
-                         .kind = KeyKind::Integer,
-                         .fallback = "12",
-                         .min = 1,
-                         .max = 1000,
-                         .doc = "Pairs of steps and gradient changes that lbfgs keeps."},
-                        {.name = "cascade",
-                         .kind = KeyKind::Flag,
-                         .fallback = "false",
-                         .doc = "Whether coarser meshes are made and solved first, each giving the next "
-                                "its start; the result is that of the scene's own mesh."},
-                        {.name = "continuation",
-                         .kind = KeyKind::Object,
-                         .object = {.keys = {{.name = "load_steps",
-                                              .kind = KeyKind::Integer,
-                                              .fallback = "1",
-                                              .min = 1,
-                                              .max = 100000,
-                                              .doc = "Equal steps of all loads."},
-                                             {.name = "stiffness_steps",
-                                              .kind = KeyKind::Integer,
-                                              .fallback = "1",
-                                              .min = 1,
-                                              .max = 100000,
-                                              .doc = "Steps of the stiffness, each by the same factor."},
-                                             {.name = "first_stiffness",
-                                              .fallback = "0.01",
-                                              .min = 0,
-                                              .excludes_min = true,
-                                              .doc = "Factor on the stiffness before the first step."}}},
-                         .doc = "Way to the full problem by easier ones, together with the prescribed "
-                                "motion; default: the full problem at once."},
-                        {.name = "threads",
-                         .kind = KeyKind::Integer,
-                         .fallback = "1",
-                         .min = 1,
-                         .max = 256,
-                         .doc = "Threads that assemble the Hessian or sweep the constraints of xpbd; the "
-                                "result does "
-                                "not depend on them."},
-                        {.name = "density",
-                         .dimension = kDensity,
-                         .fallback = "\"1060 kg/m^3\"",
-                         .min = 0,
-                         .excludes_min = true,
-                         .doc = "Mass density of membrane, chords and cables, for methods that move masses."},
-                        dynamics_key(),
-                        xpbd_key(),
-                        {.name = "globalisation",
-                         .kind = KeyKind::Choice,
-                         .fallback = "\"line_search\"",
-                         .choices = {"line_search", "trust_region"},
-                         .doc = "How newton keeps a step from going too far."},
-                        {.name = "preconditioned",
-                         .kind = KeyKind::Flag,
-                         .fallback = "false",
-                         .doc = "Whether lbfgs starts its recursion from a factorised Hessian."},
-                        {.name = "factorisation",
-                         .kind = KeyKind::Choice,
-                         .fallback = "\"auto\"",
-                         .choices = {"auto", "cholmod", "eigen"},
-                         .doc = "Sparse Cholesky method of newton, preconditioned lbfgs and the certificate; "
-                                "auto takes cholmod in a build that has it."},
-                        {.name = "certificate",
-                         .kind = KeyKind::Object,
-                         .object = {.keys = {{.name = "modes",
-                                              .kind = KeyKind::Integer,
-                                              .fallback = "0",
-                                              .min = 0,
-                                              .max = 1000,
-                                              .doc = "Smallest eigenvalues of the Hessian to compute, which "
-                                                     "needs a build with Spectra. More than none also counts "
-                                                     "zero and negative modes whatever the size."}}},
-                         .doc = "What the certificate of the result holds beyond the usual."}}},
+          .object = {.keys = std::move(keys)},
           .doc = "How the equilibrium is found."};
 }
 

@@ -132,68 +132,74 @@ TermPointer build_pressure(const TermSpec& spec, BuildContext& context) {
                                     frozen_pressure_forces(model.X, triangles, along_normals), model.X);
 }
 
-}  // namespace
+TermType load_field_type() {
+  return {.name = "load_field",
+          .summary =
+              "Nodal forces that keep their size and direction: a fixed direction, toward a line, "
+              "gravity, or one by one (Burlina et al. 2010).",
+          .spec = {.keys = {{.name = "direction",
+                             .kind = KeyKind::Triple,
+                             .doc = "Direction of the force; its length does not matter."},
+                            {.name = "toward_line",
+                             .kind = KeyKind::Line,
+                             .doc = "Forces point to the nearest point of the line through two nodes or two "
+                                    "points; of a set, the first node and the one farthest from it."},
+                            {.name = "gravity",
+                             .kind = KeyKind::Triple,
+                             .dimension = kAcceleration,
+                             .doc = "Acceleration that acts on the mass of the membrane."},
+                            {.name = "forces",
+                             .kind = KeyKind::File,
+                             .doc = "CSV file with the force (x, y, z in N) on each vertex of the mesh."},
+                            {.name = "pressure",
+                             .dimension = kPressure,
+                             .doc = "Force per rest area around each node."},
+                            {.name = "force", .dimension = kForce, .doc = "Force on each node."},
+                            {.name = "nodes",
+                             .kind = KeyKind::Nodes,
+                             .doc = "The loaded nodes; default: all nodes of the mesh."},
+                            {.name = "density",
+                             .dimension = kDensity,
+                             .min = 0,
+                             .excludes_min = true,
+                             .doc = "Mass density of the membrane, for gravity."},
+                            {.name = "thickness",
+                             .dimension = kLength,
+                             .min = 0,
+                             .excludes_min = true,
+                             .doc = "Thickness of the membrane, for gravity."}},
+                   .groups = {{{"direction", "toward_line", "gravity", "forces"}, true}}},
+          .check = check_field,
+          .build = build_field};
+}
 
-std::vector<TermType> load_term_types() {
+TermType load_pressure_type() {
   return {
-      {.name = "load_field",
-       .summary = "Nodal forces that keep their size and direction: a fixed direction, toward a line, "
-                  "gravity, or one by one (Burlina et al. 2010).",
-       .spec = {.keys = {{.name = "direction",
-                          .kind = KeyKind::Triple,
-                          .doc = "Direction of the force; its length does not matter."},
-                         {.name = "toward_line",
-                          .kind = KeyKind::Line,
-                          .doc = "Forces point to the nearest point of the line through two nodes or two "
-                                 "points; of a set, the first node and the one farthest from it."},
-                         {.name = "gravity",
-                          .kind = KeyKind::Triple,
-                          .dimension = kAcceleration,
-                          .doc = "Acceleration that acts on the mass of the membrane."},
-                         {.name = "forces",
-                          .kind = KeyKind::File,
-                          .doc = "CSV file with the force (x, y, z in N) on each vertex of the mesh."},
-                         {.name = "pressure",
-                          .dimension = kPressure,
-                          .doc = "Force per rest area around each node."},
-                         {.name = "force", .dimension = kForce, .doc = "Force on each node."},
-                         {.name = "nodes",
-                          .kind = KeyKind::Nodes,
-                          .doc = "The loaded nodes; default: all nodes of the mesh."},
-                         {.name = "density",
-                          .dimension = kDensity,
-                          .min = 0,
-                          .excludes_min = true,
-                          .doc = "Mass density of the membrane, for gravity."},
-                         {.name = "thickness",
-                          .dimension = kLength,
-                          .min = 0,
-                          .excludes_min = true,
-                          .doc = "Thickness of the membrane, for gravity."}},
-                .groups = {{{"direction", "toward_line", "gravity", "forces"}, true}}},
-       .check = check_field,
-       .build = build_field},
-      {.name = "load_pressure",
-       .summary = "Uniform pressure on the surface.",
-       .spec =
-           {.keys = {{.name = "value", .dimension = kPressure, .required = true, .doc = "The pressure."},
-                     {.name = "model",
-                      .kind = KeyKind::Choice,
-                      .fallback = "\"follower\"",
-                      .choices = {"follower", "volume", "frozen"},
-                      .doc = "follower: normal to and per area of the deformed surface; volume: the same "
+      .name = "load_pressure",
+      .summary = "Uniform pressure on the surface.",
+      .spec = {.keys = {{.name = "value", .dimension = kPressure, .required = true, .doc = "The pressure."},
+                        {.name = "model",
+                         .kind = KeyKind::Choice,
+                         .fallback = "\"follower\"",
+                         .choices = {"follower", "volume", "frozen"},
+                         .doc =
+                             "follower: normal to and per area of the deformed surface; volume: the same "
                              "by its potential, for closed surfaces and fixed rims only; frozen: normal to "
                              "and per area of the reference surface."},
-                     {.name = "side",
-                      .kind = KeyKind::Choice,
-                      .fallback = "\"back\"",
-                      .choices = {"back", "front"},
-                      .doc = "back: pushes along the normals, as in a balloon; front: acts on the side that "
+                        {.name = "side",
+                         .kind = KeyKind::Choice,
+                         .fallback = "\"back\"",
+                         .choices = {"back", "front"},
+                         .doc =
+                             "back: pushes along the normals, as in a balloon; front: acts on the side that "
                              "the normals point to, as on a closed valve."},
-                     region_key()}},
-       .check = {},
-       .build = build_pressure},
-  };
+                        region_key()}},
+      .check = {},
+      .build = build_pressure};
 }
+
+}  // namespace
+
+std::vector<TermType> load_term_types() { return {load_field_type(), load_pressure_type()}; }
 
 }  // namespace coapt
