@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "core/error.hpp"
-#include "scene/build/check.hpp"
+#include "exchange/check.hpp"
 #include "scene/build/repair.hpp"
 
 #include <CLI/CLI.hpp>

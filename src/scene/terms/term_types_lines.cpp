@@ -1,4 +1,4 @@
-#include "energy/laws/line_laws.hpp"
+#include "energy/kernels/cable_law.hpp"
 #include "scene/terms/build_lines.hpp"
 #include "scene/terms/term_types.hpp"
 

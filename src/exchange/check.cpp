@@ -1,4 +1,4 @@
-#include "scene/build/check.hpp"
+#include "exchange/check.hpp"
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
