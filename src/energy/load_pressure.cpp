@@ -149,6 +149,10 @@ class LoadPressureFollower final : public EnergyTerm {
     return true;
   }
 
+  const EnergyTerm& simplest() const override {
+    return simplest_ == nullptr ? *this : static_cast<const EnergyTerm&>(*simplest_);
+  }
+
   std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override {
     if (fans_.cols() != 0) return nullptr;
     std::vector<int> corners;
@@ -178,6 +182,9 @@ class LoadPressureFollower final : public EnergyTerm {
     corners.insert(corners.end(), fan_corners.begin(), fan_corners.end());
     const size_t count = corners.size() / 3;
     closed_.emplace(name(), std::move(corners), std::vector<FacetVolume::Rest>(count, rest_));
+    simplest_ = fan_corners.empty()
+                    ? nullptr
+                    : std::make_unique<LoadPressureFollower>(name(), triangles_, edges_, rest_);
   }
 
   Triangles triangles_;
@@ -186,6 +193,7 @@ class LoadPressureFollower final : public EnergyTerm {
   FacetVolume::Rest rest_;
   Triangles fans_;                                  // none until renew()
   std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans
+  std::unique_ptr<LoadPressureFollower> simplest_;  // without the fans; none where there are none
 };
 
 }  // namespace

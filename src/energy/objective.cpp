@@ -13,16 +13,14 @@ namespace {
 // moved tips scatter by a quarter; at once it sheets are too soft, and travel too far.
 constexpr double kStressLimit = 100, kLineShare = 0.1;
 
-constexpr double kBalanced = 1e-8;  // out-of-balance force over reaction of a prestressed reference state
-
-double largest_column_norm(const Points& vectors) {
-  return vectors.cols() == 0 ? 0 : std::sqrt(vectors.colwise().squaredNorm().maxCoeff());
-}
-
 }  // namespace
 
 Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<EnergyTerm>> terms)
-    : x_(std::move(start)), fixed_(std::move(fixed)), terms_(std::move(terms)), block_(x_.cols(), -1) {
+    : x_(std::move(start)),
+      fixed_(std::move(fixed)),
+      terms_(std::move(terms)),
+      block_(x_.cols(), -1),
+      reference_(x_) {
   // Loads first: their nodal forces can then be read off before the internal forces join them.
   std::stable_partition(terms_.begin(), terms_.end(),
                         [](const auto& term) { return term->role() == TermRole::Load; });
@@ -34,20 +32,7 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
     }
   nodal_gradient_.resize(3, x_.cols());
   normal_motion_ = NormalMotion(terms_, x_, block_, fixed_);
-  keep_prestress_reaction();
-}
-
-void Objective::keep_prestress_reaction() {
-  Points reaction = Points::Zero(3, node_count());
-  Sink sink(reaction.data());
-  for (const auto& term : terms_)
-    if (term->role() == TermRole::Internal) term->evaluate(x_, sink);
-  if (!reaction.allFinite()) return;
-  const Points none = Points::Zero(3, node_count());
-  const double unbalanced = largest_column_norm(fixed_.select(none, reaction));
-  reaction = fixed_.select(reaction, none);
-  // Only a prestress that is in equilibrium by itself is no measure of what the loads do.
-  if (unbalanced < kBalanced * largest_column_norm(reaction)) prestress_reaction_ = std::move(reaction);
+  scale_.measure_reference(terms_, reference_, fixed_);
 }
 
 Vector Objective::unknowns(const Points& x) const {
@@ -72,16 +57,18 @@ double Objective::extent(const Vector& q) const {
 void Objective::scale(double load, double stiffness) {
   load_factor_ = load;
   stiffness_factor_ = stiffness;
+  scale_is_current_ = false;
 }
 
 bool Objective::round_kinks(double share) {
   bool has_kinks = false;
   for (const auto& term : terms_) has_kinks = term->round_kinks(share) || has_kinks;
+  scale_is_current_ = false;
   return has_kinks;
 }
 
 bool Objective::limit_stress(const Vector& q) {
-  has_stress_limits_ = false;
+  has_stress_limits_ = scale_is_current_ = false;
   bool has_laws = false;
   for (const auto& term : terms_) has_laws = term->limit_stress({kInfinity, kInfinity}) || has_laws;
   if (!has_laws) return false;
@@ -98,6 +85,7 @@ bool Objective::limit_stress(const Vector& q) {
 
 double Objective::raise_stress_limits(const Vector& q) {
   prepare(q);
+  scale_is_current_ = false;
   double excess = 0;
   for (const auto& term : terms_) excess = std::max(excess, term->raise_stress_limits(x_));
   return excess;
@@ -106,7 +94,7 @@ double Objective::raise_stress_limits(const Vector& q) {
 void Objective::release_stress_limits() {
   if (!has_stress_limits_) return;
   for (const auto& term : terms_) term->release_stress_limits();
-  has_stress_limits_ = false;
+  has_stress_limits_ = scale_is_current_ = false;
 }
 
 double Objective::pour(const EnergyTerm& term, Sink sink) const {
@@ -143,11 +131,14 @@ bool Objective::stiffen(const Vector& q) {
   prepare(q);
   bool is_stiffer = false;
   for (const auto& term : terms_) is_stiffer = term->stiffen(x_) || is_stiffer;
-  if (is_stiffer) pattern_is_current_ = false;
+  if (is_stiffer) pattern_is_current_ = scale_is_current_ = false;
   return is_stiffer;
 }
 
-void Objective::prescribe(const Points& x) { x_ = fixed_.select(x, x_); }
+void Objective::prescribe(const Points& x) {
+  x_ = fixed_.select(x, x_);
+  scale_is_current_ = false;
+}
 
 void Objective::prepare(const Vector& q) {
   for (size_t k = 0; k < active_.size(); ++k)
@@ -165,22 +156,12 @@ void Objective::renew_pattern() {
 }
 
 // The free part of a nodal gradient becomes the unknowns' gradient; the rest is the reactions.
-void Objective::split(const Points& nodal, Vector& free_part) {
-  free_part.resize(unknown_count());
-  double reaction = 0, whole_reaction = 0;
-  const bool is_relative = load_scale_ > 0 && prestress_reaction_.size() != 0;
-  for (int node = 0; node < node_count(); ++node) {
-    Vec3 free = nodal.col(node), held = Vec3::Zero();
-    for (int c = 0; c < 3; ++c)
-      if (fixed_(c, node)) std::swap(free[c], held[c]);
-    whole_reaction = std::max(whole_reaction, held.squaredNorm());
-    if (is_relative) held -= stiffness_factor_ * prestress_reaction_.col(node);
-    reaction = std::max(reaction, held.squaredNorm());
-    if (block_[node] >= 0) free_part.segment<3>(3 * block_[node]) = free;
-  }
-  sliding_force_ = normal_motion_.restrict_gradient(free_part);
-  reaction_scale_ = std::sqrt(reaction);
-  whole_reaction_scale_ = std::sqrt(whole_reaction);
+void Objective::split(const Points& nodal, Vector& free) {
+  free.resize(unknown_count());
+  for (size_t k = 0; k < active_.size(); ++k)
+    free.segment<3>(3 * k) = fixed_.col(active_[k]).select(0, nodal.col(active_[k]).array());
+  sliding_force_ = normal_motion_.restrict_gradient(free);
+  scale_.measure_reactions(nodal, fixed_, stiffness_factor_);
 }
 
 double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h,
@@ -196,7 +177,10 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
       std::fill_n(h->valuePtr(), h->nonZeros(), 0.0);
   }
   double* gradient = g == nullptr ? nullptr : nodal_gradient_.data();
-  if (gradient != nullptr) nodal_gradient_.setZero();
+  if (gradient != nullptr) {
+    nodal_gradient_.setZero();
+    scale_is_current_ = false;
+  }
 
   double energy = 0;
   if (circulatory_ == Circulatory::HeldDead) {
@@ -208,11 +192,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   }
   bool loads_are_complete = false;
   const auto read_off_loads = [&] {
-    if (gradient != nullptr && !loads_are_complete) {
-      double largest = 0;
-      for (int node : active_) largest = std::max(largest, nodal_gradient_.col(node).squaredNorm());
-      load_scale_ = std::sqrt(largest);
-    }
+    if (gradient != nullptr && !loads_are_complete) scale_.measure_loads(nodal_gradient_, fixed_);
     loads_are_complete = true;
   };
   for (size_t k = 0; k < terms_.size(); ++k) {
@@ -231,10 +211,8 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   if (gradient == nullptr) return energy;
 
   split(nodal_gradient_, *g);
-  if (counts_.gradient + counts_.hessian == 0) {
-    first_scale_ = largest_column_norm(nodal_gradient_);
-    if (load_scale_ == 0) strained_scale_ = strained_force();
-  }
+  scale_at_ = q;
+  scale_is_current_ = true;
   return energy;
 }
 
@@ -254,37 +232,6 @@ double Objective::hessian(const Vector& q, Vector& g, Eigen::SparseMatrix<double
   const double energy = evaluate(q, &g, &h, projection);
   ++counts_.hessian;
   return energy;
-}
-
-// Largest change of the internal forces when the body grows by one part in a million.
-double Objective::strained_force() const {
-  if (x_.cols() == 0) return 0;
-  const Vec3 centre = x_.rowwise().mean();
-  const Points grown = ((x_.colwise() - centre) * (1 + 1e-3)).colwise() + centre;
-  Points change = Points::Zero(3, x_.cols());
-  Points before = change;
-  Sink after_sink(change.data()), before_sink(before.data());
-  for (const auto& term : terms_) {
-    if (term->role() != TermRole::Internal) continue;
-    term->evaluate(grown, after_sink);
-    term->evaluate(x_, before_sink);
-  }
-  const double force = largest_column_norm(change - before);
-  return std::isfinite(force) ? 1e-3 * force : 0;  // the growth by 1e-3 stands clear of round-off
-}
-
-double Objective::reference_force() const {
-  if (given_scale_ > 0) return given_scale_;
-  if (load_scale_ > 0) return std::max(load_scale_, reaction_scale_);
-  return std::max({strained_scale_, reaction_scale_, reaction_scale_ > 0 ? 0 : first_scale_});
-}
-
-double Objective::relative_residual(const Vector& g) const {
-  if (!g.allFinite()) return kInfinity;
-  double largest = 0;
-  for (Eigen::Index k = 0; k < g.size(); k += 3) largest = std::max(largest, g.segment<3>(k).squaredNorm());
-  if (largest == 0) return 0;
-  return std::sqrt(largest) / reference_force();
 }
 
 bool Objective::has_circulatory_force() const {
@@ -341,6 +288,7 @@ void Objective::hold_dead(const Vector& q) {
   prepare(q);
   for (const auto& term : terms_)
     if (term->has_circulatory_force() && term->renew(x_)) pattern_is_current_ = false;
+  scale_is_current_ = false;
   circulatory_ = Circulatory::HeldDead;
   circulatory_force(x_, remainder_);
 }
@@ -349,6 +297,7 @@ void Objective::follow_path(const Vector& q) {
   prepare(q);
   for (const auto& term : terms_)
     if (term->simplify()) pattern_is_current_ = false;
+  scale_is_current_ = false;
   circulatory_ = Circulatory::PathWork;
   circulatory_force(x_, remainder_);
   anchor_ = x_;
@@ -361,23 +310,6 @@ void Objective::advance(const Vector& q) {
   work_ += path_work();
   std::swap(remainder_, force_);
   anchor_ = x_;
-}
-
-Points Objective::exact_gradient(const Vector& q) {
-  prepare(q);
-  Points g = Points::Zero(3, node_count());
-  for (const auto& term : terms_) pour(*term, Sink(g.data()));
-  Points force;
-  circulatory_force(x_, force);
-  return g - force;
-}
-
-double Objective::true_residual(const Vector& q) {
-  Vector g;
-  gradient(q, g);  // sets the reference force
-  if (!has_circulatory_force()) return relative_residual(g);
-  split(exact_gradient(q), g);
-  return relative_residual(g);
 }
 
 std::vector<TermReport> Objective::breakdown(const Vector& q) {
@@ -395,33 +327,6 @@ std::vector<TermReport> Objective::breakdown(const Vector& q) {
                        term->counters()});
   }
   return reports;
-}
-
-Points Objective::reactions(const Vector& q) {
-  const Points g = exact_gradient(q);
-  return fixed_.select(g, Points::Zero(3, node_count()));
-}
-
-Balance Objective::balance(const Vector& q) {
-  const Points support = reactions(q);
-  Points load = Points::Zero(3, node_count());
-  for (const auto& term : terms_)
-    if (term->role() == TermRole::Load) pour(*term, Sink(load.data()));
-  Points circulatory;
-  circulatory_force(x_, circulatory);
-  load -= circulatory;
-  load = -load;  // the force on the nodes is minus the gradient of the potential
-  const Vec3 centre = x_.cols() == 0 ? Vec3::Zero() : Vec3(x_.rowwise().mean());
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-  double force_sum = 0, moment_sum = 0;
-  for (int node = 0; node < node_count(); ++node) {
-    const Vec3 arm = x_.col(node) - centre, f = load.col(node) + support.col(node);
-    force += f;
-    moment += arm.cross(f);
-    force_sum += load.col(node).norm() + support.col(node).norm();
-    moment_sum += arm.norm() * (load.col(node).norm() + support.col(node).norm());
-  }
-  return {force_sum > 0 ? force.norm() / force_sum : 0, moment_sum > 0 ? moment.norm() / moment_sum : 0};
 }
 
 }  // namespace coapt

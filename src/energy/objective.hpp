@@ -1,6 +1,7 @@
 // The potential energy of a scene over its free unknowns: the sum of the terms that were named.
 #pragma once
 
+#include "energy/force_scale.hpp"
 #include "energy/hessian_pattern.hpp"
 #include "energy/normal_motion.hpp"
 #include "energy/term.hpp"
@@ -11,8 +12,6 @@
 #include <vector>
 
 namespace coapt {
-
-using FixedMask = Eigen::Array<bool, 3, Eigen::Dynamic>;  // 3 x node_count: true = prescribed
 
 struct EvaluationCounts {
   long value = 0;     // energy alone
@@ -62,7 +61,9 @@ class Objective {
     return normal_motion_.is_empty() ? q : unknowns(normal_motion_.smooth_start(positions(q)));
   }
   bool turn_films(const Vector& q) {
-    return !normal_motion_.is_empty() && normal_motion_.turn_where_needed(positions(q));
+    if (normal_motion_.is_empty() || !normal_motion_.turn_where_needed(positions(q))) return false;
+    scale_is_current_ = false;
+    return true;
   }
 
   // Factors on all loads and on all other energies, for continuation; 1 from the start. Load and stiffness
@@ -97,23 +98,34 @@ class Objective {
                  Projection projection = Projection::None);
   long pattern_version() const { return pattern_version_; }
 
-  // Out-of-balance force relative to the reference force, from the gradient of the last evaluation:
-  // largest nodal norm of g over reference_force().
-  double relative_residual(const Vector& g) const;
+  // --- The verdict ------------------------------------------------------------------------------------
+  // All that follows belongs to the state q and to the problem as it is now, whatever was evaluated before;
+  // at the state of the last gradient evaluation it costs nothing.
 
-  // Greatest nodal force along films of constant tension at the last gradient evaluation, which the mesh
-  // makes and neither gradient nor residual has, over reference_force(); 0 where there is none.
-  double sliding_force() const { return sliding_force_ == 0 ? 0 : sliding_force_ / reference_force(); }
+  // Largest load or reaction [force]: see ForceScale::force().
+  double reference_force(const Vector& q) { return scale_at(q).force(); }
 
-  // Largest load or reaction of the last gradient evaluation [force]. Loads on wholly prescribed nodes do
-  // not count, and of reactions only what is added to those of a prestressed reference state, which would
-  // hide a load that is small beside the prestress. A scene without loads has a scale too: never less than
-  // the internal forces of a strain of some 1e-6, so that a body at rest is found at rest in spite of
-  // round-off, and without supports at least the largest force of the first evaluation.
-  double reference_force() const;
+  // Out-of-balance force at q relative to the reference force: largest nodal norm of g over
+  // reference_force().
+  double relative_residual(const Vector& q, const Vector& g);
 
-  // The same with the whole reactions, prestress included [force]: what round-off is measured against.
-  double largest_force() const { return std::max(reference_force(), whole_reaction_scale_); }
+  // Greatest nodal force along films of constant tension, which the mesh makes and neither gradient nor
+  // residual has, over reference_force(); 0 where there is none.
+  double sliding_force(const Vector& q) {
+    const double scale = reference_force(q);
+    return sliding_force_ == 0 ? 0 : sliding_force_ / scale;
+  }
+
+  // Residual with the exact load at q, never that of the potential. The final judge of convergence.
+  double true_residual(const Vector& q);
+
+  // The terms have other data than before (a parameter was set): what the reference state says is measured
+  // anew.
+  void renew_reference();
+
+  // Greatest force of the last gradient evaluation, reactions of a prestress included [force]: what round-off
+  // is measured against.
+  double largest_force() const { return scale_.largest_force(); }
 
   // --- Steps that must not be too long ---------------------------------------------------------------
   // The first term that limits steps (EnergyTerm::step_limit), or null.
@@ -151,13 +163,9 @@ class Objective {
 
   // These blocks of unknowns by themselves, all others held where q has them: an objective whose energy
   // differs by a constant, in the same order of unknowns, whose residual is measured against this one's
-  // reference force and whose laws are as they are now. Contact keeps each node within `reach` [length] of
-  // where it is. Null where a term cannot be divided, or the circulatory force is held dead. Pre: the last
-  // gradient evaluation was at q.
+  // reference force at q and whose laws are as they are now. Contact keeps each node within `reach` [length]
+  // of where it is. Null where a term cannot be divided, or the circulatory force is held dead.
   std::unique_ptr<Objective> part(const Vector& q, const std::vector<int>& blocks, double reach);
-
-  // Residual with the exact load at q, never that of the potential. The final judge of convergence.
-  double true_residual(const Vector& q);
 
   std::vector<TermReport> breakdown(const Vector& q);
   // Reactions of the supports, 3 x node_count [force], zero where free; of fixed rims see docs/theory.md.
@@ -179,9 +187,9 @@ class Objective {
   void circulatory_force(const Points& x, Points& force) const;
   double path_work();  // from anchor_ to x_; leaves the force at x_ in force_
   void add_circulatory_tangent(Eigen::SparseMatrix<double>& h);
-  Points exact_gradient(const Vector& q);
-  double strained_force() const;
-  void keep_prestress_reaction();
+  Points exact_circulatory_force() const;  // at x_, as the gradient, whatever potential was chosen
+  Points exact_gradient(const Points& circulatory) const;
+  const ForceScale& scale_at(const Vector& q);
 
   Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
@@ -201,13 +209,14 @@ class Objective {
   std::vector<TangentBlock> skew_;  // half the tangent of the gradient, by blocks of unknowns
   double work_ = 0;                 // of the circulatory force along the path so far
   Points nodal_gradient_;           // work space
-  Points prestress_reaction_;       // of the reference state, at prescribed coordinates; empty: it has none
-  double given_scale_ = 0;          // of a part: the reference force of the whole
-  double load_scale_ = 0, reaction_scale_ = 0, whole_reaction_scale_ = 0;
-  double first_scale_ = 0, strained_scale_ = 0;
 
   NormalMotion normal_motion_;
-  double sliding_force_ = 0;  // left out at the last evaluation [force]
+
+  const Points reference_;         // the start
+  ForceScale scale_;               // of the last gradient evaluation
+  double sliding_force_ = 0;       // left out there [force]
+  Vector scale_at_;                // its unknowns
+  bool scale_is_current_ = false;  // nothing else has changed since
 
   HessianPattern pattern_;
   bool pattern_is_current_ = false;

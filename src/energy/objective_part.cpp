@@ -21,7 +21,7 @@ std::unique_ptr<Objective> Objective::part(const Vector& q, const std::vector<in
   part->normal_motion_ = {};
   part->load_factor_ = load_factor_;
   part->stiffness_factor_ = stiffness_factor_;
-  part->given_scale_ = reference_force();
+  part->scale_.give(reference_force(q));
   if (circulatory_ == Circulatory::PathWork) part->follow_path(part->unknowns(part->x_));
   return part;
 }

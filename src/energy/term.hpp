@@ -107,6 +107,10 @@ class EnergyTerm {
   virtual bool renew(const Points& /*x*/) { return false; }
   virtual bool simplify() { return false; }
 
+  // The same load with the potential that simplify() chooses: for what may not depend on the choice, not even
+  // by round-off.
+  virtual const EnergyTerm& simplest() const { return *this; }
+
   // --- Steps that must not be too long ---------------------------------------------------------------
   // Whether step_limit() may be less than it was asked for. A solver that uses such a term asks before every
   // step; what is evaluated anywhere else may be an infinite energy.

@@ -21,7 +21,7 @@ class LimitedMemory final : public InverseHessian {
   // Renews the metric now and then; the pairs stay valid whatever the metric is.
   void visit(const Vector& q) override {
     if (!metric_ || age_++ % kRenewal != 0) return;
-    if (unit_ == 0) unit_ = objective_.reference_force() / std::max(objective_.extent(q), 1e-12);
+    if (unit_ == 0) unit_ = objective_.reference_force(q) / std::max(objective_.extent(q), 1e-12);
     double shift = (has_metric_ ? kLaterShift : kFirstShift) * unit_;
     has_metric_ = metric_->factorise(objective_, monitor_, q, work_, shift);
   }

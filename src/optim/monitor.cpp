@@ -83,7 +83,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   now.iteration = iterations_;
   now.round = round_;
   now.energy = energy;
-  now.residual = objective_.relative_residual(g);
+  now.residual = objective_.relative_residual(q, g);
   now.step = last_.size() == q.size() && q.size() > 0 ? (q - last_).lpNorm<Eigen::Infinity>() : 0;
   now.seconds = seconds();
   now.time = time_before_ + time;

@@ -105,7 +105,7 @@ class Newton {
   void raise_limits() {
     while (objective_.has_stress_limits()) {
       const double excess = objective_.raise_stress_limits(at_.q);
-      const bool is_settled = objective_.relative_residual(at_.g) < kSettled;
+      const bool is_settled = objective_.relative_residual(at_.q, at_.g) < kSettled;
       if (is_settled && excess < kExact) objective_.release_stress_limits();
       if (excess > 0) evaluate();
       if (!is_settled) return;
@@ -117,7 +117,7 @@ class Newton {
   // it does. Not with contact: loose chords let sheets pass through each other where a repulsion is finite.
   bool wants_rounding() const {
     const auto& terms = objective_.terms();
-    return objective_.relative_residual(at_.g) > kOverloaded &&
+    return objective_.relative_residual(at_.q, at_.g) > kOverloaded &&
            std::none_of(terms.begin(), terms.end(), [](const auto& term) {
              return term->role() == TermRole::Contact && !term->limits_steps();
            });
@@ -129,7 +129,8 @@ class Newton {
     while (true) {
       const auto status = monitor_.accept(at_.q, at_.energy, at_.g);
       if (rounding_ == 0 || (status && *status != Status::Converged)) return status;
-      if (objective_.relative_residual(at_.g) > std::max(kSettled, monitor_.tolerance())) return status;
+      if (objective_.relative_residual(at_.q, at_.g) > std::max(kSettled, monitor_.tolerance()))
+        return status;
       rounding_ = rounding_ * kSharpen < kLeastRounding ? 0 : rounding_ * kSharpen;
       objective_.round_kinks(rounding_);
       monitor_.begin_round(monitor_.round() + 1, monitor_.tolerance());
@@ -140,7 +141,7 @@ class Newton {
 
   // Every step of this method promises a gain. Where none comes for long, it is too small to be seen.
   bool is_at_round_off() {
-    const double residual = objective_.relative_residual(at_.g);
+    const double residual = objective_.relative_residual(at_.q, at_.g);
     const bool is_better = residual < kBetter * least_residual_ ||
                            at_.energy < least_energy_ - monitor_.energy_noise(at_.energy);
     idle_ = is_better || residual > kNearEnough ? 0 : idle_ + 1;
@@ -154,7 +155,7 @@ class Newton {
   // Force over length: what resists a displacement of the scene's size with the scene's force.
   void start_shift() {
     const double extent = objective_.extent(at_.q);
-    unit_ = objective_.reference_force() / (extent > 0 ? extent : 1);
+    unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
     for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
   }
@@ -178,7 +179,7 @@ class Newton {
   // equilibrium; steps that take it to be so approach it slowly.
   bool is_beyond_the_potential() const {
     return objective_.has_skew_tangent() && !hessian_.is_exact() &&
-           objective_.relative_residual(at_.g) < kNear;
+           objective_.relative_residual(at_.q, at_.g) < kNear;
   }
 
   // From symmetric_, with the skew part of the tangent; with the exact symmetric part too, unshifted, or with
@@ -263,7 +264,7 @@ class Newton {
     if (!worst) return false;
     const auto part = objective_.part(at.q, worst->blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
-    const double elsewhere = worst->outside / objective_.reference_force();
+    const double elsewhere = worst->outside / objective_.reference_force(at.q);
     const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), kPartIterations};
     const Observer nobody;
     Monitor monitor(*part, stop, nobody);
@@ -280,7 +281,7 @@ class Newton {
   // stiffening law halves its excess too, and the long step would make it slack.
   double first_step() {
     double step = 1;
-    if (last_.size() == direction_.size() && objective_.relative_residual(at_.g) < kNear) {
+    if (last_.size() == direction_.size() && objective_.relative_residual(at_.q, at_.g) < kNear) {
       const double ratio = direction_.dot(last_) / last_.squaredNorm();
       if (ratio > 0.4 && ratio < 0.6 &&
           (direction_ - ratio * last_).squaredNorm() < 0.01 * direction_.squaredNorm())

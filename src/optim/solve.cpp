@@ -73,7 +73,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
   std::string note = outcome.note;
   result.status = outcome.status;
   result.residual = objective.true_residual(result.q);
-  const double sliding = objective.sliding_force();
+  const double sliding = objective.sliding_force(result.q);
   if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
       result.status != Status::NoEquilibrium && !outcome.is_on_the_way && solver.is_at_rest())
     result.status = Status::Converged;

@@ -102,10 +102,10 @@ void TrackedEquilibrium::set(const Vector& value) {
 }
 
 void TrackedEquilibrium::assign(const Vector& value) {
-  for (size_t k = 0; k < parameters_.size(); ++k) {
-    const Vector numbers = numbers_of(*parameters_[k], k, value);
-    if (numbers != parameters_[k]->value()) parameters_[k]->set(numbers);
-  }
+  for (size_t k = 0; k < parameters_.size(); ++k)
+    if (const Vector numbers = numbers_of(*parameters_[k], k, value); numbers != parameters_[k]->value())
+      parameters_[k]->set(numbers);
+  objective_.renew_reference();
 }
 
 Points TrackedEquilibrium::prescribed() const {
@@ -262,7 +262,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report)
   if (!std::isfinite(objective_.gradient(q_, g_)) || !g_.allFinite()) return false;
   Vector direction, next_q, next_g;
   for (report.iterations = 0;; ++report.iterations) {
-    report.residual = objective_.relative_residual(g_);
+    report.residual = objective_.relative_residual(q_, g_);
     if (report.residual <= options_.tolerance) {
       report.residual = residual_at(q_);
       report.status = report.residual <= options_.tolerance ? Status::Converged : Status::Stalled;

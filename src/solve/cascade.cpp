@@ -94,7 +94,7 @@ bool is_bearable(const Problem& problem) {
   Vector g;
   problem.objective.limit_stress(problem.q0);
   problem.objective.gradient(problem.q0, g);
-  const double residual = problem.objective.relative_residual(g);
+  const double residual = problem.objective.relative_residual(problem.q0, g);
   problem.objective.release_stress_limits();
   return residual < kMostResidual;
 }

@@ -152,7 +152,6 @@ std::optional<StressOutcome> not_converged(const Stressed& solved, double tolera
 double fresh_residual(const StressScene& subject, const Points& x) {
   Model model = build(subject.scene, subject.ground);
   if (model.objective->step_limiting_term() != nullptr) return kNaN;
-  model.objective->true_residual(model.q0);  // gives a scene without loads its scale
   Problem problem = problem_at(x, model);
   return model.objective->true_residual(problem.q0);
 }

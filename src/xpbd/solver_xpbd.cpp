@@ -197,7 +197,7 @@ class SolverXpbd final : public Solver {
       q = next;
       // The work that the tolerated force does along the scene.
       const bool is_slow =
-          system.kinetic_energy() <= monitor.tolerance() * objective.reference_force() * extent;
+          system.kinetic_energy() <= monitor.tolerance() * objective.reference_force(q) * extent;
       is_at_rest_ = is_slow;
       const bool goes_on =
           (stop == Status::Converged && !is_at_rest()) || (stop == Status::Stalled && !has_arrived_);

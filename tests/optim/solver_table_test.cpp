@@ -163,7 +163,7 @@ TEST_P(SolverOnScene, ReachesTheCommonEquilibrium) {
   Vector g;
   scene.objective->gradient(result.q, g);
   if (!scene.objective->has_circulatory_force()) {  // there the energy depends on the moment of renewal
-    EXPECT_EQ(scene.objective->relative_residual(g), result.residual);
+    EXPECT_EQ(scene.objective->relative_residual(result.q, g), result.residual);
     EXPECT_NEAR(result.energy / reference.energy, 1, 1e-9);
   }
   const Points x = scene.objective->positions(result.q),

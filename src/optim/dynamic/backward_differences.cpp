@@ -79,8 +79,8 @@ class BackwardDifferences final : public TimeIntegrator {
   }
 
   bool is_enough() const {
-    return objective_.relative_residual(imbalance_) <=
-           std::max(kEnough * objective_.relative_residual(now_.g), 0.1 * monitor_.tolerance());
+    return objective_.relative_residual(now_.q, imbalance_) <=
+           std::max(kEnough * objective_.relative_residual(now_.q, now_.g), 0.1 * monitor_.tolerance());
   }
 
   // From the symmetric part of the tangent, corrected for the skew one where that leads downhill too.

@@ -95,7 +95,7 @@ class SolverDynamic final : public Solver {
       h = std::min(h, integrator->next_step(h, at));
     while (true) {
       // The work that the tolerated force does along the scene.
-      is_at_rest_ = kinetic <= monitor.tolerance() * objective.reference_force() * extent;
+      is_at_rest_ = kinetic <= monitor.tolerance() * objective.reference_force(at.q) * extent;
       const auto status = monitor.accept(at.q, at.energy + kinetic, at.g, at.time);
       if (status != Status::NonFinite) q = at.q;
       if (status && (*status != Status::Converged || is_at_rest_)) return *status;

@@ -62,7 +62,7 @@ bool has_clear_forces(Objective& objective, const Vector& q) {
     if (term->role() == TermRole::Load) return true;
   const Points reactions = objective.reactions(q);
   return reactions.size() > 0 &&
-         std::sqrt(reactions.colwise().squaredNorm().maxCoeff()) > 1e-3 * objective.reference_force();
+         std::sqrt(reactions.colwise().squaredNorm().maxCoeff()) > 1e-3 * objective.reference_force(q);
 }
 
 // Numbers of the nodes of blocks of three unknowns.
@@ -75,9 +75,9 @@ std::vector<int> nodes_of(const std::vector<int>& blocks, const FixedMask& fixed
 }
 
 // What resists less, costs nothing beside the scene [force/length].
-double negligible_stiffness(const Objective& objective, const Vector& q, double tolerance) {
+double negligible_stiffness(Objective& objective, const Vector& q, double tolerance) {
   const double extent = objective.extent(q);
-  return extent > 0 ? std::max(kNegligible, 10 * tolerance) * objective.reference_force() / extent : 0;
+  return extent > 0 ? std::max(kNegligible, 10 * tolerance) * objective.reference_force(q) / extent : 0;
 }
 
 StabilityReport stability_at(Objective& objective, const Vector& q, double tolerance,

@@ -45,7 +45,7 @@ StationarySearch reach_stationary_point(Objective& objective, Vector& q, Monitor
   for (int k = 0;; ++k) {
     const double energy = monitor.hessian(q, g, h, Projection::None);
     if (!g.allFinite()) break;
-    search.least_residual = std::min(search.least_residual, objective.relative_residual(g));
+    search.least_residual = std::min(search.least_residual, objective.relative_residual(q, g));
     const std::optional<Status> end = monitor.accept(q, energy, g);
     search.is_found = end == Status::Converged;
     if (end || k == kMostSteps || !newton_step(h, g, step)) break;
