@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "formats/json/suggestion.hpp"
+#include "formats/json/units.hpp"
 
 #include <algorithm>
 
@@ -21,13 +22,13 @@ std::vector<ValveModel> models() {
            "springs of Hammer et al. 2008",
            1,
            "40 MPa",
-           "16 kPa",
+           "13 kPa",
            {{"young_pre", "\"100 kPa\""}, {"young_post", "\"6 MPa\""}, {"transition_strain", "0.25"}}},
           {"hammer-2011",
            "springs after Hammer et al. 2011",
            1,
            "40 MPa",
-           "13 kPa",
+           "120 mmHg",
            {{"fibre_young_pre", "\"0.5 MPa\""},
             {"fibre_young_post", "\"6 MPa\""},
             {"fibre_transition", "0.15"},
@@ -58,6 +59,7 @@ void apply_valve_model(const std::string& name, Valve& valve, ImportOptions& opt
   valve.name += ", " + std::string(model->title);
   options.chord_young = model->chord_young;
   options.pressure = model->pressure;
+  valve.pressure = quantity_value(model->pressure, kPressure);
   options.bends = false;
 }
 
