@@ -19,7 +19,7 @@ namespace coapt {
 
 struct ContactFacetOptions {
   double range = 0;     // delta [length]
-  int exponent = 3;     // n; the stiffness is continuous at d = delta from n = 3 on, 2 is the source's
+  int exponent = 3;     // n; the stiffness is continuous at d = delta from n = 3 on, the source names none
   double strength = 0;  // C [force/length^3]
   int quadrature = 3;   // points per (sub)triangle: 1, 3 or 6 (exact to degree 1, 2, 4)
   int subdivision = 1;  // the rule is applied to subdivision^2 congruent parts of each facet

@@ -32,7 +32,7 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
     }
   nodal_gradient_.resize(3, x_.cols());
   normal_motion_ = NormalMotion(terms_, x_, block_, fixed_);
-  scale_.measure_reference(terms_, reference_, fixed_);
+  measure_reference();
 }
 
 Vector Objective::unknowns(const Points& x) const {
@@ -178,6 +178,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   }
   double* gradient = g == nullptr ? nullptr : nodal_gradient_.data();
   if (gradient != nullptr) {
+    measure_reference();
     nodal_gradient_.setZero();
     scale_is_current_ = false;
   }

@@ -120,8 +120,8 @@ class Objective {
   double true_residual(const Vector& q);
 
   // The terms have other data than before (a parameter was set): what the reference state says is measured
-  // anew.
-  void renew_reference();
+  // anew, with the next gradient.
+  void renew_reference() { reference_is_current_ = scale_is_current_ = false; }
 
   // Greatest force of the last gradient evaluation, reactions of a prestress included [force]: what round-off
   // is measured against.
@@ -190,6 +190,7 @@ class Objective {
   Points exact_circulatory_force() const;  // at x_, as the gradient, whatever potential was chosen
   Points exact_gradient(const Points& circulatory) const;
   const ForceScale& scale_at(const Vector& q);
+  void measure_reference();
 
   Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
@@ -217,6 +218,7 @@ class Objective {
   double sliding_force_ = 0;       // left out there [force]
   Vector scale_at_;                // its unknowns
   bool scale_is_current_ = false;  // nothing else has changed since
+  bool reference_is_current_ = false;
 
   HessianPattern pattern_;
   bool pattern_is_current_ = false;

@@ -16,9 +16,10 @@ double largest_nodal_force(const Vector& g) {
 
 }  // namespace
 
-void Objective::renew_reference() {
+void Objective::measure_reference() {
+  if (reference_is_current_) return;
   scale_.measure_reference(terms_, reference_, fixed_);
-  scale_is_current_ = false;
+  reference_is_current_ = true;
 }
 
 const ForceScale& Objective::scale_at(const Vector& q) {
@@ -52,6 +53,7 @@ double Objective::true_residual(const Vector& q) {
     return relative_residual(q, g);
   }
   ++counts_.gradient;
+  measure_reference();
   scale_is_current_ = false;  // from here on it is that of the exact load
   prepare(q);
   const Points circulatory = exact_circulatory_force();

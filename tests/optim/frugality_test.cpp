@@ -72,8 +72,8 @@ TEST_F(Frugality, AnObjectiveHoldsItsNodesAndNothingForTermsThatItLacks) {
     return allocations().live - before - 8 * (q.size() + g.size());
   };
   // Position, prescribed coordinates, number of its block, the way back in a list that doubles its room,
-  // gradient.
-  const long per_node = 24 + 3 + 4 + 8 + 24, nodes = scene.X.cols();
+  // gradient; the reference state and the unknowns last evaluated, which the force scale belongs to.
+  const long per_node = 24 + 3 + 4 + 8 + 24 + 24 + 24, nodes = scene.X.cols();
   const long membrane = held(only(scene, {"cst_tension_field"}));
   EXPECT_LE(membrane, per_node * nodes + 1000);
   EXPECT_EQ(held(only(scene, {"cst_tension_field", "bending", "cable"})), membrane);
