@@ -30,6 +30,20 @@ PairCorners gather(const Points& x, const int* nodes) {
   return corners;
 }
 
+// Whether the boxes around the two features are `range` apart, which costs a fifth of their distance.
+template <int kFirst>
+bool boxes_are_apart(const PairCorners& x, double range) {
+  const auto a = x.leftCols<kFirst>().array(), b = x.rightCols<4 - kFirst>().array();
+  const Eigen::Array3d gap = (b.rowwise().minCoeff() - a.rowwise().maxCoeff())
+                                 .max(a.rowwise().minCoeff() - b.rowwise().maxCoeff())
+                                 .max(0.0);
+  return gap.matrix().squaredNorm() >= range * range;
+}
+
+bool are_apart(PairKind kind, const PairCorners& x, double range) {
+  return kind == PairKind::PointTriangle ? boxes_are_apart<1>(x, range) : boxes_are_apart<2>(x, range);
+}
+
 double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, double most) {
   return kind == PairKind::PointTriangle ? point_triangle_step(x, d, most, kKeptDistance)
                                          : edge_edge_step(x, d, most, kKeptDistance);
@@ -56,6 +70,7 @@ struct Candidates {
     for (size_t k = 0; k < rest.size(); ++k) {
       const int* nodes = &stencils.nodes[4 * k];
       const PairCorners corners = gather(x, nodes);
+      if (are_apart(rest[k].kind, corners, rest[k].range)) continue;
       const ClosestPair closest = closest_points(rest[k].kind, corners);
       if (closest.distance >= rest[k].range) continue;
       ++active;
@@ -223,7 +238,9 @@ class ContactBarrier final : public EnergyTerm {
 
   // A pair that at x is less than `ahead` from its range.
   void add_candidate(const FeaturePair& pair, const Points& x, double ahead, Candidates& candidates) const {
-    const double distance = closest_points(pair.kind, gather(x, pair.nodes.data())).distance;
+    const PairCorners corners = gather(x, pair.nodes.data());
+    if (are_apart(pair.kind, corners, gap_ + ahead)) return;
+    const double distance = closest_points(pair.kind, corners).distance;
     if (distance >= gap_ + ahead) return;
     const PairCorners at_rest = gather(surface_.rest(), pair.nodes.data());
     const double range = std::min(gap_, kShareOfRest * closest_points(pair.kind, at_rest).distance);
