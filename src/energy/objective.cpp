@@ -60,6 +60,24 @@ void Objective::scale(double load, double stiffness) {
   scale_is_current_ = false;
 }
 
+void Objective::damp(const Vector& coefficients, const Vector& from) {
+  damping_ = coefficients;
+  damped_from_ = from;
+  for (size_t k = 0; is_damped() && k < active_.size(); ++k)
+    damping_.segment<3>(3 * k) = fixed_.col(active_[k]).select(0, damping_.segment<3>(3 * k).array());
+}
+
+// Their energy at q; adds their force and stiffness where asked.
+double Objective::add_dampers(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h) const {
+  const Vector moved = q - damped_from_;
+  if (g != nullptr) *g += damping_.cwiseProduct(moved);
+  for (int block = 0; h != nullptr && 3 * block < damping_.size(); ++block) {
+    const BlockSlot slot = pattern_.slot(block, block);
+    for (int c = 0; c < 3; ++c) h->valuePtr()[slot.base + c * slot.stride + c] += damping_[3 * block + c];
+  }
+  return 0.5 * damping_.dot(moved.cwiseAbs2());
+}
+
 bool Objective::round_kinks(double share) {
   bool has_kinks = false;
   for (const auto& term : terms_) has_kinks = term->round_kinks(share) || has_kinks;
@@ -209,9 +227,10 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
     pattern_.mask(*h);
     if (!normal_motion_.is_empty()) normal_motion_.restrict_hessian(*h);
   }
+  if (gradient != nullptr) split(nodal_gradient_, *g);
+  if (is_damped()) energy += add_dampers(q, g, h);
   if (gradient == nullptr) return energy;
 
-  split(nodal_gradient_, *g);
   scale_at_ = q;
   scale_is_current_ = true;
   return energy;

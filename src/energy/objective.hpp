@@ -70,6 +70,12 @@ class Objective {
   // scaled alike leave an equilibrium where it is.
   void scale(double load, double stiffness);
 
+  // Holds each unknown by a damper, a force c (q - from) and its potential: one step of implicit Euler along
+  // a damped path. coefficients: c of each unknown, >= 0 [force/length]; empty: no dampers, as from the
+  // start. Loads, reactions and the force scale do not count them.
+  void damp(const Vector& coefficients, const Vector& from);
+  bool is_damped() const { return damping_.size() > 0; }
+
   // Rounds the kinks of all terms, as EnergyTerm::round_kinks() does. Returns whether there are any.
   bool round_kinks(double share);
 
@@ -108,6 +114,9 @@ class Objective {
   // Out-of-balance force at q relative to the reference force: largest nodal norm of g over
   // reference_force().
   double relative_residual(const Vector& q, const Vector& g);
+
+  // Sum of the magnitudes of the nodal loads at q, as they are scaled now [force].
+  double total_load(const Vector& q);
 
   // Greatest nodal force along films of constant tension, which the mesh makes and neither gradient nor
   // residual has, over reference_force(); 0 where there is none.
@@ -189,6 +198,8 @@ class Objective {
   void add_circulatory_tangent(Eigen::SparseMatrix<double>& h);
   Points exact_circulatory_force() const;  // at x_, as the gradient, whatever potential was chosen
   Points exact_gradient(const Points& circulatory) const;
+  Points exact_load() const;  // at x_
+  double add_dampers(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h) const;
   const ForceScale& scale_at(const Vector& q);
   void measure_reference();
 
@@ -199,6 +210,7 @@ class Objective {
   std::vector<int> block_;                          // block of each node, -1 = wholly prescribed
   int free_count_ = 0;
   double load_factor_ = 1, stiffness_factor_ = 1;
+  Vector damping_, damped_from_;  // of each unknown; empty: no dampers
   int threads_ = 1;
   bool has_stress_limits_ = false;
 

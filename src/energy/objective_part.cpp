@@ -21,6 +21,14 @@ std::unique_ptr<Objective> Objective::part(const Vector& q, const std::vector<in
   part->normal_motion_ = {};
   part->load_factor_ = load_factor_;
   part->stiffness_factor_ = stiffness_factor_;
+  if (is_damped()) {
+    Vector damping(part->unknown_count()), from(part->unknown_count());
+    for (size_t k = 0; k < blocks.size(); ++k) {
+      damping.segment<3>(3 * k) = damping_.segment<3>(3 * blocks[k]);
+      from.segment<3>(3 * k) = damped_from_.segment<3>(3 * blocks[k]);
+    }
+    part->damp(damping, from);
+  }
   part->scale_.give(reference_force(q));
   if (circulatory_ == Circulatory::PathWork) part->follow_path(part->unknowns(part->x_));
   return part;

@@ -46,6 +46,18 @@ Points Objective::exact_gradient(const Points& circulatory) const {
   return g - circulatory;
 }
 
+Points Objective::exact_load() const {
+  Points gradient = -exact_circulatory_force();
+  for (const auto& term : terms_)
+    if (term->role() == TermRole::Load) pour(term->simplest(), Sink(gradient.data()));
+  return -gradient;  // the force on the nodes is minus the gradient of the potential
+}
+
+double Objective::total_load(const Vector& q) {
+  prepare(q);
+  return exact_load().colwise().norm().sum();
+}
+
 double Objective::true_residual(const Vector& q) {
   Vector g;
   if (!has_circulatory_force()) {
@@ -56,12 +68,9 @@ double Objective::true_residual(const Vector& q) {
   measure_reference();
   scale_is_current_ = false;  // from here on it is that of the exact load
   prepare(q);
-  const Points circulatory = exact_circulatory_force();
-  Points load = -circulatory;
-  for (const auto& term : terms_)
-    if (term->role() == TermRole::Load) pour(term->simplest(), Sink(load.data()));
-  scale_.measure_loads(load, fixed_);
-  split(exact_gradient(circulatory), g);
+  scale_.measure_loads(-exact_load(), fixed_);
+  split(exact_gradient(exact_circulatory_force()), g);
+  if (is_damped()) add_dampers(q, &g, nullptr);
   if (!g.allFinite()) return kInfinity;
   const double force = largest_nodal_force(g);
   return force == 0 ? 0 : force / scale_.force();
@@ -73,12 +82,7 @@ Points Objective::reactions(const Vector& q) {
 }
 
 Balance Objective::balance(const Vector& q) {
-  const Points support = reactions(q);
-  Points load = Points::Zero(3, node_count());
-  for (const auto& term : terms_)
-    if (term->role() == TermRole::Load) pour(term->simplest(), Sink(load.data()));
-  load -= exact_circulatory_force();
-  load = -load;  // the force on the nodes is minus the gradient of the potential
+  const Points support = reactions(q), load = exact_load();
   const Vec3 centre = x_.cols() == 0 ? Vec3::Zero() : Vec3(x_.rowwise().mean());
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double force_sum = 0, moment_sum = 0;

@@ -114,10 +114,11 @@ class Newton {
 
   // From a start whose forces exceed its loads, because stiff chords already pull, many of them become slack
   // and taut again and again, and the Hessian sees neither coming. With kinks as wide as the chords are long
-  // it does. Not with contact: loose chords let sheets pass through each other where a repulsion is finite.
+  // it does. Not where dampers carry over such kinks; not with contact: loose chords let sheets pass through
+  // each other where a repulsion is finite.
   bool wants_rounding() const {
     const auto& terms = objective_.terms();
-    return objective_.relative_residual(at_.q, at_.g) > kOverloaded &&
+    return !objective_.is_damped() && objective_.relative_residual(at_.q, at_.g) > kOverloaded &&
            std::none_of(terms.begin(), terms.end(), [](const auto& term) {
              return term->role() == TermRole::Contact && !term->limits_steps();
            });

@@ -1,6 +1,7 @@
 #include "optim/path_following.hpp"
 
 #include "optim/carry_along.hpp"
+#include "optim/prescribed_motion.hpp"
 #include "optim/stability/branch_watch.hpp"
 
 #include <algorithm>
@@ -14,51 +15,13 @@ constexpr int kMaxRounds = 100;            // renewals of a load without potenti
 constexpr int kMaxRoundsWithoutGain = 12;  // of them in a row that better nothing
 constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
 constexpr double kBranchTolerance = 1e-4;  // and an intermediate load, which has to stay on its branch
-constexpr double kLeastMotion = 1e-4;  // of the whole prescribed motion, that collisions may leave of a step
-constexpr int kLeastPath = 3;          // steps of a path on which a change of branch can be told
-constexpr int kMostStiffenings = 5;    // of a contact that proves too soft
+constexpr int kLeastPath = 3;              // steps of a path on which a change of branch can be told
+constexpr int kMostStiffenings = 5;        // of a contact that proves too soft
 
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-bool ends_the_run(Status status) {
-  return status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
-         status == Status::NonFinite || status == Status::NoEquilibrium;
-}
-
-// Whether a solver can begin there: a law that stiffens exponentially overflows where a sliver is stretched.
-bool is_finite(Objective& objective, const Vector& q) {
-  Vector g;
-  return std::isfinite(objective.gradient(q, g)) && std::isfinite(g.squaredNorm());
-}
-
-struct Move {
-  double reached = 0;          // of the prescribed motion
-  bool is_overloaded = false;  // the energy, not a collision, was in the way of the rest
-};
-
-// Moves the prescribed nodes from where they are at `from` towards `to`, the free ones carried along, as far
-// as no collision is in the way and the energy stays finite.
-Move move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {
-  const Points start = objective.positions(q);
-  bool is_overloaded = false;
-  for (double t = to; t > from; t = from + 0.5 * (t - from)) {
-    const Points x = motion.positions(t);
-    const Vector carried = carried_along(objective, q, x);
-    objective.prescribe(x);
-    const bool is_free = objective.step_limit(start, objective.positions(carried) - start, 1) == 1;
-    if (is_free && is_finite(objective, carried)) {
-      q = carried;
-      return {t, is_overloaded};
-    }
-    is_overloaded = is_free;
-    objective.prescribe(start);
-    if (t - from < kLeastMotion) break;
-  }
-  return {from, is_overloaded};
 }
 
 // Loads and stiffnesses at t of the path.
@@ -100,6 +63,23 @@ std::string described(const BranchChange& change) {
 }
 
 }  // namespace
+
+bool ends_the_run(Status status) {
+  return status == Status::Cancelled || status == Status::TimeLimit || status == Status::IterationLimit ||
+         status == Status::NonFinite || status == Status::NoEquilibrium;
+}
+
+Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) {
+  Outcome outcome;
+  outcome.is_on_the_way = true;
+  const bool is_lost = move.is_overloaded && !is_finite(objective, q);
+  outcome.status = is_lost ? Status::NonFinite : Status::Stalled;
+  outcome.note =
+      (move.is_overloaded ? "the prescribed motion stretches an element until its energy is not finite, at "
+                          : "the prescribed motion presses facets against each other, at ") +
+      number(100 * move.reached) + " % of it";
+  return outcome;
+}
 
 Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
               int& rounds, std::string& note) {
@@ -151,9 +131,8 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   const double on_the_way = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
   BranchWatch branches(path_means(solver, problem, stop, monitor, result.rounds));
   Outcome outcome;
-  double moved = 0;  // of the prescribed motion
-  bool is_blocked = false, is_overloaded = false;
-  bool has_arrived = true;
+  Move move;
+  bool is_blocked = false, has_arrived = true;
   int step = 1;
   for (; step <= steps; ++step) {
     const double t = static_cast<double>(step) / steps;
@@ -161,11 +140,10 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
     do {
       if (!has_arrived) {
         if (solver.raises_stress_limits()) objective.limit_stress(result.q);
-        const Move move = move_prescribed(problem.motion, moved, t, objective, result.q);
+        const double moved = move.reached;
+        move = move_prescribed(problem.motion, moved, t, objective, result.q);
         has_arrived = move.reached == t;
         is_blocked = !has_arrived && move.reached - moved < kLeastMotion;
-        is_overloaded = move.is_overloaded;
-        moved = move.reached;
         if (is_blocked) break;
       }
       set_scales(continuation, t, objective);
@@ -186,16 +164,10 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   }
   // A run that was cut short is judged, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
-  outcome.is_on_the_way = step < steps || is_blocked || !has_arrived;
-  if (is_blocked) {
-    const bool is_lost = is_overloaded && !is_finite(objective, result.q);
-    outcome.status = is_lost ? Status::NonFinite : Status::Stalled;
-    outcome.note =
-        (is_overloaded ? "the prescribed motion stretches an element until its energy is not finite, at "
-                       : "the prescribed motion presses facets against each other, at ") +
-        number(100 * moved) + " % of it";
-  } else if (!has_arrived)
-    outcome.note = "after " + number(100 * moved) + " % of the prescribed motion";
+  if (is_blocked) return blocked_motion(move, objective, result.q);
+  outcome.is_on_the_way = step < steps || !has_arrived;
+  if (!has_arrived)
+    outcome.note = "after " + number(100 * move.reached) + " % of the prescribed motion";
   else if (outcome.is_on_the_way)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
                    " of the prescribed motion or of the continuation";

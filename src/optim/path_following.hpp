@@ -2,6 +2,7 @@
 #pragma once
 
 #include "optim/monitor.hpp"
+#include "optim/prescribed_motion.hpp"
 
 #include <string>
 
@@ -20,6 +21,12 @@ struct Outcome {
 // loads and the full stiffness.
 Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                     Result& result);
+
+// Whether nothing can follow on a minimization that ended like this.
+bool ends_the_run(Status status);
+
+// What there is to say where the prescribed motion goes no further.
+Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q);
 
 // Solves at the full problem from q, in rounds of the monitor's. A load without potential is renewed until
 // the exact residual is small, where the solver does not work from the exact force: each round minimises the

@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "optim/bfgs.hpp"
+#include "optim/damped_path.hpp"
 #include "optim/dynamic/dynamic.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
@@ -175,7 +176,7 @@ StationarySearch reach_stationary_film(Objective& objective, Vector& q, Monitor&
 bool find_free_film(const Problem& problem, const StopRule& stop, Monitor& monitor, Vector& q) {
   Objective& objective = problem.objective;
   if (problem.motion.positions || problem.continuation.load_steps > 1 ||
-      problem.continuation.stiffness_steps > 1)
+      problem.continuation.stiffness_steps > 1 || problem.continuation.damped_steps > 0)
     return false;
   const auto films = free_films(objective, objective.positions(q));
   if (!films || films->balanced.size() == 0) return false;
@@ -219,7 +220,8 @@ Found run_solver(Solver& solver, const Problem& problem, const StopRule& stop, M
   }
   const Vector start = result.q;
   Outcome& outcome = found.outcome;
-  outcome = follow_path(solver, problem, stop, monitor, result);
+  const bool is_damped = problem.continuation.damped_steps > 0 && solver.minimises_objective();
+  outcome = (is_damped ? follow_damped_path : follow_path)(solver, problem, stop, monitor, result);
   for (int turn = 0;
        turn < kMostTurns && outcome.status != Status::NoEquilibrium && outcome.status != Status::Cancelled &&
        !monitor.is_out_of_time() && objective.turn_films(result.q);

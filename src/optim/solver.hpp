@@ -77,6 +77,10 @@ class Solver {
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
 
+  // Whether minimize() goes by the energy of the objective alone. A method with laws of its own is led along
+  // no damped path.
+  virtual bool minimises_objective() const { return true; }
+
   // Asked before the first minimize(): whether the method carries the prescribed nodes along this path itself
   // as time goes on. Those of other methods are moved in steps, with a minimize() after each.
   virtual bool takes_motion(const MotionPath& /*motion*/) { return false; }
@@ -99,6 +103,7 @@ struct Continuation {
   int load_steps = 1;          // equal steps of all loads; 1: the full load at once
   int stiffness_steps = 1;     // steps of all other energies, in equal ratios; 1: the full stiffness at once
   double first_stiffness = 1;  // factor before the first step
+  int damped_steps = 0;  // equal steps of all loads along a damped path (optim/damped_path.hpp); 0: none
 };
 
 struct Problem {
@@ -127,8 +132,9 @@ struct Result {
   double energy = 0;    // potential energy [force x length]
   double residual = 0;  // relative, exact loads, measured by the objective after the solver returned
   int iterations = 0;
-  std::string route;  // how a load without potential was treated, for the user; empty = there was none
-  int rounds = 0;     // outer renewals of such a load
+  std::string route;     // how a load without potential was treated, for the user; empty = there was none
+  int rounds = 0;        // outer renewals of such a load
+  int damped_steps = 0;  // along a damped path, those at the full problem included
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;

@@ -14,6 +14,7 @@ struct CascadeLevel {
   Status status = Status::Converged;
   double residual = 0;           // relative, on its own mesh
   double wall_s = 0, cpu_s = 0;  // of coarsening, building and solving
+  int damped_steps = 0;          // Result::damped_steps
 };
 
 struct CascadeOutcome {

@@ -14,10 +14,11 @@ constexpr int kLongWay = 40;
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels) {
   NeighbourCheck check;
-  if (solver != "newton" || result.status != Status::Converged) return check;
+  if (solver != "newton" || result.status != Status::Converged || result.damped_steps > 0) return check;
   check.is_made = true;
   check.iterates = result.iterations;
-  for (const CascadeLevel& level : levels) check.iterates = std::max(check.iterates, level.iterations);
+  for (const CascadeLevel& level : levels)
+    if (level.damped_steps == 0) check.iterates = std::max(check.iterates, level.iterations);
   check.is_suspected = check.iterates >= kLongWay;
   return check;
 }

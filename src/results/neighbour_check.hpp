@@ -16,8 +16,8 @@ struct NeighbourCheck {
 };
 
 // From the iterates that newton needed. A long way is one over kinks, snaps and turns: where it ends, small
-// changes decide. A suspicion, no proof either way; docs/decisions/010-branches.md has its hit rate, and why
-// no look around the equilibrium does better.
+// changes decide. The way of a damped path is long by design, and is not judged. A suspicion, no proof either
+// way; docs/decisions/010-branches.md has its hit rate, and why no look around the equilibrium does better.
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels);
 

@@ -287,6 +287,7 @@ std::string result_schema() {
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
               {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"damped_steps", count("steps along a damped path, on the scene's own mesh; 0: none")},
               {"potential_changes", potential_changes()},
               {"branch_changes", branch_changes()},
               {"evaluations", object({{"value", count("energy alone")},

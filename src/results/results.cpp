@@ -284,6 +284,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
       {"rounds", result.rounds},
+      {"damped_steps", result.damped_steps},
       {"potential_changes", potential_changes_json(result.trace)},
       {"branch_changes", branch_changes_json(result.branch_changes)},
       {"evaluations",

@@ -114,7 +114,7 @@ class Cascade {
     const std::unique_ptr<Solver> solver = make_solver_(model);
     Result result = solve(*solver, problem, stop, observer_);
     outcome.levels.push_back({model.mesh.triangle_count(), result.iterations, result.status, result.residual,
-                              wall_seconds() - level_wall_, cpu_seconds() - level_cpu_});
+                              wall_seconds() - level_wall_, cpu_seconds() - level_cpu_, result.damped_steps});
     level_wall_ = wall_seconds();
     level_cpu_ = cpu_seconds();
     return result;

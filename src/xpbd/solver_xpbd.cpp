@@ -79,6 +79,8 @@ class SolverXpbd final : public Solver {
   bool is_at_rest() const override { return is_at_rest_ && has_arrived_; }
   std::string remark() const override { return remark_; }
 
+  bool minimises_objective() const override { return false; }
+
   bool takes_motion(const MotionPath& motion) override {
     motion_ = motion;
     has_arrived_ = false;

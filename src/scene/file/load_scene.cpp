@@ -252,6 +252,7 @@ SolverSpec solver_from(const Parameters& values) {
     solver.continuation.load_steps = continuation.integer("load_steps");
     solver.continuation.stiffness_steps = continuation.integer("stiffness_steps");
     solver.continuation.first_stiffness = continuation.number("first_stiffness");
+    solver.continuation.damped_steps = continuation.integer("damped_steps");
   }
   if (values.has("dynamics")) solver.dynamic = dynamics_from(values.object("dynamics"));
   XpbdOptions xpbd = values.has("xpbd") ? xpbd_from(values.object("xpbd")) : XpbdOptions{};
@@ -270,6 +271,17 @@ void check_substance(const Scene& scene, const Json& json, const std::string& fi
                                        [](const TermSpec& term) { return term.parameters.has("network"); });
   if (reading.defects.empty() && !scene.mesh && !has_network)
     reading.defects.push_back(file + ": mesh: missing; a scene needs a mesh, or a term with a `network`");
+}
+
+void check_continuation(const Parameters& values, const std::string& file, Reading& reading) {
+  const Parameters& solver = values.object("solver");
+  if (!solver.has("continuation")) return;
+  const Parameters& continuation = solver.object("continuation");
+  if (continuation.integer("damped_steps") > 0 &&
+      std::max(continuation.integer("load_steps"), continuation.integer("stiffness_steps")) > 1)
+    reading.defects.push_back(file +
+                              ": solver.continuation: damped_steps raise the loads themselves; leave out "
+                              "load_steps and stiffness_steps, or damped_steps");
 }
 
 // The mesh is the scene's own, or the caller has it in memory.
@@ -311,6 +323,7 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
     scene.writes_page = output.has("report") && output.flag("report");
   }
   check_generated(scene, file, reading);
+  check_continuation(values, file, reading);
   if (!has_mesh_in_memory) check_substance(scene, json, file, reading);
   if (!reading.defects.empty()) throw InputError(reading.defects);
   scene.solver = solver_from(values.object("solver"));

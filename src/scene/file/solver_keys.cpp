@@ -182,7 +182,16 @@ KeySpec continuation_key() {
                                .fallback = "0.01",
                                .min = 0,
                                .excludes_min = true,
-                               .doc = "Factor on the stiffness before the first step."}}},
+                               .doc = "Factor on the stiffness before the first step."},
+                              {.name = "damped_steps",
+                               .kind = KeyKind::Integer,
+                               .fallback = "0",
+                               .min = 0,
+                               .max = 100000,
+                               .doc = "Equal steps of all loads and of the prescribed motion along a damped "
+                                      "path, which leads to the same shape whatever the order of the nodes "
+                                      "and the method, at two to four times the time; 0: none. It takes "
+                                      "neither load_steps nor stiffness_steps."}}},
           .doc =
               "Way to the full problem by easier ones, together with the prescribed "
               "motion; default: the full problem at once."};

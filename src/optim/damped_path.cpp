@@ -1,0 +1,102 @@
+#include "optim/damped_path.hpp"
+
+#include "optim/prescribed_motion.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr double kTravel = 0.2;  // of the extent, by which its share of the loads moves a node in one step
+constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
+constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
+constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
+constexpr int kMostStepsAtRest = 200;    // at the full problem
+constexpr int kMostWithoutMotion = 3;    // steps in a row in which the prescribed motion gets no further
+
+class DampedPath {
+ public:
+  DampedPath(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor, Result& result)
+      : solver_(solver), problem_(problem), stop_(stop), monitor_(monitor), result_(result) {}
+
+  Outcome follow() {
+    Objective& objective = problem_.objective;
+    const double extent = objective.extent(result_.q), nodes = static_cast<double>(result_.q.size()) / 3;
+    if (extent > 0 && nodes > 0) damping_ = objective.total_load(result_.q) / (kTravel * extent * nodes);
+    while (!has_ended() && !is_at_rest()) take_step();
+    objective.scale(1, 1);
+    if (!has_ended()) {
+      outcome_.status =
+          settle(solver_, objective, result_.q, monitor_, stop_.tolerance, result_.rounds, outcome_.note);
+    } else {
+      outcome_.is_on_the_way = true;
+      if (outcome_.note.empty())
+        outcome_.note = "step " + std::to_string(result_.damped_steps) + " of the damped path";
+    }
+    return outcome_;
+  }
+
+ private:
+  bool has_ended() const { return is_blocked_ || ends_the_run(outcome_.status); }
+  double load() const {
+    return std::min(1.0, static_cast<double>(result_.damped_steps) / problem_.continuation.damped_steps);
+  }
+  bool is_at_full_problem() const { return load() == 1 && moved_ == 1; }
+
+  // Whether the dampers may go; weakens them by what the residual fell by.
+  bool is_at_rest() {
+    if (!is_at_full_problem()) return false;
+    const double residual = problem_.objective.true_residual(result_.q);
+    if (residual <= std::max(kAtRest, stop_.tolerance) || damping_ == 0) return true;
+    if (++steps_at_full_problem_ > kMostStepsAtRest) return true;
+    if (residual_ < kInfinity) damping_ *= std::clamp(residual / residual_, kMostFall, 1.0);
+    residual_ = residual;
+    return false;
+  }
+
+  void take_step() {
+    ++result_.damped_steps;
+    Objective& objective = problem_.objective;
+    objective.scale(load(), 1);
+    advance_motion();
+    if (is_blocked_) return;
+    objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
+    outcome_.status =
+        settle(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
+    objective.damp({}, {});
+  }
+
+  // What is pressed together or overstretched gives way in the next steps, up to a limit.
+  void advance_motion() {
+    if (!problem_.motion.positions) moved_ = load();
+    if (moved_ >= load()) return;
+    if (solver_.raises_stress_limits()) problem_.objective.limit_stress(result_.q);
+    const Move move = move_prescribed(problem_.motion, moved_, load(), problem_.objective, result_.q);
+    steps_without_motion_ = move.reached - moved_ < kLeastMotion ? steps_without_motion_ + 1 : 0;
+    moved_ = move.reached;
+    if (steps_without_motion_ < kMostWithoutMotion) return;
+    is_blocked_ = true;
+    outcome_ = blocked_motion(move, problem_.objective, result_.q);
+  }
+
+  Solver& solver_;
+  const Problem& problem_;
+  const StopRule& stop_;
+  Monitor& monitor_;
+  Result& result_;
+  Outcome outcome_;
+  double damping_ = 0;           // of each unknown [force/length]
+  double moved_ = 0;             // of the prescribed motion
+  double residual_ = kInfinity;  // of the last step at the full problem
+  int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
+  bool is_blocked_ = false;
+};
+
+}  // namespace
+
+Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                           Result& result) {
+  return DampedPath(solver, problem, stop, monitor, result).follow();
+}
+
+}  // namespace coapt

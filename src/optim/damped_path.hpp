@@ -1,0 +1,18 @@
+// The way from the start to the full problem as a damped quasi-static motion, which defines the equilibrium
+// that it comes to.
+#pragma once
+
+#include "optim/path_following.hpp"
+
+namespace coapt {
+
+// Follows c dq/dt = -dE/dq, with the same damping c for every node, by steps of implicit Euler: each is a
+// minimum of the energy with dampers to the state before, found by the solver. Loads and prescribed motion
+// grow together in continuation.damped_steps equal steps; at the full problem the dampers weaken as the
+// residual falls, and go. As a step has one minimum near its start, neither the order of nodes nor the method
+// decides where the path leads (docs/decisions/019). Of the result it changes q, rounds and damped_steps. A
+// run that is cut short stays where it had got to, with all loads.
+Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                           Result& result);
+
+}  // namespace coapt

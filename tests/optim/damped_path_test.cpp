@@ -1,0 +1,105 @@
+// A damped path: one shape whatever the order of nodes, the frame and the method.
+#include "optim/damped_path.hpp"
+
+#include "support/contact_scene.hpp"
+#include "support/meshes.hpp"
+#include "support/sanitized.hpp"
+#include "support/valve_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+constexpr int kSteps = 20;
+
+// A valve in contact, with its prescribed motion spread over the path.
+struct DampedValve {
+  ValveScene scene{{.triangles = 300, .contact_gap = 0.5}};
+
+  Method method(const Frame& frame = {}) const {
+    Method method = scene.method(1e-9, frame);
+    method.max_iterations = 100000;
+    method.continuation.damped_steps = kSteps;
+    method.motion.positions = [open = frame.points(scene.X), closed = frame.points(scene.closed)](double t) {
+      return Points((1 - t) * open + t * closed);
+    };
+    return method;
+  }
+
+  // Positions in the scene's own frame.
+  Equilibrium solve(const Frame& frame, const std::string& solver) const {
+    Method how = method(frame);
+    how.solver = solver;
+    Equilibrium found =
+        find_equilibrium(frame.points(scene.X), scene.fixed_in(frame), scene.terms(frame), how);
+    Points back = found.x;
+    for (int k = 0; k < back.cols(); ++k)
+      back.col(k) = frame.rotation.transpose() * found.x.col(frame.node(k));
+    found.x = back;
+    return found;
+  }
+};
+
+TEST(DampedPath, LeadsToOneShapeByEveryMethodAndInEveryFrame) {
+  if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
+  const DampedValve valve;
+  const Equilibrium given = valve.solve({}, "newton");
+  ASSERT_EQ(given.result.status, Status::Converged) << given.result.message;
+  EXPECT_GT(given.result.damped_steps, kSteps) << "it goes on at the full problem until it is at rest";
+  const std::vector<int> held = valve.scene.held_nodes(given.x);
+  ASSERT_GT(held.size(), 100u);
+  const Frame renumbered = renumbered_frame(static_cast<int>(valve.scene.X.cols()));
+  for (const auto& [frame, solver] : {std::pair<Frame, std::string>{renumbered, "newton"},
+                                      {rotated_frame(), "newton"},
+                                      {{}, "lbfgs"},
+                                      {{}, "bfgs"}}) {
+    const Equilibrium other = valve.solve(frame, solver);
+    ASSERT_EQ(other.result.status, Status::Converged) << other.result.message;
+    double most = 0;
+    for (const int node : held) most = std::max(most, (other.x - given.x).col(node).norm());
+    EXPECT_LT(most, 1e-6) << solver;
+  }
+}
+
+TEST(DampedPath, KeepsFacetsApartAtEveryIterate) {
+  if (is_sanitized()) GTEST_SKIP() << "switched off under the sanitizers: time";
+  const DampedValve valve;
+  const ValveScene& scene = valve.scene;
+  const Judged judged = solve_judged(scene.X, scene.fixed, scene.terms(), scene.triangles,
+                                     scene.triangles.cols(), valve.method());
+  EXPECT_EQ(judged.found.result.status, Status::Converged) << judged.found.result.message;
+  EXPECT_EQ(judged.intersections, 0);
+  EXPECT_GT(judged.iterates, kSteps);
+}
+
+TEST(DampedPath, SaysWhereItWasCutShort) {
+  const DampedValve valve;
+  Method method = valve.method();
+  method.max_iterations = 12;
+  const Equilibrium found = find_equilibrium(valve.scene.X, valve.scene.fixed, valve.scene.terms(), method);
+  EXPECT_EQ(found.result.status, Status::IterationLimit);
+  EXPECT_NE(found.result.message.find("of the damped path"), std::string::npos) << found.result.message;
+  EXPECT_TRUE(found.x.allFinite());
+  EXPECT_GT(found.result.residual, 1e-3) << "with all loads, and without dampers";
+}
+
+// Without loads there is nothing that dampers could be measured by, and nothing that they must hold.
+TEST(DampedPath, TakesItsStepsWithoutDampersWhereNothingLoads) {
+  const TriangleMesh mesh = grid_mesh(4, 4);
+  Objective objective(mesh.vertices, fixed_nodes(mesh.vertex_count(), rim_of(mesh)),
+                      terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
+  Problem problem{objective, objective.unknowns()};
+  problem.continuation.damped_steps = 3;
+  problem.motion.positions = [&](double t) { return Points((1 + 0.1 * t) * mesh.vertices); };
+  const auto solver = built_in_solvers().at("newton")({});
+  const Result result = solve(*solver, problem, {.tolerance = 1e-9});
+  EXPECT_EQ(result.status, Status::Converged) << result.message;
+  EXPECT_EQ(result.damped_steps, 3);
+  EXPECT_LT((objective.positions(result.q) - 1.1 * mesh.vertices).norm(), 1e-6) << "stretched evenly";
+}
+
+}  // namespace
+}  // namespace coapt
