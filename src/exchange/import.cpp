@@ -30,6 +30,10 @@ constexpr const char* kUsualPressure = "120 mmHg";
 // finest mesh over eight rough valves of 6,000 triangles, a third less in the median of eight of 2,500.
 constexpr int kCascadeTriangles = 3000;
 
+// Of a damped path, which leads to one shape whatever the order of nodes, the frame and the method
+// (docs/decisions/019): fewer steps let small changes decide on more valves.
+constexpr int kDampedSteps = 20;
+
 using detail::digits;
 using detail::law_terms;
 using detail::quoted;
@@ -133,7 +137,11 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
   text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
   text += "  \"boundary\": " + boundary_text(valve) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
+  text +=
+      "  // Loads and motion grow together along a damped path: slower than a solve at once, but one "
+      "shape.\n";
   text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) +
+          ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
           (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
   return text + "\n}\n";
