@@ -8,8 +8,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 OrderedJson reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
 OrderedJson object_schema(const ObjectSpec& spec);
