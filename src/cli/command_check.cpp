@@ -37,7 +37,7 @@ void print_table(const std::vector<DerivativeReport>& reports) {
 }
 
 // Prints what was done, or why nothing was.
-ExitCode print_repair(const std::string& scene, RepairMethod method, const RepairReport& report) {
+int print_repair(const std::string& scene, RepairMethod method, const RepairReport& report) {
   const std::string pairs = std::to_string(report.pairs) + " pairs of facets that touch or intersect";
   switch (report.outcome) {
     case RepairOutcome::NoContact:

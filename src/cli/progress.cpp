@@ -9,6 +9,7 @@ namespace coapt::cli {
 namespace {
 
 // The one global of the program: a signal handler can reach nothing else.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 volatile std::sig_atomic_t interrupted = 0;
 
 void on_interrupt(int) { interrupted = 1; }

@@ -20,7 +20,7 @@ RunOptions StudyArguments::options() const {
 }
 
 std::filesystem::path StudyArguments::prepared_folder(const Scene& read) const {
-  const std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
+  std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
   prepare_result_folder(path);
   return path;
 }

@@ -68,7 +68,7 @@ std::string pressure_text(const Valve& valve, const ImportOptions& options) {
   if (!options.pressure.empty()) return options.pressure;
   if (valve.pressure <= 0) return kUsualPressure;
   const double mmhg = std::round(valve.pressure / quantity_value("1 mmHg", kPressure));
-  const std::string text = digits(mmhg) + " mmHg";
+  std::string text = digits(mmhg) + " mmHg";
   constexpr double kSame = 1e-6;  // sources differ in the seventh digit of 1 mmHg
   if (mmhg > 0 && std::abs(quantity_value(text, kPressure) / valve.pressure - 1) < kSame) return text;
   return digits(valve.pressure) + " MPa";

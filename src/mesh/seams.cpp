@@ -94,8 +94,8 @@ class SeamFinder {
 
   Vec3 place(int node) const {
     const int n = source(node);
-    return {(n % view_.columns) * view_.cell, (n / view_.columns) * view_.cell,
-            view_.height[static_cast<size_t>(n)]};
+    const int column = n % view_.columns, row = n / view_.columns;
+    return {column * view_.cell, row * view_.cell, view_.height[static_cast<size_t>(n)]};
   }
 
   bool is_seam(int a, int b) {

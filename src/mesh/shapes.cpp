@@ -109,7 +109,7 @@ TriangleMesh icosahedron() {
 
 // Circular arc from p to q that bows horizontally by the sagitta towards `inward`, at 0 <= s <= 1.
 Vec3 edge_point(const Vec3& p, const Vec3& q, const Vec3& inward, double radius, double s) {
-  const Vec3 straight = p + s * (q - p);
+  Vec3 straight = p + s * (q - p);
   if (!std::isfinite(radius)) return straight;
   const double half = 0.5 * (q - p).norm();
   const double centre_angle = std::asin(half / radius);

@@ -42,6 +42,25 @@ double cubic_minimiser(const Sample& a, const Sample& b) {
   return std::clamp(step, low + margin, high - margin);
 }
 
+// Where the step lies: the best point so far, and one beyond the minimum, once there is one.
+struct Bracket {
+  Sample low, high{};
+  bool has_high = false;
+
+  void close(const Sample& beyond) {
+    high = beyond;
+    has_high = true;
+  }
+  void take(const Sample& now, bool is_worse) {
+    if (is_worse) return close(now);
+    if (now.slope * ((has_high ? high.step : kInfinity) - low.step) > 0) close(low);
+    low = now;
+  }
+  bool is_closed() const {
+    return has_high && std::abs(high.step - low.step) <= 1e-14 * std::max(low.step, high.step);
+  }
+};
+
 }  // namespace
 
 bool search_line(Monitor& monitor, const LinePoint& from, const Vector& direction, double first,
@@ -55,9 +74,8 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
   };
   const auto is_flat_enough = [&](const Sample& p) { return std::abs(p.slope) <= -kCurvature * from.slope; };
 
-  Sample low{0, from.energy, from.slope};  // best end of the bracket
-  Sample high{};                           // other end, once there is one
-  bool has_high = false;
+  Bracket bracket{{0, from.energy, from.slope}};
+  const Sample &low = bracket.low, &high = bracket.high;
   double step = monitor.step_limit(from.q, direction, first);
   bool is_limited = step < first;
   for (int k = 0; k < kMaxEvaluations; ++k) {
@@ -69,25 +87,14 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
         std::isfinite(now.energy) && replace(to))
       return true;
     if (now.energy == kInfinity) {  // infeasible: come back quickly
-      high = now;
-      has_high = true;
+      bracket.close(now);
       step = low.step + 0.1 * (step - low.step);
       continue;
     }
     if (descends(now) && is_flat_enough(now)) return true;
     const bool is_noise = std::abs(now.energy - low.energy) <= noise;
-    const bool is_worse = is_noise ? now.slope > 0 : !descends(now) || now.energy >= low.energy;
-    if (is_worse) {
-      high = now;
-      has_high = true;
-    } else {
-      if (now.slope * ((has_high ? high.step : kInfinity) - low.step) > 0) {
-        high = low;
-        has_high = true;
-      }
-      low = now;
-    }
-    if (!has_high) {
+    bracket.take(now, is_noise ? now.slope > 0 : !descends(now) || now.energy >= low.energy);
+    if (!bracket.has_high) {
       if (is_limited) return true;  // as far as it may go, and downhill all the way
       const double wanted = 4 * step;
       step = monitor.step_limit(from.q, direction, wanted);
@@ -98,7 +105,7 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
     } else {
       step = cubic_minimiser(low, high);
     }
-    if (has_high && std::abs(high.step - low.step) <= 1e-14 * std::max(low.step, high.step)) break;
+    if (bracket.is_closed()) break;
   }
   // Lower than the start, if not flat enough; or the start itself.
   if (low.step == 0)

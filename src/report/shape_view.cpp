@@ -8,8 +8,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 template <class Numbers>
 std::string floats(const Numbers& numbers) {
   const Eigen::MatrixXf singles = numbers.template cast<float>();

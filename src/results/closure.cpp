@@ -103,8 +103,8 @@ void measure_tenting_volume(const Scenery& scenery, Closure& closure) {
     if (!view.is_inside[n]) continue;
     const bool is_hole = !std::isfinite(scenery.closed.height[n]);
     const double height = is_hole ? rim : scenery.closed.height[n];
-    const double x = view.x0 + (node % view.columns) * view.cell,
-                 y = view.y0 + (node / view.columns) * view.cell;
+    const int column = node % view.columns, row = node / view.columns;
+    const double x = view.x0 + column * view.cell, y = view.y0 + row * view.cell;
     const double volume = std::max(0.0, scenery.spanned.height(x, y) - height) * cell_area;
     closure.tenting_volume_mm3 += volume;
     if (is_hole) continue;

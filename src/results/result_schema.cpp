@@ -9,8 +9,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 enum class Need { Required, Optional };
 
 struct Property {

@@ -18,8 +18,6 @@
 
 namespace coapt {
 
-using OrderedJson = nlohmann::ordered_json;
-
 namespace {
 
 namespace fs = std::filesystem;

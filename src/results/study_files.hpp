@@ -1,9 +1,8 @@
 // What the files of the studies share.
 #pragma once
 
+#include "formats/json/json_text.hpp"
 #include "results/reference_distance.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -11,8 +10,6 @@
 #include <string>
 
 namespace coapt {
-
-using OrderedJson = nlohmann::ordered_json;
 
 // NAME.json and NAME.csv in the folder, each whole or not there.
 void write_study(const std::filesystem::path& folder, const std::string& name, const OrderedJson& json,

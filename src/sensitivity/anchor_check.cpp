@@ -1,9 +1,9 @@
 // Whether warm steps have left the branch of equilibria that they began on.
 #include "core/error.hpp"
+#include "sensitivity/detail/short_number.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -12,12 +12,6 @@ constexpr double kPrediction = 1e-5;  // residual of the linear system of a pred
 constexpr double kSame = 1e-3;        // of the travel, that shapes of one branch may lie apart
 constexpr double kNoise = 1e-6;       // of the extent: distances below say nothing
 constexpr double kLoose = 1e-9;       // of the mean stiffness of a node: what is below does not hold it
-
-std::string millimetres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -121,7 +115,7 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   else
     check.message =
         "has left the branch of the anchor: the same numbers reached at once give a shape up to " +
-        millimetres(apart) + " away";
+        short_number(apart) + " away";
   return check;
 }
 

@@ -98,7 +98,7 @@ std::string scene_for(const BadMesh& mesh) {
 }
 
 fs::path new_folder(const StressBench& bench, const std::string& name) {
-  const fs::path folder = bench.options().folder / "scenes" / name;
+  fs::path folder = bench.options().folder / "scenes" / name;
   prepare_result_folder(folder);
   return folder;
 }
@@ -142,7 +142,7 @@ StressOutcome shown_scenes(const StressBench& bench) {
 std::string place_of(const Json::json_pointer& pointer) {
   std::string text, place;
   for (Json::json_pointer rest = pointer; !rest.empty(); rest.pop_back()) {
-    const std::string key = rest.back();
+    const std::string& key = rest.back();
     const bool is_number = key.find_first_not_of("0123456789") == std::string::npos;
     place = is_number ? "[" + key + "]" + place : "." + key + place;
   }

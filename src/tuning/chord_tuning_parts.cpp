@@ -135,7 +135,7 @@ std::optional<Vector> with_slack_taken_up(const PreparedTuning& ready, const Mod
   }
   const Vector taken = (lacking.array() > 0 && lacking.array().isFinite())
                            .select(kTakenUp * lacking.array(), Eigen::ArrayXd::Zero(lacking.size()));
-  const Vector value = (factors - taken).cwiseMax(low);
+  Vector value = (factors - taken).cwiseMax(low);
   if (((value - factors).array().abs() < kSmallChange).all()) return std::nullopt;
   return value;
 }

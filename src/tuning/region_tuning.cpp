@@ -119,7 +119,7 @@ Vector damped_step(const Eigen::MatrixXd& J, const Vector& excess, double dampin
     const Eigen::MatrixXd A = J(active, Eigen::all);
     Eigen::MatrixXd H = A.transpose() * A;
     H.diagonal().array() += damping * scale;
-    const Vector next = (-H.ldlt().solve(A.transpose() * excess(active))).cwiseMax(low).cwiseMin(high);
+    Vector next = (-H.ldlt().solve(A.transpose() * excess(active))).cwiseMax(low).cwiseMin(high);
     if ((next - step).cwiseAbs().maxCoeff() < 1e-9) return next;
     step = next;
   }

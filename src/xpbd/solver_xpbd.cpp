@@ -153,6 +153,15 @@ class SolverXpbd final : public Solver {
     return motion_.positions(phase.from + (phase.to - phase.from) * share);
   }
 
+  // How far a phase has come, for the remark.
+  std::string account(const Phase& phase, int steps) const {
+    std::string said = std::to_string(steps) + " steps" + text(" (%.3g s)", time_);
+    if (phase.heart == HeartPhase::Diastole) said += " of opening";
+    if (!has_arrived_) said += ", before the end of the prescribed motion";
+    if (held_ > 0) said += ", " + std::to_string(held_) + " nodes held off";
+    return said;
+  }
+
   // Steps until the monitor says stop, nothing moves, or there have been enough.
   Status follow(const Run& run, const Phase& phase, Vector& q) {
     auto& [system, forces, collisions, objective, monitor] = run;
@@ -160,12 +169,7 @@ class SolverXpbd final : public Solver {
     const auto motion_steps = std::max(1.0, std::round(xpbd_motion_time(options_) / dt));
     Vector g;
     int resting = 0, step = 1;
-    const auto say = [&](const std::string& how) {
-      remark_ = how + std::to_string(std::min(step, options_.steps)) + " steps" + text(" (%.3g s)", time_);
-      if (phase.heart == HeartPhase::Diastole) remark_ += " of opening";
-      if (!has_arrived_) remark_ += ", before the end of the prescribed motion";
-      if (held_ > 0) remark_ += ", " + std::to_string(held_) + " nodes held off";
-    };
+    const auto say = [&](const char* how) { remark_ = how + account(phase, std::min(step, options_.steps)); };
     is_at_rest_ = false;
     for (; step <= options_.steps; ++step) {
       const double share = motion_.positions ? std::min(step / motion_steps, 1.0) : 1;

@@ -2,6 +2,8 @@
 // nothing loads and nothing holds is measured by its own stiffness.
 #include "energy/force_scale.hpp"
 
+#include "energy/element_term.hpp"
+#include "energy/kernels/cst_stvk.hpp"
 #include "energy/load_pressure.hpp"
 #include "energy/objective.hpp"
 #include "support/equilibrium.hpp"
@@ -177,10 +179,10 @@ TEST(ForceScale, FollowsAChangeOfTheTerms) {
   const Sheet before{Held::Rim, 0.02, 1, 0.5}, after{Held::Rim, 0.02, 1, 0.75};
   const Vector q = before.state(0.01, 4);
   Objective changed = before.objective(), fresh = after.objective();
+  const auto wanted = membrane_term(after.mesh.vertices, after.mesh.triangles, {1, 0.3, after.prestress});
   for (const auto& term : changed.terms())
     if (auto* membrane = dynamic_cast<ElementTerm<CstStVK>*>(term.get()))
-      membrane->set_rest(
-          membrane_term(after.mesh.vertices, after.mesh.triangles, {1, 0.3, after.prestress})->rest());
+      membrane->set_rest(dynamic_cast<const ElementTerm<CstStVK>&>(*wanted).rest());
   changed.renew_reference();
   EXPECT_EQ(changed.true_residual(q), fresh.true_residual(q));
   EXPECT_EQ(changed.reference_force(q), fresh.reference_force(q));

@@ -2,6 +2,7 @@
 // did not converge is farthest from equilibrium. Rows S8, S9 and S10 of the verification table.
 #include "optim/stability/certificate.hpp"
 
+#include "energy/element_term.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"

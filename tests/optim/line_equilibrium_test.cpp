@@ -1,4 +1,6 @@
 // Rows C1, C1s, C3 and C5 of the verification table: tethers, chains and a wire.
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "energy/load_dead.hpp"
 #include "support/equilibrium.hpp"

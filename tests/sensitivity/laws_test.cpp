@@ -1,4 +1,5 @@
 // Stiffness, thickness and rest length of elements of every law, against terms that are made anew.
+#include "energy/element_term.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "sensitivity/parameters/line_access.hpp"
 #include "sensitivity/parameters/line_lengths.hpp"

@@ -1,4 +1,5 @@
 // Parameters by themselves: dead loads, the rest shape of fibrous membranes, and which of them go together.
+#include "energy/element_term.hpp"
 #include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/spring.hpp"
 #include "energy/load_dead.hpp"

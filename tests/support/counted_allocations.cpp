@@ -1,5 +1,7 @@
 #include "support/counted_allocations.hpp"
 
+#include "support/sanitized.hpp"
+
 #include <atomic>
 #include <cstdlib>
 #include <malloc.h>
@@ -19,7 +21,7 @@ std::atomic<long> blocks = 0, bytes = 0, live = 0, peak = 0;
 
 }  // namespace
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !COAPT_IS_SANITIZED
 extern "C" {
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);

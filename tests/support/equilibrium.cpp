@@ -1,13 +1,16 @@
 #include "support/equilibrium.hpp"
 
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
+#include "energy/kernels/cst_stvk.hpp"
 #include "support/meshes.hpp"
 
 #include <cmath>
 
 namespace coapt {
 
-std::unique_ptr<ElementTerm<CstStVK>> membrane_term(const Points& X, const Triangles& triangles,
-                                                    const Membrane& membrane) {
+std::unique_ptr<EnergyTerm> membrane_term(const Points& X, const Triangles& triangles,
+                                          const Membrane& membrane) {
   std::vector<CstStVK::Rest> rest;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     rest.push_back(CstStVK::rest(X.col(triangles(0, t)), X.col(triangles(1, t)), X.col(triangles(2, t)),
@@ -15,13 +18,13 @@ std::unique_ptr<ElementTerm<CstStVK>> membrane_term(const Points& X, const Trian
   return std::make_unique<ElementTerm<CstStVK>>("membrane", triangle_nodes(triangles), std::move(rest));
 }
 
-double membrane_energy(const ElementTerm<CstStVK>& term, const Points& x) {
+double membrane_energy(const EnergyTerm& term, const Points& x) {
   Sink sink;
   return term.evaluate(x, sink);
 }
 
-std::unique_ptr<ElementTerm<Cable>> cable_term(const Segments& segments, double axial_stiffness,
-                                               const Vector& rest_lengths) {
+std::unique_ptr<EnergyTerm> cable_term(const Segments& segments, double axial_stiffness,
+                                       const Vector& rest_lengths) {
   std::vector<Cable::Rest> rest;
   for (const double length : rest_lengths) rest.push_back({axial_stiffness / length, length, 0, 0});
   return std::make_unique<ElementTerm<Cable>>(

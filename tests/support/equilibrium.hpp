@@ -1,9 +1,9 @@
-// Short ways to pose and solve small problems.
+// Short ways to pose and solve small problems. Kernels are not seen here, so that a change of one recompiles
+// only the tests that name it.
 #pragma once
 
-#include "energy/element_term.hpp"
-#include "energy/kernels/cable.hpp"
-#include "energy/kernels/cst_stvk.hpp"
+#include "energy/term.hpp"
+#include "mesh/triangle_mesh.hpp"
 #include "optim/solver.hpp"
 
 #include <memory>
@@ -29,15 +29,15 @@ struct Membrane {
 };
 
 // cst_stvk on all triangles with rest positions X.
-std::unique_ptr<ElementTerm<CstStVK>> membrane_term(const Points& X, const Triangles& triangles,
-                                                    const Membrane& membrane);
+std::unique_ptr<EnergyTerm> membrane_term(const Points& X, const Triangles& triangles,
+                                          const Membrane& membrane);
 
 // Elastic energy of a membrane at x [force x length].
-double membrane_energy(const ElementTerm<CstStVK>& term, const Points& x);
+double membrane_energy(const EnergyTerm& term, const Points& x);
 
 // Cables along `segments`, all with the same axial stiffness EA; rest lengths given.
-std::unique_ptr<ElementTerm<Cable>> cable_term(const Segments& segments, double axial_stiffness,
-                                               const Vector& rest_lengths);
+std::unique_ptr<EnergyTerm> cable_term(const Segments& segments, double axial_stiffness,
+                                       const Vector& rest_lengths);
 
 // Mask in which the listed nodes are fixed in all coordinates.
 FixedMask fixed_nodes(Eigen::Index node_count, const std::vector<int>& nodes);

@@ -1,6 +1,7 @@
 // Films of constant tension, and the cylinder between two rings.
 #pragma once
 
+#include "energy/element_term.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"

@@ -1,5 +1,8 @@
 #include "support/sheets.hpp"
 
+#include "energy/element_term.hpp"
+#include "energy/kernels/bending.hpp"
+#include "energy/kernels/cst_tension_field.hpp"
 #include "support/meshes.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD

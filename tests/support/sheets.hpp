@@ -1,8 +1,6 @@
 // Sheets of the default material: relaxed membrane and bending, and a short way to solve with either solver.
 #pragma once
 
-#include "energy/kernels/bending.hpp"
-#include "energy/kernels/cst_tension_field.hpp"
 #include "support/equilibrium.hpp"
 
 namespace coapt {

@@ -1,6 +1,8 @@
 #include "support/valve_scene.hpp"
 
 #include "energy/contact_barrier.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
 #include "energy/load_pressure.hpp"
 #include "support/refined_valve.hpp"
 #include "valve/generators/mitral.hpp"

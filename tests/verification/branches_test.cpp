@@ -1,4 +1,6 @@
 // Stress rows S11, S12 and S22: solutions on a kink, several solutions, and the way back to one.
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
 #include "support/disc_scene.hpp"
 #include "support/valve_scene.hpp"
 

@@ -1,6 +1,7 @@
 // Row H3 of the verification table: what is followed in time comes to rest where the energy is least; and
 // masses that meet something never pass through it.
 #include "energy/contact_barrier.hpp"
+#include "energy/element_term.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/load_dead.hpp"
 #include "support/contact_scene.hpp"

@@ -1,4 +1,6 @@
 // Stress rows S3 to S6, S24 and S25: loads, stiffnesses, triangles and numbers far from the usual.
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
 #include "energy/kernels/tether_cubic.hpp"
 #include "energy/load_dead.hpp"
 #include "support/disc_scene.hpp"

@@ -1,5 +1,7 @@
 // Rows D1, D2, D5 and D6 of the verification table, by newton: shapes that tension alone finds. And films on
 // which newton used to find no equilibrium, as their nodes slid together: each in no more than 30 iterations.
+#include "energy/element_term.hpp"
+#include "energy/kernels/cable.hpp"
 #include "energy/load_pressure.hpp"
 #include "support/films.hpp"
 #include "support/sanitized.hpp"

@@ -1,8 +1,9 @@
-// FEBio models, specification 3.0 and 4.0: shells of three or four nodes, springs, node sets, held and moved
-// nodes, pressure, contact.
-#include "formats/abaqus/abaqus_cards.hpp"
+// FEBio models, specification 3.0 and 4.0: shells of three or four nodes, node sets, held and moved nodes,
+// pressure, contact; what changes with time and the springs have files of their own.
 #include "formats/fe_readers.hpp"
+#include "formats/febio/febio_curves.hpp"
 #include "formats/febio/febio_materials.hpp"
+#include "formats/febio/febio_springs.hpp"
 #include "formats/text.hpp"
 
 #include <pugixml.hpp>
@@ -14,29 +15,6 @@
 
 namespace coapt::formats {
 namespace {
-
-// A curve over time: its value at the end. At its points every kind of curve has their values; nothing where
-// it is not linear between points, or not constant beyond them, and the end is there.
-struct LoadCurve {
-  std::vector<std::pair<double, double>> points;
-  bool is_linear = true, is_constant_beyond = true;
-  std::optional<double> end_value(std::optional<double> end) const {
-    constexpr double kRoundOff = 1e-9;  // of the sum of the time steps
-    if (!end) return points.back().second;
-    for (size_t k = 0; k < points.size(); ++k) {
-      if (std::abs(points[k].first - *end) <= kRoundOff * *end) return points[k].second;
-      if (points[k].first < *end) continue;
-      if (k == 0) return beyond(points[0].second);
-      if (!is_linear) return std::nullopt;
-      const double part = (*end - points[k - 1].first) / (points[k].first - points[k - 1].first);
-      return points[k - 1].second + part * (points[k].second - points[k - 1].second);
-    }
-    return beyond(points.back().second);
-  }
-  std::optional<double> beyond(double value) const {
-    return is_constant_beyond ? std::optional(value) : std::nullopt;
-  }
-};
 
 // The model itself, whose components always act, or a step, whose components end with it.
 struct Section {
@@ -67,7 +45,7 @@ class FebioReader {
       defects_.fail("is of FEBio's specification " + formats::quoted(version) + "; 3.0 and 4.0 are read");
     check_units();
     read_sections();
-    read_curves();
+    curves_ = FebioCurves(root_, places_);
     for (const pugi::xml_node& nodes : mesh().children("Nodes")) read_nodes(nodes);
     defects_.throw_if_any();
     model_.nodes.resize(3, static_cast<Eigen::Index>(positions_.size()));
@@ -79,7 +57,8 @@ class FebioReader {
     for (const pugi::xml_node& data : root_.child("MeshData").children())
       if (data.type() == pugi::node_element && std::string_view(data.name()) != "NodeData")
         leave_out(data.name(), " of <MeshData> ", data, "");
-    read_springs();
+    read_febio_springs(
+        root_, [this](const pugi::xml_node& spring) { return nodes_of(spring); }, places_, model_);
     // Sets that an export made for its supports alone.
     std::erase_if(model_.node_sets, [](const auto& set) { return set.first.starts_with("coapt_"); });
     for (const char* name : {"Rigid", "Constraints", "Initial"})
@@ -157,46 +136,6 @@ class FebioReader {
       if (section.node.child("Contact").child("contact")) model_.has_contact = true;
   }
 
-  void read_curves() {
-    for (const pugi::xml_node& controller : root_.child("LoadData").children("load_controller")) {
-      LoadCurve curve;
-      for (const char* name : {"pt", "point"})
-        for (const pugi::xml_node& pt : controller.child("points").children(name)) {
-          const auto pair = places_.numbers(pt, pt.text().get());
-          if (!pair) continue;
-          if (pair->size() != 2 || (!curve.points.empty() && (*pair)[0] <= curve.points.back().first))
-            places_.add(pt, "expected a time, greater than the one before, and a value");
-          else
-            curve.points.emplace_back((*pair)[0], (*pair)[1]);
-        }
-      const auto says = [&](const char* child, const char* usual) {
-        const std::string text = upper_case(trimmed(controller.child(child).text().get()));
-        return text.empty() || text == usual;
-      };
-      curve.is_linear = says("interpolate", "LINEAR");
-      curve.is_constant_beyond = says("extend", "CONSTANT");
-      if (!curve.points.empty()) curves_[controller.attribute("id").as_string()] = std::move(curve);
-    }
-  }
-
-  double factor(const pugi::xml_node& value) {
-    const pugi::xml_attribute lc = value.attribute("lc");
-    if (!lc) return 1;
-    const auto found = curves_.find(lc.as_string());
-    if (found != curves_.end()) {
-      const auto at_end = found->second.end_value(end_);
-      if (!at_end)
-        places_.add(value,
-                    "load controller " + formats::quoted(lc.as_string()) +
-                        " is not LINEAR between points, or not CONSTANT beyond them, and the end of the "
-                        "time is no point of it; add one there");
-      return at_end.value_or(1);
-    }
-    places_.add(value,
-                "load controller " + formats::quoted(lc.as_string()) + " is no load curve of the file");
-    return 1;
-  }
-
   void read_nodes(const pugi::xml_node& nodes) {
     for (const pugi::xml_node& node : nodes.children("node")) {
       const long long id = node.attribute("id").as_llong(0);
@@ -245,12 +184,6 @@ class FebioReader {
     model_.node_sets[set.attribute("name").as_string()] = std::move(nodes);
   }
 
-  pugi::xml_node named(const pugi::xml_node& parent, const char* tag, const std::string& name) const {
-    for (const pugi::xml_node& node : parent.children(tag))
-      if (name == node.attribute("name").as_string() || name == node.attribute("id").as_string()) return node;
-    return {};
-  }
-
   void read_elements(const pugi::xml_node& elements) {
     const std::string type = elements.attribute("type").as_string(),
                       name = elements.attribute("name").as_string();
@@ -258,7 +191,7 @@ class FebioReader {
       left_out_.insert("elements of type " + type);
       return;
     }
-    const pugi::xml_node domain = named(root_.child("MeshDomains"), "ShellDomain", name);
+    const pugi::xml_node domain = febio_named(root_.child("MeshDomains"), "ShellDomain", name);
     if (!domain) return places_.add(elements, "no <ShellDomain> is named " + formats::quoted(name));
     const int region = static_cast<int>(model_.region_names.size());
     std::string region_name = name;
@@ -280,7 +213,7 @@ class FebioReader {
     const double thickness = places_.required(domain, "shell_thickness");
     if (thickness <= 0) places_.add(domain, "the thickness of shells must be positive");
     const pugi::xml_node material =
-        named(root_.child("Material"), "material", domain.attribute("mat").as_string());
+        febio_named(root_.child("Material"), "material", domain.attribute("mat").as_string());
     if (!material)
       return places_.add(
           domain, "material " + formats::quoted(domain.attribute("mat").as_string()) + " does not exist");
@@ -353,11 +286,11 @@ class FebioReader {
     if (!value) places_.add(bc, "<value> is missing");
     if (places_.number_or(bc, "relative", 0) != 0)
       places_.add(bc, "a displacement relative to the step before is not read; state it from the start");
-    const double scale = factor(value);
+    const double scale = curves_.factor(value, end_, places_);
     if (std::string_view(value.attribute("type").as_string()) != "map")
       return std::vector<double>(count, scale * places_.number(value).value_or(0));
     const std::string name(trimmed(value.text().get()));
-    const pugi::xml_node data = named(root_.child("MeshData"), "NodeData", name);
+    const pugi::xml_node data = febio_named(root_.child("MeshData"), "NodeData", name);
     if (!data ||
         std::string_view(data.attribute("node_set").as_string()) != bc.attribute("node_set").as_string()) {
       places_.add(value, "no <NodeData> of this node set is named " + formats::quoted(name));
@@ -381,9 +314,10 @@ class FebioReader {
 
   void read_pressure(const pugi::xml_node& load) {
     const std::string name = load.attribute("surface").as_string();
-    const pugi::xml_node surface = named(mesh(), "Surface", name);
+    const pugi::xml_node surface = febio_named(mesh(), "Surface", name);
     if (!surface) return places_.add(load, "surface " + formats::quoted(name) + " does not exist");
-    const double pressure = factor(load.child("pressure")) * places_.required(load, "pressure");
+    const double pressure =
+        curves_.factor(load.child("pressure"), end_, places_) * places_.required(load, "pressure");
     if (places_.number_or(load, "linear", 0) != 0) model_.is_pressure_dead = true;
     for (const pugi::xml_node& facet : surface.children()) {
       if (facet.type() != pugi::node_element) continue;
@@ -413,60 +347,6 @@ class FebioReader {
     triangle.pressure += triangle.corners[next] == corners[1] ? pressure : -pressure;
   }
 
-  // FEBio takes `dmat` as the place in the list of discrete materials.
-  void read_springs() {
-    const pugi::xml_node discrete = root_.child("Discrete");
-    std::vector<pugi::xml_node> materials;
-    for (const pugi::xml_node& material : discrete.children("discrete_material"))
-      materials.push_back(material);
-    std::set<std::string> pushing;
-    for (const pugi::xml_node& use : discrete.children("discrete")) {
-      const long long place = use.attribute("dmat").as_llong(0);
-      const pugi::xml_node set = named(mesh(), "DiscreteSet", use.attribute("discrete_set").as_string());
-      if (place < 1 || place > static_cast<long long>(materials.size()) || !set) {
-        places_.add(use, "its discrete material or its discrete set does not exist");
-        continue;
-      }
-      for (const pugi::xml_node& spring : set.children("delem"))
-        add_spring(spring, materials[static_cast<size_t>(place - 1)], pushing);
-    }
-    for (const std::string& name : lawless_)
-      model_.warnings.push_back(
-          model_.file + ": the springs of " + formats::quoted(name) +
-          " have a curve that no law of a scene is like; the scene has its usual law there.");
-    for (const std::string& name : pushing)
-      model_.warnings.push_back(model_.file + ": the springs of " + formats::quoted(name) +
-                                " push as well as pull; the scene's cables pull only.");
-  }
-
-  void add_spring(const pugi::xml_node& node, const pugi::xml_node& material,
-                  std::set<std::string>& pushing) {
-    const std::vector<int> ends = nodes_of(node);
-    if (ends.empty()) return;
-    const double distance =
-        ends.size() == 2 ? (model_.nodes.col(ends[0]) - model_.nodes.col(ends[1])).norm() : 0;
-    if (distance == 0) return places_.add(node, "expected two nodes at different places");
-    const auto spring = febio_spring(material, distance, places_);
-    if (!spring) return;
-    const std::string name = material.attribute("name").as_string("springs");
-    if (spring->pushes) pushing.insert(name);
-    const std::string group = name.substr(0, name.rfind('.'));
-    if (spring->law.type.empty()) lawless_.insert(group);
-    model_.lines.push_back({ends[0], ends[1], spring->rest_length, spring->area,
-                            spring->law.type.empty() ? group : cable_name(group, spring->law),
-                            static_cast<long long>(model_.lines.size()) + 1});
-  }
-
-  // Springs of one name and one law are one material; another law of the same name gets a number.
-  std::string cable_name(const std::string& wanted, const Material& law) {
-    std::string name = wanted;
-    for (int number = 2;; ++number) {
-      const auto [found, is_new] = model_.cables.emplace(name, law);
-      if (is_new || (found->second.type == law.type && found->second.keys == law.keys)) return name;
-      name = wanted + "_" + std::to_string(number);
-    }
-  }
-
   std::string_view bytes_;
   Defects defects_;
   FebioPlaces places_;
@@ -475,12 +355,12 @@ class FebioReader {
   std::vector<Section> sections_;  // the model itself, then its steps
   FeModel model_;
   std::optional<double> end_;  // of the section that is being read
-  std::map<std::string, LoadCurve> curves_;
+  FebioCurves curves_;
   std::vector<Vec3> positions_;
   std::unordered_map<long long, int> index_;  // of the node ids
   std::set<long long> element_ids_;
   std::map<std::array<int, 3>, size_t> triangle_of_;  // by its corners in ascending order
-  std::set<std::string> left_out_, lawless_;
+  std::set<std::string> left_out_;
 };
 
 }  // namespace

@@ -131,6 +131,12 @@ double FebioPlaces::required(const pugi::xml_node& parent, const char* name) con
   return number_or(parent, name, 0);
 }
 
+pugi::xml_node febio_named(const pugi::xml_node& parent, const char* tag, const std::string& name) {
+  for (const pugi::xml_node& node : parent.children(tag))
+    if (name == node.attribute("name").as_string() || name == node.attribute("id").as_string()) return node;
+  return {};
+}
+
 std::optional<Material> febio_shell_law(const pugi::xml_node& material, double thickness,
                                         const FebioPlaces& places) {
   const std::string type = material.attribute("type").as_string();

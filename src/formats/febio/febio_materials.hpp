@@ -30,6 +30,9 @@ class FebioPlaces {
   Defects& defects_;
 };
 
+// The child with that tag whose name or id is `name`; none where there is no such child.
+pugi::xml_node febio_named(const pugi::xml_node& parent, const char* tag, const std::string& name);
+
 // A law of shells: "isotropic elastic" as cst_stvk, "neo-Hookean" and "incomp neo-Hookean" (and
 // "Mooney-Rivlin" without c2) as cst_neo_hookean, "isotropic Lee-Sacks" and "uncoupled isotropic Lee-Sacks"
 // as cst_exponential. An uncoupled law is taken as incompressible. Adds a defect where there is no such law.

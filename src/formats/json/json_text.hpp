@@ -7,6 +7,8 @@
 
 namespace coapt {
 
+using OrderedJson = nlohmann::ordered_json;  // keys in the order in which they were written
+
 // The text of a value; bytes that are not UTF-8, as a path may have, become U+FFFD. indent -1: on one line.
 template <class AnyJson>
 std::string json_text(const AnyJson& json, int indent = -1) {

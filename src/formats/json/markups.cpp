@@ -13,8 +13,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 constexpr const char* kSchema =
     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
     "markups-schema-v1.0.0.json#";

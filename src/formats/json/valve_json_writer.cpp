@@ -10,8 +10,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 OrderedJson positions(const Points& points) {
   OrderedJson list = OrderedJson::array();
   for (int k = 0; k < points.cols(); ++k) list.push_back({points(0, k), points(1, k), points(2, k)});

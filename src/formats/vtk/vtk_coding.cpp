@@ -84,19 +84,19 @@ std::string inflated_array(const Block&, const VtkCoding&) {
 }
 #endif
 
-std::array<signed char, 256> base64_values() {
-  std::array<signed char, 256> values{};
+std::array<int, 256> base64_values() {
+  std::array<int, 256> values{};
   values.fill(-1);
   const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (size_t i = 0; i < digits.size(); ++i)
-    values[static_cast<unsigned char>(digits[i])] = static_cast<signed char>(i);
+    values[static_cast<unsigned char>(digits[i])] = static_cast<int>(i);
   return values;
 }
 
 }  // namespace
 
 std::string decoded_base64(std::string_view text, size_t count) {
-  static const std::array<signed char, 256> kValues = base64_values();
+  static const std::array<int, 256> kValues = base64_values();
   std::string bytes;
   unsigned group = 0;
   int digits = 0, padding = 0;

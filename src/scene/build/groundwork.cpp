@@ -154,7 +154,7 @@ void operate(const Scene& scene, NamedNetworks& networks, Assembly& assembly) {
 }
 
 // Gives the points of the networks their numbers, behind the vertices of the mesh.
-void place_networks(NamedNetworks networks, Assembly& assembly) {
+void place_networks(NamedNetworks&& networks, Assembly& assembly) {
   Model& model = assembly.model;
   std::vector<Points> blocks{model.mesh.vertices};
   int next = model.mesh.vertex_count();

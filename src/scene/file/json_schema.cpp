@@ -8,8 +8,6 @@
 namespace coapt {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
 OrderedJson reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
 OrderedJson object_schema(const ObjectSpec& spec);
@@ -51,7 +49,7 @@ OrderedJson direction_schema() {
 }
 
 OrderedJson value_schema(const KeySpec& key) {
-  const OrderedJson text{{"type", "string"}, {"minLength", 1}};
+  OrderedJson text{{"type", "string"}, {"minLength", 1}};
   switch (key.kind) {
     case KeyKind::Quantity:
       return quantity_schema(key);

@@ -81,7 +81,7 @@ SceneParameter find_parameter(const Scene& scene, const std::string& name) {
   if (std::find(known.begin(), known.end(), key) == known.end() && key != kAreaScale)
     throw InputError("parameter \"" + name + "\": term \"" + term_name + "\" has no number \"" + key +
                      "\"; it has: " + listed(known) + suggestion(key, known));
-  const SceneParameter parameter = parameter_of(scene, index, key);
+  SceneParameter parameter = parameter_of(scene, index, key);
   if (parameter.value == 0) throw InputError("parameter \"" + name + "\": is zero, which no factor changes");
   return parameter;
 }

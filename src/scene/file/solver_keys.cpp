@@ -95,6 +95,37 @@ KeySpec paper_key() {
           "2019."};
 }
 
+KeySpec stiffness_key() {
+  return {.name = "stiffness",
+          .kind = KeyKind::Choice,
+          .fallback = "\"material\"",
+          .choices = {"material", "paper"},
+          .doc =
+              "material: compliances and masses from the moduli, sections and density of the scene, "
+              "so that the result can be compared; paper: the mass 1 and the numbers of the paper "
+              "for all."};
+}
+
+KeySpec forces_key() {
+  return {.name = "forces",
+          .kind = KeyKind::Choice,
+          .fallback = "\"scene\"",
+          .choices = {"scene", "paper"},
+          .doc =
+              "scene: the loads of the scene; paper: flow field and pressure of the paper, by the "
+              "set \"annulus\"."};
+}
+
+KeySpec phase_key() {
+  return {.name = "phase",
+          .kind = KeyKind::Choice,
+          .fallback = "\"systole\"",
+          .choices = {"systole", "diastole"},
+          .doc =
+              "systole: the forces as they are, they close a valve; diastole: turned round, they open "
+              "it while the prescribed nodes go back. A start in the shape at rest is closed first."};
+}
+
 KeySpec xpbd_key() {
   return {
       .name = "xpbd",
@@ -136,27 +167,9 @@ KeySpec xpbd_key() {
                  .min = 0,
                  .excludes_min = true,
                  .doc = "Distance that contact keeps between facets, in place of that of the contact term."},
-                {.name = "stiffness",
-                 .kind = KeyKind::Choice,
-                 .fallback = "\"material\"",
-                 .choices = {"material", "paper"},
-                 .doc =
-                     "material: compliances and masses from the moduli, sections and density of the scene, "
-                     "so that the result can be compared; paper: the mass 1 and the numbers of the paper "
-                     "for all."},
-                {.name = "forces",
-                 .kind = KeyKind::Choice,
-                 .fallback = "\"scene\"",
-                 .choices = {"scene", "paper"},
-                 .doc = "scene: the loads of the scene; paper: flow field and pressure of the paper, by the "
-                        "set \"annulus\"."},
-                {.name = "phase",
-                 .kind = KeyKind::Choice,
-                 .fallback = "\"systole\"",
-                 .choices = {"systole", "diastole"},
-                 .doc =
-                     "systole: the forces as they are, they close a valve; diastole: turned round, they open "
-                     "it while the prescribed nodes go back. A start in the shape at rest is closed first."},
+                stiffness_key(),
+                forces_key(),
+                phase_key(),
                 paper_key()}},
       .doc =
           "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of the "

@@ -28,7 +28,7 @@ std::vector<std::string> wanted_leaflets(const InterventionSpec& spec, const Tri
   const Parameters& p = spec.parameters;
   for (const char* key : {"leaflets", "leaflet"}) {
     if (!p.has(key)) continue;
-    const std::vector<std::string> names =
+    std::vector<std::string> names =
         key == std::string("leaflet") ? std::vector<std::string>{p.text(key)} : p.texts(key);
     for (const std::string& name : names)
       if (std::find(mesh.region_names.begin(), mesh.region_names.end(), name) == mesh.region_names.end())

@@ -252,7 +252,8 @@ std::unique_ptr<Metric> make_orifice_area(std::string name, const Triangles& tri
     defects.push_back(where + "the axis has no direction");
   if (!x_start.allFinite()) defects.push_back(where + "a position is not finite");
   if (!defects.empty()) throw InputError(defects);
-  auto metric = std::make_unique<OrificeArea>(name, triangles, std::move(annulus), x_start, options);
+  auto metric =
+      std::make_unique<OrificeArea>(std::move(name), triangles, std::move(annulus), x_start, options);
   if (metric->is_grid_too_large())
     throw InputError(where + "blur is too small for an annulus of this size; take a hundredth of it or more");
   return metric;

@@ -169,7 +169,7 @@ Points StressFrame::back(const Points& x, const Vec3& origin_here, const Vec3& o
 std::string frame_obstacle(const StressScene& subject, const StressFrame& frame) {
   const bool is_turned = !frame.turn.isIdentity(0), is_scaled = frame.length != 1 || frame.stress != 1;
   for (const TermSpec& term : subject.scene.terms) {
-    const std::string obstacle = file_of_numbers(term);
+    std::string obstacle = file_of_numbers(term);
     if (obstacle.empty()) continue;
     if (is_scaled || (is_turned && term.parameters.has("forces"))) return obstacle;
   }
@@ -219,7 +219,7 @@ StressScene turned_over(const StressScene& subject) {
 
 std::string numbering_obstacle(const StressScene& subject) {
   for (const TermSpec& term : subject.scene.terms)
-    if (const std::string obstacle = file_of_numbers(term); !obstacle.empty()) return obstacle;
+    if (std::string obstacle = file_of_numbers(term); !obstacle.empty()) return obstacle;
   if (subject.scene.fibres && subject.scene.fibres->file)
     return "the scene reads fibre directions from a file, by the numbers of its triangles";
   return "";

@@ -82,7 +82,7 @@ MitralLeaflet leaflet_at(const MitralShape& shape, double u) {
 Vec3 annulus_at(const MitralShape& shape, double u, const AnnulusPosition& at, bool is_closed) {
   const MitralDimensions& d = shape.dimensions;
   if (!shape.annulus) return annulus_point(d, at.angle, is_closed);
-  const Vec3 x = shape.annulus->point(leaflet_at(shape, u) == MitralLeaflet::Anterior, at.fraction);
+  Vec3 x = shape.annulus->point(leaflet_at(shape, u) == MitralLeaflet::Anterior, at.fraction);
   if (!is_closed) return x;
   const double shrink = std::sqrt(1 - d.annulus_contraction);
   return x.cwiseProduct(Vec3(shrink, shrink, shrink * d.saddle_ratio_closed / d.saddle_ratio_open));

@@ -284,7 +284,7 @@ std::string shown(const Json& json) {
 }
 
 std::optional<std::string> read_file(const Item& item) {
-  const std::optional<std::string> text = read_text_value(item);
+  std::optional<std::string> text = read_text_value(item);
   if (!text) return std::nullopt;
   const std::vector<std::string>& words = item.key.choices;
   if (std::find(words.begin(), words.end(), *text) != words.end()) return text;
