@@ -1,4 +1,4 @@
-#include "scene/build/repair.hpp"
+#include "exchange/repair.hpp"
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
