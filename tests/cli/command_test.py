@@ -122,6 +122,19 @@ class CommandTest(CommandCase):
         self.assertEqual(self.result()["counters"]["membrane_elements"], 0)
         self.assertEqual(self.result()["counters"]["cable_elements"], 40)
 
+    def square_of(self, terms):
+        scene = self.generate("square", "--triangles", 200)
+        first, last = scene.read_text().split('"terms": [', 1)
+        scene.write_text(first + '"terms": [' + terms + "]" + last.split("]", 1)[1])
+        return scene
+
+    def test_counters_tell_films_from_membranes(self):
+        scene = self.square_of('{"type": "surface_tension", "tension": "1 N/m"}, {"type": "load_pressure", "value": "1 Pa"}')
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        result = self.result()
+        self.assertEqual(result["counters"]["membrane_elements"], 0)
+        self.assertEqual(result["counters"]["film_elements"], result["mesh"]["triangles"])
+
     def test_frames_of_a_motion_share_one_time(self):
         scene = self.generate("mitral", "--triangles", 200, "--contact", "none")
         scene.write_text(scene.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))

@@ -4,6 +4,7 @@
 #include "energy/kernels/cst_tension_field.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "scene/build/detail/build_membrane.hpp"
+#include "scene/terms/febio_laws.hpp"
 
 #include <algorithm>
 
@@ -110,13 +111,24 @@ std::vector<TermType> membrane_term_types() {
                   "resists compression too.",
        .spec = {.keys = elastic_keys(true)},
        .check = check_stvk,
-       .build = build_stvk},
+       .build = build_stvk,
+       .kind = TermKind::Membrane,
+       .xpbd = XpbdConstraint::Edges,
+       .is_linear = true,
+       .spring_keys = {"young"},
+       .febio = febio_linear},
       {.name = "cst_tension_field",
        .summary = "Elastic membrane that wrinkles instead of being compressed (tension field: taut, wrinkled "
                   "or slack), on constant-strain triangles; like cst_stvk where it is taut.",
        .spec = {.keys = tension_field_keys()},
        .check = {},
-       .build = build_tension_field},
+       .build = build_tension_field,
+       .kind = TermKind::Membrane,
+       .xpbd = XpbdConstraint::Edges,
+       .is_relaxed = true,
+       .is_linear = true,
+       .spring_keys = {"young"},
+       .febio = febio_linear},
       {.name = "surface_tension",
        .summary = "Film of constant isotropic tension; its equilibria without pressure are minimal surfaces.",
        .spec = {.keys = {{.name = "tension",
@@ -127,7 +139,9 @@ std::vector<TermType> membrane_term_types() {
                           .doc = "Force per length of any cut."},
                          region_key()}},
        .check = {},
-       .build = build_surface_tension},
+       .build = build_surface_tension,
+       .kind = TermKind::Film,
+       .xpbd = XpbdConstraint::Films},
   };
 }
 
