@@ -1,6 +1,7 @@
 """Fails when an include of src is against tools/layers.toml: against its table of rooms, of a private header of another
-room, or in a circle; when a public header includes more than Eigen and the standard library; and when the table allows
-what no file needs.
+room, or in a circle; when a public header includes more than Eigen and the standard library; when the table allows
+what no file needs; and when a file compares the name of a term's type, or asks for the class of an object, instead of
+what stands in the registry (scene/terms/term_types.hpp) or with the term (energy/term_access.hpp).
 
     check_layers.py [FOLDER]     the repository, or another tree with src and tools/layers.toml in it
 """
@@ -12,6 +13,11 @@ import tomllib
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.MULTILINE)
 PRIVATE = re.compile(r"\bprivate to this (room|folder)\b", re.IGNORECASE)
 HEADERS = re.compile(r"\bHEADERS\s+(.*?)(?=SOURCES|\))", re.DOTALL)
+TERM_TYPE = re.compile(r'^\s*static constexpr std::string_view kType = "(\w+)"|\{\.name = "(\w+)",\s*\.s(?:tage|ummary)',
+                       re.MULTILINE)
+COMPARED = re.compile(r'\btype(?:\(\))?\s*[!=]=\s*(?:"(\w+)"|\w+::kType\b)|\w::kType\s*[!=]=|\btype(?:\(\))?\.starts_with\(')
+REGISTRY = "scene/terms/"
+MOST_CASTS = 3  # dynamic_cast, in all of src
 ALLOWED_IN_HEADERS = ("Eigen/", "unsupported/Eigen/")
 
 
@@ -65,6 +71,18 @@ def third_party_defects(texts: dict[str, str], public: set[str]) -> list[str]:
     return found
 
 
+def type_defects(texts: dict[str, str]) -> list[str]:
+    """Comparisons of the names of term types outside their registry, and more dynamic casts than there may be."""
+    names = {name for text in texts.values() for pair in TERM_TYPE.findall(text) for name in pair if name}
+    found = [f"{name}: compares the type of a term, {match[0]}; ask the registry or the term"
+             for name, text in texts.items() if not name.startswith(REGISTRY)
+             for match in COMPARED.finditer(text) if match[1] is None or match[1] in names]
+    casts = {name: text.count("dynamic_cast<") for name, text in texts.items() if "dynamic_cast<" in text}
+    if sum(casts.values()) > MOST_CASTS:
+        found.append(f"more than {MOST_CASTS} dynamic casts: {', '.join(sorted(casts))}; let the object say what it can")
+    return found
+
+
 def include_defects(includes: dict[str, list[str]], private: set[str], table: dict) -> list[str]:
     """What the table and the sources do not agree on, in both directions."""
     allowed, exceptions = table["may_include"], table["exceptions"]["includes"]
@@ -109,6 +127,7 @@ def defects(root: pathlib.Path) -> list[str]:
         includes[name] = [i for i in own if i in texts]
     found += include_defects(includes, private, table)
     found += third_party_defects(texts, installed(src))
+    found += type_defects(texts)
     for of, what in ((table["may_include"], "the table allows"), (includes, "files include")):
         if around := circle(of):
             found.append(f"a circle of what {what}: {' -> '.join([*around, around[0]])}")

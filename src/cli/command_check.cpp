@@ -2,7 +2,7 @@
 #include "cli/exit_code.hpp"
 #include "core/error.hpp"
 #include "exchange/check.hpp"
-#include "scene/build/repair.hpp"
+#include "exchange/repair.hpp"
 
 #include <CLI/CLI.hpp>
 

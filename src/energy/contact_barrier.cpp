@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "energy/contact/collision_detection.hpp"
 #include "energy/contact/contact_surface.hpp"
+#include "energy/term_access.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>
@@ -131,7 +132,7 @@ class ContactBarrierPart final : public EnergyTerm {
   double reach_;
 };
 
-class ContactBarrier final : public EnergyTerm {
+class ContactBarrier final : public EnergyTerm, public TermAccess {
  public:
   ContactBarrier(std::string name, const Points& X, const Triangles& triangles,
                  const ContactBarrierOptions& options)
@@ -143,6 +144,7 @@ class ContactBarrier final : public EnergyTerm {
         pressure_(options.pressure) {}
 
   std::string_view type() const override { return "contact_barrier"; }
+  TermKind kind() const override { return TermKind::Contact; }
   TermRole role() const override { return TermRole::Contact; }
   const Stencils& stencils() const override { return candidates_.stencils; }
   TermCounters counters() const override { return {active_pairs_, candidates_.stencils.count(), searches_}; }

@@ -1,6 +1,7 @@
 #include "energy/contact_facet.hpp"
 
 #include "core/error.hpp"
+#include "energy/term_access.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #ifdef COAPT_HAS_NANOFLANN
@@ -119,7 +120,7 @@ double power(double base, int exponent) {
   return result;
 }
 
-class ContactFacet final : public EnergyTerm {
+class ContactFacet final : public EnergyTerm, public TermAccess {
  public:
   ContactFacet(std::string name, const Points& X, const Triangles& triangles,
                const ContactFacetOptions& options)
@@ -135,6 +136,7 @@ class ContactFacet final : public EnergyTerm {
   }
 
   std::string_view type() const override { return "contact_facet"; }
+  TermKind kind() const override { return TermKind::Contact; }
   TermRole role() const override { return TermRole::Contact; }
   const Stencils& stencils() const override { return stencils_; }
   TermCounters counters() const override { return {active_pairs_, stencils_.count(), searches_}; }

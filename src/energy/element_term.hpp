@@ -5,10 +5,12 @@
 #include "energy/moving_part.hpp"
 #include "energy/project_psd.hpp"
 #include "energy/term.hpp"
+#include "energy/term_access.hpp"
 
 #include <algorithm>
 #include <concepts>
 #include <span>
+#include <typeinfo>
 #include <utility>
 
 namespace coapt {
@@ -57,8 +59,39 @@ concept HasStressLimit = ElementKernel<K> &&
   { K::raise_limit(rest, x) } -> std::same_as<double>;
 };
 
+// What a kernel may say beside, for parameters with derivatives, fields and other solvers: everything that
+// TermAccess asks for. None of it is needed to solve a scene.
+//   kKind                            energy/term_kind.hpp
+//   stiffen(rest, factor, is_size)   multiplies its moduli
+//   has_prestress(rest)              whether there is energy that these leave out
+//   line(rest), axial(rest, l)       of a line: what it is, and its law at the distance l
+//   lengthen(rest, length)           gives a line another rest length
+//   slope_by_rest(rest, law, l)      derivatives of a line by that
+//   reshaped(rest, from, to)         the element with other places of its nodes at rest
+//   shape(rest)                      of a triangle: D_X^-1
+//   relaxes(rest), state(rest, x)    of a membrane: whether it wrinkles, and how it carries its load
+//   film_tension(rest), hinge_stiffness(rest), pressure(rest), set_pressure(rest, p)
+template <class K>
+concept IsStiff = requires(typename K::Rest& rest) {
+  K::stiffen(rest, 1.0, true);
+};
+template <class K>
+concept IsLine = requires(const typename K::Rest& rest) {
+  { K::line(rest) } -> std::same_as<LineTraits>;
+  { K::axial(rest, 1.0) } -> std::same_as<AxialLaw>;
+};
+template <class K>
+concept HasRestLength = IsLine<K> && requires(typename K::Rest& rest, const AxialLaw& law) {
+  K::lengthen(rest, 1.0);
+  { K::slope_by_rest(rest, law, 1.0) } -> std::same_as<RestSlope>;
+};
+template <class K>
+concept HasRestShape = requires(const typename K::Rest& rest, const Corners& X) {
+  { K::reshaped(rest, X, X) } -> std::same_as<typename K::Rest>;
+};
+
 template <ElementKernel K>
-class ElementTerm final : public EnergyTerm {
+class ElementTerm final : public EnergyTerm, public TermAccess {
  public:
   static constexpr int kSize = 3 * K::kNodes;
   using ElementVector = Eigen::Vector<double, kSize>;
@@ -121,6 +154,110 @@ class ElementTerm final : public EnergyTerm {
     return std::make_unique<ElementTerm>(name(), std::move(nodes), std::move(rest));
   }
 
+  TermKind kind() const override {
+    if constexpr (requires { K::kKind; })
+      return K::kKind;
+    else
+      return TermKind::Other;
+  }
+
+  bool has_elastic_elements() const override { return K::kRole == TermRole::Internal; }
+
+  double evaluate_element(int element, const double* x, double* g, double* H) const override {
+    return evaluate_at(rest_at(element), x, g, H);
+  }
+
+  std::function<double(const double* x, double* g)> element_energy(int element) const override {
+    return [rest = rest_at(element)](const double* x, double* g) { return evaluate_at(rest, x, g, nullptr); };
+  }
+
+  bool take_elements(const EnergyTerm& from) override {
+    if (typeid(from) != typeid(*this)) return false;
+    set_rest(static_cast<const ElementTerm&>(from).rest_);
+    return true;
+  }
+
+  bool has_stiffness() const override { return IsStiff<K>; }
+  void multiply_stiffness(int element, double factor, bool is_size) override {
+    if constexpr (IsStiff<K>) K::stiffen(changed(element), factor, is_size);
+  }
+  bool has_prestress(int element) const override {
+    if constexpr (requires { K::has_prestress(rest_[0]); })
+      return K::has_prestress(rest_at(element));
+    else
+      return false;
+  }
+
+  bool has_lines() const override { return IsLine<K>; }
+  LineTraits line(int element) const override {
+    if constexpr (IsLine<K>)
+      return K::line(rest_at(element));
+    else
+      return {};
+  }
+  std::function<AxialLaw(double distance)> line_law(int element) const override {
+    if constexpr (IsLine<K>)
+      return [rest = rest_at(element)](double l) { return K::axial(rest, l); };
+    else
+      return {};
+  }
+  bool has_rest_lengths() const override { return HasRestLength<K>; }
+  void set_rest_length(int element, double length) override {
+    if constexpr (HasRestLength<K>) K::lengthen(changed(element), length);
+  }
+  RestSlope slope_by_rest(int element, const AxialLaw& law, double l) const override {
+    if constexpr (HasRestLength<K>)
+      return K::slope_by_rest(rest_at(element), law, l);
+    else
+      return {};
+  }
+
+  bool has_rest_shape() const override { return HasRestShape<K>; }
+  const Eigen::Matrix2d* rest_frame(int element) const override {
+    if constexpr (requires { K::shape(rest_[0]); })
+      return &K::shape(rest_at(element));
+    else
+      return nullptr;
+  }
+  void reshape(int element, const Corners& from, const Corners& to) override {
+    if constexpr (HasRestShape<K>) changed(element) = K::reshaped(rest_at(element), from, to);
+  }
+  double evaluate_reshaped(int element, const Corners& from, const Corners& to, const double* x,
+                           double* g) const override {
+    if constexpr (HasRestShape<K>)
+      return evaluate_at(K::reshaped(rest_at(element), from, to), x, g, nullptr);
+    else
+      return 0;
+  }
+
+  std::optional<MembraneRegime> regime(int element, const double* x) const override {
+    if constexpr (requires { K::relaxes(rest_[0]); })
+      if (K::relaxes(rest_at(element)))
+        return K::state(rest_at(element), Eigen::Map<const ElementVector>(x)).regime;
+    return std::nullopt;
+  }
+  double film_tension(int element) const override {
+    if constexpr (requires { K::film_tension(rest_[0]); })
+      return K::film_tension(rest_at(element));
+    else
+      return 0;
+  }
+  double hinge_stiffness(int element) const override {
+    if constexpr (requires { K::hinge_stiffness(rest_[0]); })
+      return K::hinge_stiffness(rest_at(element));
+    else
+      return 0;
+  }
+  std::optional<double> pressure() const override {
+    if constexpr (requires { K::pressure(rest_[0]); })
+      if (!rest_.empty()) return K::pressure(rest_.front());
+    return std::nullopt;
+  }
+  void set_pressure(double p) override {
+    if constexpr (requires { K::set_pressure(rest_[0], p); })
+      for (auto& rest : rest_) K::set_pressure(rest, p);
+  }
+
   double evaluate(const Points& x, Sink& sink) const override {
     if (sink.wants_hessian()) return evaluate_with_hessian(x, sink);
     double energy = 0;
@@ -135,6 +272,24 @@ class ElementTerm final : public EnergyTerm {
   }
 
  private:
+  const typename K::Rest& rest_at(int element) const { return rest_[static_cast<size_t>(element)]; }
+  // To be changed: what it was before its kinks were rounded is of no use then.
+  typename K::Rest& changed(int element) {
+    sharp_.clear();
+    return rest_[static_cast<size_t>(element)];
+  }
+
+  static double evaluate_at(const typename K::Rest& rest, const double* x, double* g, double* H) {
+    const ElementVector local = Eigen::Map<const ElementVector>(x);
+    ElementVector gradient;
+    ElementMatrix hessian;
+    const double energy =
+        K::evaluate(rest, local, g == nullptr ? nullptr : &gradient, H == nullptr ? nullptr : &hessian);
+    if (g != nullptr) std::copy(gradient.data(), gradient.data() + kSize, g);
+    if (H != nullptr) std::copy(hessian.data(), hessian.data() + kSize * kSize, H);
+    return energy;
+  }
+
   static ElementVector gather(const Points& x, const int* nodes) {
     ElementVector local;
     for (int a = 0; a < K::kNodes; ++a) local.template segment<3>(3 * a) = x.col(nodes[a]);

@@ -5,8 +5,9 @@
 
 namespace coapt {
 
-LoadDead::LoadDead(std::string name, std::string type, const Points& forces, const Points& reference)
-    : EnergyTerm(std::move(name)), type_(std::move(type)), stencils_{1, {}} {
+LoadDead::LoadDead(std::string name, std::string type, const Points& forces, const Points& reference,
+                   TermKind kind)
+    : EnergyTerm(std::move(name)), type_(std::move(type)), stencils_{1, {}}, kind_(kind) {
   for (int node = 0; node < forces.cols(); ++node)
     if (!forces.col(node).isZero(0)) stencils_.nodes.push_back(node);
   forces_ = forces(Eigen::all, stencils_.nodes);
@@ -31,7 +32,7 @@ std::unique_ptr<EnergyTerm> LoadDead::part(MovingPart& moving) const {
     forces.col(moving.number(node)) = forces_.col(k);
     reference.col(moving.number(node)) = reference_.col(k);
   }
-  return std::make_unique<LoadDead>(name(), type_, forces, reference);
+  return std::make_unique<LoadDead>(name(), type_, forces, reference, kind_);
 }
 
 Points frozen_pressure_forces(const Points& X, const Triangles& triangles, double p) {

@@ -4,16 +4,21 @@
 #pragma once
 
 #include "energy/term.hpp"
+#include "energy/term_access.hpp"
 
 namespace coapt {
 
-class LoadDead final : public EnergyTerm {
+class LoadDead final : public EnergyTerm, public TermAccess {
  public:
   // forces: 3 x node_count [force]; reference: X, 3 x node_count. Nodes with zero force cost nothing.
-  LoadDead(std::string name, std::string type, const Points& forces, const Points& reference);
+  // kind: DeadLoad or, of a pressure that is frozen, Pressure.
+  LoadDead(std::string name, std::string type, const Points& forces, const Points& reference,
+           TermKind kind = TermKind::DeadLoad);
 
   std::string_view type() const override { return type_; }
   TermRole role() const override { return TermRole::Load; }
+  TermKind kind() const override { return kind_; }
+  LoadDead* dead_load() override { return this; }
   const Stencils& stencils() const override { return stencils_; }
   double evaluate(const Points& x, Sink& sink) const override;
   std::unique_ptr<EnergyTerm> part(MovingPart& moving) const override;
@@ -30,6 +35,7 @@ class LoadDead final : public EnergyTerm {
   Stencils stencils_;
   Points forces_;
   Points reference_;
+  TermKind kind_;
 };
 
 // Nodal forces of a pressure that stays as it is on X: p/3 of each facet's area vector to its corners.

@@ -68,7 +68,7 @@ std::vector<std::array<int, 2>> rim_edges(const std::vector<std::vector<int>>& r
 }
 
 // The surface closed by fans over its moving rims carries the potential; the remainder lives on the rims.
-class LoadPressureFollower final : public EnergyTerm {
+class LoadPressureFollower final : public EnergyTerm, public TermAccess {
  public:
   LoadPressureFollower(std::string name, const Points& X, const Triangles& triangles, double p,
                        std::vector<std::vector<int>> rims)
@@ -88,6 +88,7 @@ class LoadPressureFollower final : public EnergyTerm {
   }
 
   std::string_view type() const override { return FacetVolume::kType; }
+  TermKind kind() const override { return TermKind::Pressure; }
   TermRole role() const override { return TermRole::Load; }
   const Stencils& stencils() const override { return closed_->stencils(); }
   double evaluate(const Points& x, Sink& sink) const override { return closed_->evaluate(x, sink); }
@@ -132,8 +133,8 @@ class LoadPressureFollower final : public EnergyTerm {
       }
   }
 
-  double pressure() const { return rest_.pressure; }
-  void set_pressure(double p) {
+  std::optional<double> pressure() const override { return rest_.pressure; }
+  void set_pressure(double p) override {
     rest_.pressure = p;
     set_fans({fans_.data(), fans_.data() + fans_.size()});
   }
@@ -203,22 +204,13 @@ Points follower_pressure_forces(const Points& x, const Triangles& triangles, dou
 }
 
 std::optional<double> pressure_of(const EnergyTerm& term) {
-  if (const auto* follower = dynamic_cast<const LoadPressureFollower*>(&term)) return follower->pressure();
-  const auto* volume = dynamic_cast<const ElementTerm<FacetVolume>*>(&term);
-  if (volume == nullptr || volume->rest().empty()) return std::nullopt;
-  return volume->rest().front().pressure;
+  const TermAccess* access = access_of(term);
+  return access == nullptr ? std::nullopt : access->pressure();
 }
 
 bool set_pressure(EnergyTerm& term, double p) {
-  if (auto* follower = dynamic_cast<LoadPressureFollower*>(&term)) {
-    follower->set_pressure(p);
-    return true;
-  }
-  auto* volume = dynamic_cast<ElementTerm<FacetVolume>*>(&term);
-  if (volume == nullptr) return false;
-  std::vector<FacetVolume::Rest> rest = volume->rest();
-  for (FacetVolume::Rest& facet : rest) facet.pressure = p;
-  volume->set_rest(std::move(rest));
+  if (!pressure_of(term)) return false;
+  access_of(term)->set_pressure(p);
   return true;
 }
 

@@ -1,8 +1,6 @@
 #include "energy/normal_motion.hpp"
 
-#include "energy/element_term.hpp"
-#include "energy/kernels/facet_volume.hpp"
-#include "energy/kernels/surface_tension.hpp"
+#include "energy/term_access.hpp"
 
 #include <Eigen/SparseCholesky>
 
@@ -39,9 +37,10 @@ class Films {
       : tension_(node_count, 0), is_apart_(node_count, false), parent_(node_count) {
     std::iota(parent_.begin(), parent_.end(), 0);
     for (const auto& term : terms) {
-      if (const auto* film = dynamic_cast<const ElementTerm<SurfaceTension>*>(term.get()))
-        add(*film);
-      else if (term->type() != FacetVolume::kType && term->role() != TermRole::Contact)
+      const TermKind kind = kind_of(*term);
+      if (kind == TermKind::Film)
+        add(*term, *access_of(*term));
+      else if (kind != TermKind::Pressure && term->role() != TermRole::Contact)
         for (const int node : term->stencils().nodes) is_apart_[static_cast<size_t>(node)] = true;
     }
     for (const auto& [ends, edge] : edges_)
@@ -60,12 +59,12 @@ class Films {
   }
 
  private:
-  void add(const ElementTerm<SurfaceTension>& film) {
+  void add(const EnergyTerm& film, const TermAccess& access) {
     const std::vector<int>& nodes = film.stencils().nodes;
     corners_.insert(corners_.end(), nodes.begin(), nodes.end());
     for (size_t k = 0; k < nodes.size(); ++k) {
       const int a = nodes[k], b = nodes[k % 3 == 2 ? k - 2 : k + 1];
-      const double tension = film.rest()[k / 3].tension;
+      const double tension = access.film_tension(static_cast<int>(k / 3));
       double& known = tension_[static_cast<size_t>(a)];
       if (known != 0 && known != tension) is_apart_[static_cast<size_t>(a)] = true;
       known = tension;
@@ -89,7 +88,7 @@ class Films {
 NormalMotion::NormalMotion(const std::vector<std::unique_ptr<EnergyTerm>>& terms, const Points& start,
                            const std::vector<int>& block,
                            const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed) {
-  const auto is_film = [](const auto& term) { return term->type() == SurfaceTension::kType; };
+  const auto is_film = [](const auto& term) { return kind_of(*term) == TermKind::Film; };
   const auto has_no_potential = [](const auto& term) { return term->has_circulatory_force(); };
   if (std::none_of(terms.begin(), terms.end(), is_film) ||
       std::any_of(terms.begin(), terms.end(), has_no_potential))

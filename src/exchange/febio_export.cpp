@@ -5,6 +5,7 @@
 #include "exchange/detail/law_terms.hpp"
 #include "formats/xml_escaped.hpp"
 #include "scene/build/groundwork.hpp"
+#include "scene/terms/term_types.hpp"
 
 #include <algorithm>
 #include <set>
@@ -60,22 +61,23 @@ class FebioWriter {
   void sort_terms() {
     bool bends = false;
     for (const TermSpec& term : scene_.terms) {
-      const bool is_membrane = term.type.starts_with("cst_");
-      if (is_membrane && (term.parameters.has("triangle_values") || term.parameters.has("vertex_values")))
+      const TermType& type = type_of(term);
+      if (is_membrane(term) &&
+          (term.parameters.has("triangle_values") || term.parameters.has("vertex_values")))
         refuse("term \"" + term.name + "\"",
                "values that vary over the surface cannot be written to a FEBio model");
-      if (is_membrane) {
+      if (is_membrane(term)) {
         membranes_.push_back(&term);
-      } else if (term.type.starts_with("cable")) {
+      } else if (type.stress_curve) {
         cables_.push_back(&term);
-      } else if (term.type == "load_pressure") {
+      } else if (type.kind == TermKind::Pressure) {
         pressures_.push_back(&term);
-      } else if (term.type.starts_with("contact_")) {
+      } else if (type.kind == TermKind::Contact) {
         has_contact_ = true;
         warn(term,
              "is written as FEBio's sliding-elastic contact of the surface with itself; its penalty wants "
              "care.");
-      } else if (term.type == "bending") {
+      } else if (type.kind == TermKind::Bending) {
         bends = true;
         if (term.parameters.has("stiffness") || term.parameters.has("thickness") ||
             term.parameters.number("scale") != 1)

@@ -15,6 +15,7 @@
 #include "formats/utf8.hpp"
 #include "formats/whole_file.hpp"
 #include "scene/build/valve_doubts.hpp"
+#include "scene/terms/term_types.hpp"
 #include "valve/valve_check.hpp"
 #include "valve/valve_import.hpp"
 
@@ -168,17 +169,28 @@ const std::string* key_of(const Material& law, const std::string& key) {
   return found == law.keys.end() ? nullptr : &found->second;
 }
 
-bool is_membrane(const Material& law) { return law.type.starts_with("cst_") || law.type == "spring"; }
+bool is_sheet(const Material& law) {
+  const TermType* type = find_term_type(law.type);
+  return type != nullptr && (type->kind == TermKind::Membrane || type->kind == TermKind::Spring);
+}
+
+bool has_compression(const TermType& type) {
+  return std::any_of(type.spec.keys.begin(), type.spec.keys.end(),
+                     [](const KeySpec& key) { return key.name == "compression"; });
+}
 
 // Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
 // are springs. A law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
+  const TermType* type = find_term_type(law.type);
+  if (type == nullptr) return;
   const bool resists = options.membrane == "stvk";
-  if (law.type == "cst_stvk" || (resists && law.type == "cst_tension_field")) {
+  if (type->is_linear && (resists || !type->is_relaxed)) {
     if (is_own && !resists) return;
     law.type = detail::linear_membrane_type(options);
-    if (law.type == "spring") std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
-  } else if (resists && is_membrane(law) && key_of(law, "compression") == nullptr) {
+    if (find_term_type(law.type)->kind == TermKind::Spring)
+      std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
+  } else if (resists && has_compression(*type) && key_of(law, "compression") == nullptr) {
     law.keys.emplace_back("compression", "\"resisted\"");
   }
 }
@@ -225,7 +237,7 @@ bool complete_thickness(const ImportOptions& options, Valve& valve) {
   for (const std::string& region : valve.leaflets.region_names)
     is_missing |= !valve.membranes.contains(region);
   for (auto& [region, law] : valve.membranes)
-    if (is_membrane(law) && key_of(law, "thickness") == nullptr) {
+    if (is_sheet(law) && key_of(law, "thickness") == nullptr) {
       law.keys.emplace_back("thickness", quoted(digits(options.default_thickness) + " mm"));
       is_missing = true;
     }

@@ -11,11 +11,10 @@
 namespace coapt {
 namespace {
 
-bool is_membrane(const TermSpec& term) { return term.type.starts_with("cst_"); }
-bool is_bending(const TermSpec& term) { return term.type == "bending"; }
-bool is_spring(const TermSpec& term) { return term.type == "spring"; }
+bool is_bending(const TermSpec& term) { return kind_of(term) == TermKind::Bending; }
+bool is_spring(const TermSpec& term) { return kind_of(term) == TermKind::Spring; }
 
-void copy_numbers(const Parameters& from, std::initializer_list<const char*> keys, Parameters& to) {
+void copy_numbers(const Parameters& from, const std::vector<const char*>& keys, Parameters& to) {
   for (const char* key : keys)
     if (from.has(key)) to.set(key, from.number(key));
 }
@@ -30,17 +29,9 @@ void copy_place(const Parameters& from, Parameters& to) {
 // The numbers of its law; false for a law that springs do not have.
 bool copy_law(const TermSpec& membrane, Parameters& springs) {
   const Parameters& p = membrane.parameters;
-  if (membrane.type == "cst_stvk" || membrane.type == "cst_tension_field")
-    copy_numbers(p, {"young"}, springs);
-  else if (membrane.type == "cst_bilinear")
-    copy_numbers(p, {"young_pre", "young_post", "transition_strain"}, springs);
-  else if (membrane.type == "cst_orthotropic")
-    copy_numbers(p,
-                 {"fibre_young_pre", "fibre_young_post", "fibre_transition", "cross_young_pre",
-                  "cross_young_post", "cross_transition"},
-                 springs);
-  else
-    return false;
+  const std::vector<const char*>& keys = type_of(membrane).spring_keys;
+  if (keys.empty()) return false;
+  copy_numbers(p, keys, springs);
   copy_numbers(p, {"thickness"}, springs);
   copy_place(p, springs);
   return true;
@@ -65,6 +56,11 @@ void set_small_strain(const TermSpec& membrane, const Scene& scene, const Ground
   const Model model = build(alone, ground);
   const std::vector<int> triangles = region_triangles(membrane.parameters, model.mesh);
   const MembraneProperties& first = model.membrane[static_cast<size_t>(triangles.front())];
+  if (!(first.young > 0))
+    throw InputError(
+        membrane.parameters.where() +
+        ": is held by its prestress alone; springs have none, mass-spring needs a membrane with a "
+        "modulus");
   for (const int t : triangles) {
     const MembraneProperties& here = model.membrane[static_cast<size_t>(t)];
     if (here.young != first.young || here.thickness != first.thickness)
@@ -77,17 +73,12 @@ void set_small_strain(const TermSpec& membrane, const Scene& scene, const Ground
   if (membrane.parameters.has("region")) springs.set("region", membrane.parameters.texts("region"));
 }
 
-std::string compression_of(const TermSpec& membrane) {
-  if (membrane.parameters.has("compression")) return membrane.parameters.text("compression");
-  return membrane.type == "cst_stvk" ? "resisted" : "relaxed";
-}
-
 TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<Groundwork>& ground) {
   const Parameters& p = membrane.parameters;
   if (p.number_or("prestress", 0) != 0)
     throw InputError(p.where("prestress") + ": springs have none; mass-spring needs a membrane without");
   Parameters springs(p.where());
-  springs.set("compression", compression_of(membrane));
+  springs.set("compression", std::string(relaxes(membrane) ? "relaxed" : "resisted"));
   if (copy_law(membrane, springs)) {
     copy_window(p, springs);
   } else {

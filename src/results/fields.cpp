@@ -1,10 +1,6 @@
 #include "results/fields.hpp"
 
-#include "energy/element_term.hpp"
-#include "energy/kernels/cable.hpp"
-#include "energy/kernels/cable_law.hpp"
-#include "energy/kernels/spring.hpp"
-#include "energy/kernels/tether_cubic.hpp"
+#include "energy/term_access.hpp"
 #include "mesh/distance/vertex_gaps.hpp"
 
 #include <Eigen/Geometry>
@@ -12,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 namespace coapt {
 namespace {
@@ -56,7 +54,7 @@ void add_stress(const Model& model, Fields& fields) {
 bool has_springs(const Model& model) {
   const auto& terms = model.objective->terms();
   return std::any_of(terms.begin(), terms.end(),
-                     [](const auto& term) { return term->type() == Spring::kType; });
+                     [](const auto& term) { return kind_of(*term) == TermKind::Spring; });
 }
 
 void add_strain_and_stress(const Model& model, Fields& fields) {
@@ -69,32 +67,22 @@ void add_strain_and_stress(const Model& model, Fields& fields) {
   if (!model.membrane_patches.empty() && !has_springs(model)) add_stress(model, fields);
 }
 
-template <typename Kernel>
-bool tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
-  const auto* lines = dynamic_cast<const ElementTerm<Kernel>*>(&term);
-  if (lines == nullptr) return false;
+// The force along the line from its first end to the second.
+double tension_of(const TermAccess& lines, const Line& line, const Points& x) {
   Eigen::Vector<double, 6> ends, g;
   ends << x.col(line.a), x.col(line.b);
-  Kernel::evaluate(lines->rest()[line.element], ends, &g, nullptr);
-  // The gradient at the second end is the force along the line from the first to the second.
-  force = g.tail<3>().dot((x.col(line.b) - x.col(line.a)).normalized());
-  return true;
-}
-
-template <typename... Kernels>
-void first_tension_of(const EnergyTerm& term, const Line& line, const Points& x, double& force) {
-  static_cast<void>((tension_of<Kernels>(term, line, x, force) || ...));
+  lines.evaluate_element(line.element, ends.data(), g.data(), nullptr);
+  return g.tail<3>().dot((x.col(line.b) - x.col(line.a)).normalized());
 }
 
 void add_line_forces(const Model& model, Fields& fields) {
   fields.line_force = Vector::Zero(static_cast<Eigen::Index>(model.lines.size()));
+  std::map<std::string, const TermAccess*> lines;
+  for (const auto& term : model.objective->terms())
+    if (kind_of(*term) == TermKind::Line) lines[term->name()] = access_of(*term);
   for (size_t k = 0; k < model.lines.size(); ++k)
-    for (const auto& term : model.objective->terms()) {
-      if (term->name() != model.lines[k].term) continue;
-      double& force = fields.line_force[static_cast<Eigen::Index>(k)];
-      first_tension_of<Cable, TetherCubic, CableBilinear, CableOgden, CableToe, CableCrimpedFibre>(
-          *term, model.lines[k], fields.x, force);
-    }
+    if (const auto found = lines.find(model.lines[k].term); found != lines.end())
+      fields.line_force[static_cast<Eigen::Index>(k)] = tension_of(*found->second, model.lines[k], fields.x);
 }
 
 void add_contact(const Model& model, Fields& fields) {

@@ -250,9 +250,11 @@ OrderedJson accuracy(const OrderedJson& statuses) {
 }
 
 OrderedJson counters() {
-  return object({{"membrane_elements", count("triangles of elastic terms")},
+  return object({{"membrane_elements", count("triangles of membranes that strain")},
+                 {"film_elements", count("triangles of constant tension")},
                  {"spring_elements", count("edge springs of membranes")},
                  {"cable_elements", count("cables and tethers")},
+                 {"link_elements", count("links between pairs of nodes")},
                  {"pressure_facets", count("elements of pressure terms: facets, or loaded nodes if frozen")},
                  {"contact_candidates", count("pairs in the candidate lists at the end")},
                  {"contact_searches", count("renewals of candidate lists")}},

@@ -2,7 +2,7 @@
 
 #include "core/components.hpp"
 #include "core/error.hpp"
-#include "energy/kernels/spring.hpp"
+#include "energy/term_access.hpp"
 #include "formats/json/csv_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/mesh_io.hpp"
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <sstream>
 #include <system_error>
 
@@ -82,22 +83,21 @@ OrderedJson reference_json(const ReferenceDistance& distance) {
 }
 
 OrderedJson counters_json(const Model& model, const Result& result) {
-  long membrane = 0, springs = 0, cable = 0, pressure = 0, candidates = 0, searches = 0;
-  for (const auto& term : model.objective->terms()) {
-    const long elements = term->counters().elements;
-    const bool is_internal = term->role() == TermRole::Internal;
-    if (is_internal && term->stencils().width == 3) membrane += elements;
-    if (is_internal && term->stencils().width == 2)
-      (term->type() == Spring::kType ? springs : cable) += elements;
-    if (term->type() == "load_pressure") pressure += elements;
-  }
+  std::map<TermKind, long> elements;
+  for (const auto& term : model.objective->terms()) elements[kind_of(*term)] += term->counters().elements;
+  long candidates = 0, searches = 0;
   for (const TermReport& term : result.terms) {
     candidates += term.counters.candidates;
     searches += term.counters.searches;
   }
-  return {{"membrane_elements", membrane},    {"spring_elements", springs},
-          {"cable_elements", cable},          {"pressure_facets", pressure},
-          {"contact_candidates", candidates}, {"contact_searches", searches}};
+  return {{"membrane_elements", elements[TermKind::Membrane]},
+          {"film_elements", elements[TermKind::Film]},
+          {"spring_elements", elements[TermKind::Spring]},
+          {"cable_elements", elements[TermKind::Line]},
+          {"link_elements", elements[TermKind::Link]},
+          {"pressure_facets", elements[TermKind::Pressure]},
+          {"contact_candidates", candidates},
+          {"contact_searches", searches}};
 }
 
 OrderedJson counted(int count) { return count < 0 ? OrderedJson(nullptr) : OrderedJson(count); }
@@ -259,8 +259,8 @@ void write_or_remove(bool is_there, const fs::path& file, const std::function<vo
 std::string pressure_route(const Model& model, const Result& result) {
   if (!result.route.empty()) return "follower pressure on a rim that moves: " + result.route;
   for (const auto& term : model.objective->terms()) {
-    if (term->type() != "load_pressure") continue;
-    if (term->stencils().width == 1) return "frozen: dead forces of the pressure on the reference shape";
+    if (kind_of(*term) != TermKind::Pressure) continue;
+    if (!access_of(*term)->pressure()) return "frozen: dead forces of the pressure on the reference shape";
     return "follower pressure by its potential, minus pressure times volume (exact: no rim moves freely)";
   }
   return "no pressure";

@@ -2,14 +2,8 @@
 
 #include "energy/contact_barrier.hpp"
 #include "energy/contact_facet.hpp"
-#include "energy/kernels/cable.hpp"
-#include "energy/kernels/cable_law.hpp"
-#include "energy/kernels/cst_fibrous.hpp"
-#include "energy/kernels/cst_isotropic.hpp"
-#include "energy/kernels/cst_tension_field.hpp"
-#include "energy/kernels/spring.hpp"
-#include "energy/kernels/tether_cubic.hpp"
-#include "sensitivity/detail/element_visit.hpp"
+#include "energy/term_access.hpp"
+#include "sensitivity/detail/element_positions.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -18,45 +12,10 @@
 namespace coapt {
 namespace {
 
-using Lines = KernelList<Cable, CableBilinear, CableOgden, CableToe, CableCrimpedFibre, TetherCubic, Spring>;
-using RelaxingMembranes = KernelList<CstTensionField, CstBilinear, CstNeoHookean, CstExponential,
-                                     CstOrthotropic, CstMayNewmanYin, CstCrimpedFibre>;
-
-// Length of the rounded onset [length].
-double onset(const Cable::Rest& rest) { return rest.smoothing; }
-double onset(const TetherCubic::Rest&) { return 0; }
-template <typename Rest>
-double onset(const Rest& rest) {
-  return rest.smoothing * rest.length;
-}
-
-// Lines whose stiffness is continuous where their tension begins.
-bool begins_softly(const TetherCubic::Rest&) { return true; }
-template <typename Rest>
-bool begins_softly(const Rest& rest) {
-  return onset(rest) > 0;
-}
-
-// Lines whose law does not change: springs both ways, constant forces.
-bool is_one_law(const Cable::Rest& rest) { return rest.length == 0; }
-bool is_one_law(const Spring::Rest& rest) { return rest.resists; }
-template <typename Rest>
-bool is_one_law(const Rest&) {
-  return false;
-}
-
-// Membranes that resist compression have no regimes.
-template <typename Rest>
-bool relaxes(const Rest& rest) {
-  return rest.relaxes;
-}
-bool relaxes(const CstTensionField::Rest&) { return true; }
-
-template <typename Rest>
-std::string_view line_state(const Rest& rest, const Eigen::Vector<double, 6>& x) {
-  const double elongation = (x.tail<3>() - x.head<3>()).norm() - rest.length;
+std::string_view line_state(const LineTraits& line, const ElementVector& x) {
+  const double elongation = (x.tail<3>() - x.head<3>()).norm() - line.length;
   if (elongation <= 0) return "slack";
-  return elongation < onset(rest) ? "rounded" : "taut";
+  return elongation < line.onset ? "rounded" : "taut";
 }
 
 std::string_view regime_name(MembraneRegime regime) {
@@ -92,24 +51,19 @@ ElementStates element_states(const Objective& objective, const Points& x) {
   for (size_t k = 0; k < objective.terms().size(); ++k) {
     EnergyTerm& term = *objective.terms()[k];
     const int number = static_cast<int>(k);
-    const auto note = [&](size_t e, std::string_view name, bool is_smooth) {
-      found.push_back({.term = number,
-                       .element = {static_cast<int>(e), 0, 0, 0},
-                       .name = name,
-                       .changes_smoothly = is_smooth});
+    const auto note = [&](int e, std::string_view name, bool is_smooth) {
+      found.push_back({.term = number, .element = {e, 0, 0, 0}, .name = name, .changes_smoothly = is_smooth});
     };
-    visit_element_term(Lines{}, term, [&](const auto& lines) {
-      for (size_t e = 0; e < lines.rest().size(); ++e)
-        if (!is_one_law(lines.rest()[e]))
-          note(e, line_state(lines.rest()[e], element_positions(lines, e, x)),
-               begins_softly(lines.rest()[e]));
-    });
-    visit_element_term(RelaxingMembranes{}, term, [&]<typename Kernel>(const ElementTerm<Kernel>& membrane) {
-      for (size_t e = 0; e < membrane.rest().size(); ++e)
-        if (relaxes(membrane.rest()[e]))
-          note(e, regime_name(Kernel::state(membrane.rest()[e], element_positions(membrane, e, x)).regime),
-               false);
-    });
+    const TermAccess* access = access_of(term);
+    const int elements = access == nullptr || !access->has_elastic_elements() ? 0 : term.stencils().count();
+    for (int e = 0; e < elements; ++e) {
+      if (access->has_lines()) {
+        const LineTraits line = access->line(e);
+        if (!line.is_one_law) note(e, line_state(line, element_positions(term, e, x)), line.begins_softly);
+      } else if (const auto regime = access->regime(e, element_positions(term, e, x).data())) {
+        note(e, regime_name(*regime), false);
+      }
+    }
     for (const BarrierContact& contact : barrier_contacts(term, x))
       found.push_back({number, contact.nodes, contact_kind(contact), contact.inside, false, true});
     for (const FacetContact& contact : facet_contacts(term, x))

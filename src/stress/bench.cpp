@@ -2,6 +2,7 @@
 
 #include "report/solve_page.hpp"
 #include "scene/build/build.hpp"
+#include "scene/terms/term_types.hpp"
 #include "solve/solve_scene.hpp"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ constexpr double kGrace = 1;  // after the time limit [s]
 
 bool promises_contact(const Scene& scene) {
   return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
-    return term.type == "contact_barrier" && !term.parameters.has("exclude");
+    return is_barrier(term) && !term.parameters.has("exclude");
   });
 }
 

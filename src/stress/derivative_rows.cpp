@@ -5,6 +5,7 @@
 // the energy at fixed positions (the envelope theorem). That is compared with a central difference of two
 // solves.
 #include "scene/build/build.hpp"
+#include "scene/terms/term_types.hpp"
 #include "stress/subject.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ struct ChordPlace {
 StressScene with_a_potential(const StressScene& subject) {
   StressScene changed = copy_of(subject);
   for (TermSpec& term : changed.scene.terms)
-    if (term.type == "load_pressure" && term.parameters.text("model") == "follower")
+    if (kind_of(term) == TermKind::Pressure && term.parameters.text("model") == "follower")
       term.parameters.set("model", std::string("frozen"));
   changed.scene.solver.tolerance = std::min(tolerance_of(subject), kTolerance);
   return changed;

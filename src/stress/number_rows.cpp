@@ -70,11 +70,11 @@ std::vector<StressRow> number_rows(const SubjectPointer& subject) {
   for (const double factor : {1e-6, 1e-3, 10.0, 100.0})
     rows.push_back(scaled_row(subject, "S3", "loads", factor, factor == 1e-3, is_load));
   for (const double factor : {1e-2, 1e2, 1e4, 1e6, 1e8})
-    rows.push_back(scaled_row(subject, "S4", "membranes", factor, factor == 1e2, is_membrane));
+    rows.push_back(scaled_row(subject, "S4", "membranes", factor, factor == 1e2, is_sheet));
   for (const double factor : {1e-2, 1e2, 1e4, 1e6, 1e8})
     rows.push_back(scaled_row(subject, "S4", "lines", factor, factor == 1e2, is_line));
   for (const double factor : {1e-12, 1e12})
-    rows.push_back(scaled_row(subject, "S25", "membranes", factor, false, is_membrane));
+    rows.push_back(scaled_row(subject, "S25", "membranes", factor, false, is_sheet));
   rows.push_back(short_chords_row(subject));
   for (const double aspect : {1e2, 1e4, 1e6}) rows.push_back(sliver_row(subject, aspect, aspect == 1e4));
   return rows;

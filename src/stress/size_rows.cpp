@@ -1,6 +1,7 @@
 // S24: memory by triangle, and pairs of contact by facet.
 #include "mesh/shapes.hpp"
 #include "scene/build/build.hpp"
+#include "scene/terms/term_types.hpp"
 #include "solve/peak_memory.hpp"
 #include "stress/scenes/pressed.hpp"
 #include "stress/subject.hpp"
@@ -61,7 +62,7 @@ Pairs pairs_of(const StressBench& bench, int triangles) {
   Vector gradient;
   model.objective->gradient(model.objective->unknowns(x), gradient);
   for (const auto& term : model.objective->terms())
-    if (term->type() == "contact_barrier")
+    if (term->limits_steps())
       return {2.0 * sheet.triangle_count(), static_cast<double>(term->counters().candidates),
               static_cast<double>(term->counters().elements)};
   return {};
@@ -114,7 +115,7 @@ std::vector<StressRow> size_rows(const SubjectPointer& subject) {
                return {StressVerdict::NotApplicable, {}, {}, "fewer than 10000 triangles say nothing"};
              const auto& terms = scene.scene.terms;
              if (std::any_of(terms.begin(), terms.end(),
-                             [](const TermSpec& term) { return term.type.starts_with("contact_"); }))
+                             [](const TermSpec& term) { return kind_of(term) == TermKind::Contact; }))
                return {StressVerdict::NotApplicable, {}, {}, "the limit is that of scenes without contact"};
              return bytes_by_triangle(scene);
            }}};

@@ -44,16 +44,16 @@ bool is_prescribed(const Objective& objective, const std::vector<int>& nodes) {
   return std::all_of(nodes.begin(), nodes.end(), [&](int node) { return objective.fixed().col(node).all(); });
 }
 
-// Triangles of a term that stretch, in all regions of it; springs share bending with others and are left out.
-bool is_membrane(const EnergyTerm& term) {
-  return term.role() == TermRole::Internal && term.stencils().width == 3 && term.type() != "surface_tension";
+// Triangles whose moduli a factor multiplies; springs share bending with others and are left out.
+bool is_stiff_membrane(const EnergyTerm& term) {
+  return kind_of(term) == TermKind::Membrane && access_of(term)->has_stiffness();
 }
 
 // Beside the numbers of the scene.
 std::vector<std::string> names_of(EnergyTerm& term) {
   if (line_access(term) != nullptr) return {"lengths", "length", "stiffness"};
-  if (is_membrane(term)) return {"stiffness", "thickness"};
-  if (term.role() == TermRole::Load && term.type() == "load_pressure" && term.stencils().width == 3)
+  if (is_stiff_membrane(term)) return {"stiffness", "thickness"};
+  if (const TermAccess* access = access_of(term); access != nullptr && access->pressure())
     return {"pressure"};
   if (is_dead_load(term)) return {"load", "forces"};
   return {};
@@ -64,7 +64,7 @@ std::vector<std::string> names_of(const Objective& objective, const std::vector<
   if (nodes.empty()) return names;
   if (is_prescribed(objective, nodes)) names = {"positions", "shift", "ring"};
   const bool has_springs = std::any_of(objective.terms().begin(), objective.terms().end(),
-                                       [](const auto& term) { return term->type() == "spring"; });
+                                       [](const auto& term) { return kind_of(*term) == TermKind::Spring; });
   if (!has_springs) names.emplace_back("rest");
   return names;
 }
@@ -119,11 +119,12 @@ std::unique_ptr<Parameter> stiffness(const std::string& name, const Scene& scene
   std::vector<StiffnessPart> parts = {{.term = &term, .is_size = is_size}};
   const auto spec = std::find_if(scene.terms.begin(), scene.terms.end(),
                                  [&](const TermSpec& each) { return each.name == term.name(); });
-  if (is_membrane(term) && spec != scene.terms.end()) {
+  if (is_stiff_membrane(term) && spec != scene.terms.end()) {
     const HingeShares shares(model, region_triangles(spec->parameters, model.mesh));
     for (const TermSpec& other : scene.terms) {
       const Parameters& p = other.parameters;
-      if (other.type != "bending" || p.has("stiffness") || (is_size && p.has("thickness"))) continue;
+      if (kind_of(other) != TermKind::Bending || p.has("stiffness") || (is_size && p.has("thickness")))
+        continue;
       for (const auto& bending : model.objective->terms())
         if (bending->name() == other.name) {
           StiffnessPart part = shares.part_of(*bending, is_size ? 3 : 1, is_size, p.has("thickness"));

@@ -3,6 +3,7 @@
 
 #include "scene/build/in_memory.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
+#include "solve/run_options.hpp"
 
 #include <memory>
 #include <string>

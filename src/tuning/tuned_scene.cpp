@@ -14,13 +14,8 @@ namespace {
 // Keys of a membrane law with the dimension of a modulus that have a value; none for other terms.
 std::vector<std::string> moduli_of(const TermSpec& term) {
   std::vector<std::string> keys;
-  const auto is_of = [&](const std::vector<TermType>& family) {
-    return std::any_of(family.begin(), family.end(),
-                       [&](const TermType& type) { return type.name == term.type; });
-  };
-  if (!is_of(membrane_term_types()) && !is_of(tissue_term_types()) && !is_of(spring_term_types()))
-    return keys;
-  for (const KeySpec& key : find_term_type(term.type)->spec.keys)
+  if (!is_membrane(term) && kind_of(term) != TermKind::Spring) return keys;
+  for (const KeySpec& key : type_of(term).spec.keys)
     if (key.kind == KeyKind::Quantity && key.dimension == kPressure && term.parameters.has(key.name))
       keys.push_back(key.name);
   return keys;
@@ -74,8 +69,8 @@ TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOpt
   bool has_chords = false;
   for (const TermSpec& term : scene.terms) {
     has_chords = has_chords || is_elastic_cable(term);
-    const bool is_membrane = is_tunable(term);
-    if (!is_membrane && !term.parameters.has("region")) {
+    const bool is_tuned = is_tunable(term);
+    if (!is_tuned && !term.parameters.has("region")) {
       if (options.tunes_chords && is_elastic_cable(term)) cables_.push_back(split_.terms.size());
       split_.terms.push_back(term);
       continue;
@@ -83,13 +78,13 @@ TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOpt
     std::vector<std::string> names;
     for (const int region : regions_of(region_triangles(term.parameters, own_mesh), mesh)) {
       names.push_back(mesh.region_names[static_cast<size_t>(region)]);
-      if (!is_membrane) continue;
+      if (!is_tuned) continue;
       parts_.push_back({split_.terms.size(), static_cast<size_t>(region)});
       split_.terms.push_back(term);
       split_.terms.back().name += "/" + names.back();
       split_.terms.back().parameters.set("region", std::vector<std::string>{names.back()});
     }
-    if (is_membrane) continue;
+    if (is_tuned) continue;
     split_.terms.push_back(term);
     split_.terms.back().parameters.set("region", names);
   }

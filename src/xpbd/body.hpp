@@ -49,6 +49,12 @@ struct XpbdTether {
   std::function<AxialLaw(double distance)> law;  // force and stiffness at a distance; empty: straight
 };
 
+// A triangle of any energy that is never negative.
+struct XpbdTriangle {
+  std::array<int, 3> nodes{};
+  std::function<double(const double* x, double* g)> energy;  // node after node, with its gradient
+};
+
 struct XpbdBody {
   Points rest = Points(3, 0);             // 3 x node_count [length]
   Triangles triangles = Triangles(3, 0);  // of the membrane
@@ -57,6 +63,7 @@ struct XpbdBody {
   std::vector<XpbdArea> areas;
   std::vector<XpbdFilm> films;
   std::vector<XpbdTether> tethers;
+  std::vector<XpbdTriangle> others;
 
   bool has_contact = false;
   Triangles obstacles = Triangles(3, 0);  // meet the membrane and not each other

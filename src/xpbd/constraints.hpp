@@ -122,6 +122,28 @@ struct FilmConstraint {
   ConstraintValue<3> at(const Points& x) const { return triangle_area(x, nodes); }
 };
 
+// A triangle of any energy W that is never negative: C = sqrt(2 W) with the compliance 1, so that where the
+// sweeps settle the forces are those of W.
+struct TriangleEnergyConstraint {
+  static constexpr int kNodes = 3;
+  std::array<int, 3> nodes{};
+  std::function<double(const double* x, double* g)> energy;
+  static constexpr double stiffness = 1;
+  static constexpr ConstraintSense sense = ConstraintSense::BothWays;
+
+  double compliance(double /*value*/) const { return 1; }
+
+  ConstraintValue<3> at(const Points& x) const {
+    Eigen::Vector<double, 9> corners, g;
+    corners << x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]);
+    const double twice = 2 * energy(corners.data(), g.data());
+    if (!(twice > 0)) return undefined_constraint<3>();
+    const double value = std::sqrt(twice);
+    g /= value;
+    return {value, {g.segment<3>(0), g.segment<3>(3), g.segment<3>(6)}};
+  }
+};
+
 // A line of any law F(l): C and compliance are those of the tangent to the law at the distance l of the
 // moment, C = F/F', alpha = 1/F', so that where the sweeps settle the multiplier is the force of the law.
 // Below its length a line that only pulls goes on with the last slope that it had: that lets go of what it

@@ -47,6 +47,13 @@ std::vector<FilmConstraint> film_constraints(const XpbdBody& body, const Hardnes
   return all;
 }
 
+std::vector<TriangleEnergyConstraint> energy_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<TriangleEnergyConstraint> all;
+  if (hardness.is_paper) return all;
+  for (const XpbdTriangle& triangle : body.others) all.push_back({triangle.nodes, triangle.energy});
+  return all;
+}
+
 std::vector<BendingConstraint> bending_constraints(const XpbdBody& body, const Hardness& hardness) {
   std::vector<BendingConstraint> all;
   for (const XpbdHinge& hinge : body.hinges)
@@ -94,6 +101,7 @@ XpbdSystem::XpbdSystem(const XpbdBody& body, const Points& x,
   stretches_ = {stretch_constraints(body, hardness), count};
   areas_ = {area_constraints(body, hardness), count};
   films_ = {film_constraints(body, hardness), count};
+  others_ = {energy_constraints(body, hardness), count};
   bends_ = {bending_constraints(body, hardness), count};
   tethers_ = {tether_constraints(body, hardness), count};
   lines_ = {line_constraints(body, hardness), count};
@@ -117,6 +125,7 @@ void XpbdSystem::step(const Points& force, const Points& prescribed) {
     act(stretches_);
     act(areas_);
     act(films_);
+    act(others_);
     act(bends_);
     act(tethers_);
     act(lines_);
@@ -141,7 +150,8 @@ double XpbdSystem::kinetic_energy() const {
 }
 
 size_t XpbdSystem::constraint_count() const {
-  return stretches_.size() + areas_.size() + films_.size() + bends_.size() + tethers_.size() + lines_.size();
+  return stretches_.size() + areas_.size() + films_.size() + others_.size() + bends_.size() +
+         tethers_.size() + lines_.size();
 }
 
 }  // namespace coapt

@@ -43,6 +43,7 @@ class XpbdSystem {
   ColouredConstraints<StretchConstraint> stretches_;  // edges
   ColouredConstraints<AreaConstraint> areas_;
   ColouredConstraints<FilmConstraint> films_;
+  ColouredConstraints<TriangleEnergyConstraint> others_;
   ColouredConstraints<BendingConstraint> bends_;
   ColouredConstraints<StretchConstraint> tethers_;  // of a straight law
   ColouredConstraints<LineConstraint> lines_;       // of any other

@@ -122,6 +122,40 @@ class CommandTest(CommandCase):
         self.assertEqual(self.result()["counters"]["membrane_elements"], 0)
         self.assertEqual(self.result()["counters"]["cable_elements"], 40)
 
+    def square_of(self, terms):
+        scene = self.generate("square", "--triangles", 200)
+        first, last = scene.read_text().split('"terms": [', 1)
+        scene.write_text(first + '"terms": [' + terms + "]" + last.split("]", 1)[1])
+        return scene
+
+    def test_counters_tell_films_from_membranes(self):
+        scene = self.square_of('{"type": "surface_tension", "tension": "1 N/m"}, {"type": "load_pressure", "value": "1 Pa"}')
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        result = self.result()
+        self.assertEqual(result["counters"]["membrane_elements"], 0)
+        self.assertEqual(result["counters"]["film_elements"], result["mesh"]["triangles"])
+
+    def test_solves_a_sail_of_prescribed_prestress(self):
+        sail = ('{"type": "cst_prestress", "name": "sail", "warp": "2 N/m", "weft": "0.5 N/m", "direction": [1, 0, 0],'
+                '"thickness": "0.1 mm"}, {"type": "load_field", "direction": [0, 0, 1], "pressure": "1 Pa"}')
+        scene = self.square_of(sail)
+        self.assertEqual(coapt("check", scene).returncode, 0)
+        heights = {}
+        for solver in ["newton", "xpbd"]:
+            run = coapt("solve", scene, "--solver", solver, "--tolerance", "1e-6")
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            result = self.result()
+            self.assertEqual(result["counters"]["membrane_elements"], result["mesh"]["triangles"])
+            closed = (self.folder / "result" / "closed.obj").read_text().splitlines()
+            heights[solver] = max(float(line.split()[3]) for line in closed if line.startswith("v "))
+        self.assertGreater(heights["newton"], 0)
+        self.assertAlmostEqual(heights["xpbd"] / heights["newton"], 1, places=3)
+        fields = {a.get("Name"): a for a in ElementTree.parse(self.folder / "result" / "closed.vtp").iter("DataArray")}
+        stress = [name for name in fields if "stress" in name]
+        self.assertTrue(stress, list(fields))
+        across = self.square_of(sail.replace("[1, 0, 0]", "[0, 0, 1]"))
+        self.assert_bad_input(coapt("solve", across), "direction", "triangle 0")
+
     def test_frames_of_a_motion_share_one_time(self):
         scene = self.generate("mitral", "--triangles", 200, "--contact", "none")
         scene.write_text(scene.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))

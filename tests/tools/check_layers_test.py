@@ -64,6 +64,18 @@ class Layers(unittest.TestCase):
         self.write("cli/user.cpp", '#include "scene/added.hpp"\n')
         self.expect_defect("cli/user.cpp", "private to scene")
 
+    def test_refuses_a_comparison_of_the_types_of_terms_outside_their_registry(self):
+        for compared in ['term.type == "cst_stvk"', 'term->type() != "load_pressure"', 'term.type.starts_with("cst_")',
+                         "term->type() == SurfaceTension::kType"]:
+            self.write("results/added.cpp", f"bool is_it(const TermSpec& term) {{ return {compared}; }}\n")
+            self.expect_defect("results/added.cpp", "type of a term", "registry")
+        self.write("results/added.cpp", 'bool is_it(const Markup& markup) { return markup.type == "Plane"; }\n')
+        self.assertEqual(self.run_checker()[0], 0)
+
+    def test_refuses_more_dynamic_casts_than_three(self):
+        self.write("results/added.cpp", "auto* film = dynamic_cast<Film*>(&term);\n")
+        self.expect_defect("more than 3 dynamic casts", "results/added.cpp")
+
     def test_refuses_an_include_that_is_not_from_the_root_of_src(self):
         self.write("mesh/added.cpp", '#include "seams.hpp"\n')
         self.expect_defect("mesh/added.cpp", "from the src root")

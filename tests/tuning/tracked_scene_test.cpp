@@ -91,6 +91,31 @@ TEST_F(TrackedSceneTest, NamedParametersAreThoseOfTheScene) {
                 *metric, exact);
 }
 
+// Nothing of tuning knows the type.
+TEST_F(TrackedSceneTest, NumbersOfAPrestressAreParametersAndSoIsItsShapeAtRest) {
+  write_mesh(folder_.path() / "disc.obj", disc(10, 200));
+  const Scene given = load_scene(folder_.write("scene.json", R"({ "mesh": { "file": "disc.obj" },
+    "boundary": [{ "nodes": "boundary", "fix": true }],
+    "terms": [
+      { "type": "cst_prestress", "name": "sail", "warp": "2 N/m", "weft": "0.5 N/m", "direction": [1, 1, 0] },
+      { "type": "load_pressure", "name": "pressure", "value": "10 Pa", "model": "follower" }] })"));
+  RunOptions options;
+  options.tolerance = 1e-11;
+  TrackedScene tracked = track(given, scene_solvers(), options, {.tolerance = 1e-11});
+  ASSERT_EQ(tracked.first.status, Status::Converged);
+  const std::vector<std::string> known = parameter_names(tracked), keys = {"sail.warp", "sail.weft"};
+  for (const char* name : {"sail.warp", "sail.weft", "all.rest"})
+    EXPECT_NE(std::find(known.begin(), known.end(), name), known.end()) << name;
+  for (const char* name : {"sail.stiffness", "sail.thickness"})  // there is no modulus
+    EXPECT_EQ(std::find(known.begin(), known.end(), name), known.end()) << name;
+  for (const std::string& name : keys) tracked.equilibrium->add(make_named_parameter(name, given, tracked));
+  ASSERT_EQ(tracked.equilibrium->settle().status, Status::Converged);
+  const std::unique_ptr<Metric> metric = height(tracked);
+  Vector exact = tracked.equilibrium->derivatives(*metric).gradient;
+  exact = exact.cwiseProduct(tracked.equilibrium->value());  // per change of the whole
+  expect_slopes(given, keys, *metric, exact);
+}
+
 // What the bending takes from both membranes follows their numbers, Poisson's ratio at its limit by one-sided
 // differences; a cable's number leaves lengths that have been changed as they are.
 TEST_F(TrackedSceneTest, AnyNumberOfAnElasticTermIsAParameter) {

@@ -9,6 +9,24 @@
 namespace coapt {
 namespace {
 
+// The energy of three springs without length, of these stiffnesses.
+TriangleEnergyConstraint spring_triangle(const Vec3& k) {
+  return {{2, 0, 1}, [k](const double* x, double* g) {
+            double energy = 0;
+            Eigen::Map<Eigen::Matrix3d> forces(g);
+            const Eigen::Map<const Eigen::Matrix3d> corners(x);
+            forces.setZero();
+            for (int a = 0; a < 3; ++a) {
+              const int b = (a + 1) % 3;
+              const Vec3 edge = corners.col(b) - corners.col(a);
+              energy += 0.5 * k[a] * edge.squaredNorm();
+              forces.col(b) += k[a] * edge;
+              forces.col(a) -= k[a] * edge;
+            }
+            return energy;
+          }};
+}
+
 template <class K>
 void expect_gradient(const K& constraint, const Points& x) {
   const auto c = constraint.at(x);
@@ -42,6 +60,7 @@ TEST(XpbdConstraints, HaveTheGradientsOfTheirValues) {
     expect_gradient(BendingConstraint{{0, 1, 2, 3}, 0.2}, x);
     expect_gradient(AreaConstraint{{2, 0, 1}, 0.4}, x);
     expect_gradient(FilmConstraint{{2, 0, 1}, 0.4}, x);
+    expect_gradient(spring_triangle({0.4, 0.7, 1.1}), x);
     expect_gradient(contact_of(PairKind::PointTriangle, x), x);
     expect_gradient(contact_of(PairKind::EdgeEdge, x), x);
     ContactConstraint through = contact_of(PairKind::PointTriangle, x);
@@ -82,6 +101,7 @@ TEST(XpbdConstraints, PushAndTurnNothingAsAWhole) {
     expect_no_push(BendingConstraint{{0, 1, 2, 3}, 0.2, 1e-2}, x);
     expect_no_push(AreaConstraint{{2, 0, 1}, 0.1, 1e-2}, x);
     expect_no_push(FilmConstraint{{2, 0, 1}, 0.4}, x);
+    expect_no_push(spring_triangle({0.4, 0.7, 1.1}), x);
     ContactConstraint contact = contact_of(PairKind::EdgeEdge, x);
     contact.thickness = 5;
     expect_no_push(contact, x);
@@ -130,6 +150,23 @@ TEST(XpbdConstraints, OfAFilmSettleAtItsTension) {
   double lambda = 0;
   for (int sweep = 0; sweep < 50; ++sweep) project(FilmConstraint{{0, 1, 2}, tension}, dt2, w, x, lambda);
   EXPECT_NEAR(lambda, -tension * dt2, 1e-12);
+}
+
+// Multiplier times gradient is the impulse -dt^2 dW/dx.
+TEST(XpbdConstraints, OfATriangleOfAnyEnergySettleAtItsForces) {
+  const TriangleEnergyConstraint triangle = spring_triangle({0.4, 0.7, 1.1});
+  Points x = random_points(3, 31);
+  const InverseMasses w = Points::Ones(3, 3);
+  const double dt2 = 0.09;
+  double lambda = 0;
+  for (int sweep = 0; sweep < 200; ++sweep) project(triangle, dt2, w, x, lambda);
+  Eigen::Matrix3d corners, g;
+  corners << x.col(2), x.col(0), x.col(1);
+  triangle.energy(corners.data(), g.data());
+  EXPECT_GT(g.norm(), 0.1);
+  const auto c = triangle.at(x);
+  for (int a = 0; a < 3; ++a)
+    EXPECT_LT((lambda * c.gradient[static_cast<size_t>(a)] + dt2 * g.col(a)).norm(), 1e-10);
 }
 
 TEST(Colouring, PutsEveryElementOnceAndNoNodeTwiceInAClass) {

@@ -23,7 +23,9 @@
 #pragma once
 
 #include "core/types.hpp"
+#include "energy/kernels/cst.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <Eigen/Dense>
 
@@ -35,6 +37,7 @@ struct BendingHinge {
   static constexpr int kNodes = 4;
   static constexpr std::string_view kType = "bending";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Bending;
 
   using Vector12 = Eigen::Vector<double, 12>;
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
@@ -56,6 +59,14 @@ struct BendingHinge {
             s / left,
             s / right};
   }
+
+  // --- For parameters and other solvers ----------------------------------------------------------------
+  static double hinge_stiffness(const Rest& hinge) { return hinge.stiffness; }
+  static Rest reshaped(const Rest& hinge, const Corners& from, const Corners& X) {
+    const Rest unit = rest(from[0], from[1], from[2], from[3], 1);
+    return rest(X[0], X[1], X[2], X[3], hinge.stiffness / unit.stiffness);
+  }
+  static void stiffen(Rest& hinge, double factor, bool /*is_size*/) { hinge.stiffness *= factor; }
 
   // theta in [-pi, pi]; 0 where a facet has no area. The sine comes from the height of x3 over the first
   // facet: exact to the rounding of the coordinates in a nearly flat sheet, as a product of normals would not

@@ -9,6 +9,7 @@
 
 #include "energy/kernels/axial.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <algorithm>
 
@@ -18,6 +19,7 @@ struct Cable {
   static constexpr int kNodes = 2;
   static constexpr std::string_view kType = "cable";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Line;
 
   struct Rest {
     double stiffness = 0;  // EA / r [force/length]
@@ -41,15 +43,41 @@ struct Cable {
     return {k * s * s * u * u * u * (2.0 / 3 - u / 4), k * s * u * u * (2 - u), k * u * (4 - 3 * u)};
   }
 
+  // The whole of it at the distance l; coincident ends have no direction to pull in.
+  static AxialLaw axial(const Rest& rest, double l) {
+    AxialLaw law = elastic(rest, l - rest.length);
+    if (l > 0) {
+      law.energy += rest.tension * l;
+      law.force += rest.tension;
+    }
+    return law;
+  }
+
+  // --- For parameters and other solvers ----------------------------------------------------------------
+  static LineTraits line(const Rest& rest) {
+    return {.length = rest.length,
+            .onset = rest.smoothing,
+            .begins_softly = rest.smoothing > 0,
+            .is_one_law = rest.length == 0,
+            .is_straight = !(rest.smoothing > 0 || rest.tension > 0),
+            .stiffness = rest.stiffness};
+  }
+  static void lengthen(Rest& rest, double length) {
+    rest.stiffness *= rest.length / length;
+    rest.smoothing *= length / rest.length;
+    rest.length = length;
+  }
+  static RestSlope slope_by_rest(const Rest& rest, const AxialLaw& law, double l) {
+    return homogeneous_slope(law, l, rest.length);
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.stiffness *= factor; }
+  static bool has_prestress(const Rest& rest) { return rest.tension != 0; }
+
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H) {
     const Vec3 difference = x.tail<3>() - x.head<3>();
     const double l = difference.norm();
-    AxialLaw law = elastic(rest, l - rest.length);
-    if (l > 0) {  // coincident ends have no direction to pull in
-      law.energy += rest.tension * l;
-      law.force += rest.tension;
-    }
+    const AxialLaw law = axial(rest, l);
     expand_axial(law, difference, l, g, H);
     return law.energy;
   }

@@ -13,6 +13,7 @@
 #include "energy/laws/line_laws.hpp"
 #include "energy/laws/rounded_elongation.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -43,6 +44,7 @@ struct CableLaw {
   static constexpr int kNodes = 2;
   static constexpr std::string_view kType = CableLawName<Law>::kType;
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Line;
 
   struct Rest {
     double length = 0;     // r
@@ -89,6 +91,19 @@ struct CableLaw {
     return {rest.area * rest.length * w.energy, rest.area * w.stress * rho.slope,
             rest.area / rest.length * (w.stiffness * rho.slope * rho.slope + w.stress * rho.curvature)};
   }
+
+  static AxialLaw axial(const Rest& rest, double l) { return elastic(rest, l / rest.length - 1); }
+
+  // --- For parameters and other solvers ----------------------------------------------------------------
+  static LineTraits line(const Rest& rest) {
+    const double onset = rest.smoothing * rest.length;
+    return {.length = rest.length, .onset = onset, .begins_softly = onset > 0};
+  }
+  static void lengthen(Rest& rest, double length) { rest.length = length; }
+  static RestSlope slope_by_rest(const Rest& rest, const AxialLaw& law, double l) {
+    return homogeneous_slope(law, l, rest.length);
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.area *= factor; }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H) {

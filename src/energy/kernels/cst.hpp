@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace coapt {
@@ -36,6 +37,25 @@ inline CstShape cst_shape(const Vec3& X0, const Vec3& X1, const Vec3& X2, const 
 // The same with the first axis along the first edge.
 inline CstShape cst_shape(const Vec3& X0, const Vec3& X1, const Vec3& X2) {
   return cst_shape(X0, X1, X2, X1 - X0);
+}
+
+// Corners of an element at rest; a triangle has three of them.
+using Corners = std::array<Vec3, 4>;
+
+// Edge vectors of the triangle at rest.
+inline Eigen::Matrix<double, 3, 2> rest_edges(const Corners& X) {
+  Eigen::Matrix<double, 3, 2> edges;
+  edges << X[1] - X[0], X[2] - X[0];
+  return edges;
+}
+
+// Gives a triangle of the shape D_X^-1 the corners X, its first axis being a line that is drawn on it.
+// Returns its area over that before.
+inline double reshape(Eigen::Matrix2d& inverse, const Corners& X) {
+  const CstShape shape = cst_shape(X[0], X[1], X[2], rest_edges(X) * inverse.col(0));
+  const double ratio = shape.area * 2 * std::abs(inverse.determinant());
+  inverse = shape.inverse;
+  return ratio;
 }
 
 // How a membrane that does not resist compression carries its load.

@@ -16,6 +16,7 @@
 #include "energy/kernels/cst.hpp"
 #include "energy/laws/fibrous.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 namespace coapt {
 
@@ -49,6 +50,7 @@ struct CstFibrous {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = FibrousName<Law>::kType;
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Membrane;
 
   struct Rest {
     Eigen::Matrix2d shape;  // D_X^-1, first axis along the fibre [1/length]
@@ -64,6 +66,15 @@ struct CstFibrous {
     const CstShape shape = cst_shape(X0, X1, X2, fibre);
     return {shape.inverse, shape.area * thickness, relaxes, law};
   }
+
+  // --- For parameters ---------------------------------------------------------------------------------
+  static const Eigen::Matrix2d& shape(const Rest& rest) { return rest.shape; }
+  static Rest reshaped(Rest rest, const Corners&, const Corners& X) {
+    rest.volume *= reshape(rest.shape, X);
+    return rest;
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.volume *= factor; }
+  static bool relaxes(const Rest& rest) { return rest.relaxes; }
 
   // EnergyTerm::limit_stress().
   static void limit_stress(Rest& rest, const TensionScale& scale) requires requires(Law law) { law.limit; }

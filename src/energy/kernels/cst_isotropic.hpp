@@ -12,6 +12,7 @@
 #include "energy/kernels/cst.hpp"
 #include "energy/laws/isotropic.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,7 @@ struct CstIsotropic {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = IsotropicName<Law>::kType;
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Membrane;
 
   struct Rest {
     Eigen::Matrix2d shape;  // D_X^-1 [1/length]
@@ -54,6 +56,15 @@ struct CstIsotropic {
     const CstShape shape = cst_shape(X0, X1, X2);
     return {shape.inverse, shape.area * thickness, relaxes, law};
   }
+
+  // --- For parameters ---------------------------------------------------------------------------------
+  static const Eigen::Matrix2d& shape(const Rest& rest) { return rest.shape; }
+  static Rest reshaped(Rest rest, const Corners&, const Corners& X) {
+    rest.volume *= reshape(rest.shape, X);
+    return rest;
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.volume *= factor; }
+  static bool relaxes(const Rest& rest) { return rest.relaxes; }
 
   static MembraneState state(const Rest& rest, const CstVector& x) {
     const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.shape, x)));

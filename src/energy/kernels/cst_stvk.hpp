@@ -10,6 +10,7 @@
 
 #include "energy/kernels/cst.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 namespace coapt {
 
@@ -17,6 +18,7 @@ struct CstStVK {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "cst_stvk";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Membrane;
 
   struct Rest {
     Eigen::Matrix2d shape;  // D_X^-1: rest edge vectors in the triangle's plane, inverted [1/length]
@@ -35,6 +37,22 @@ struct CstStVK {
             shape.area * thickness * young / (2 * (1 + poisson)), shape.area * prestress,
             shape.area * thickness};
   }
+
+  // --- For parameters ---------------------------------------------------------------------------------
+  static const Eigen::Matrix2d& shape(const Rest& rest) { return rest.shape; }
+  static Rest reshaped(Rest rest, const Corners&, const Corners& X) {
+    enlarge(rest, reshape(rest.shape, X));
+    return rest;
+  }
+  static void enlarge(Rest& rest, double ratio) {
+    for (double* extensive : {&rest.lambda, &rest.mu, &rest.prestress, &rest.volume}) *extensive *= ratio;
+  }
+  static void stiffen(Rest& rest, double factor, bool is_size) {
+    rest.lambda *= factor;
+    rest.mu *= factor;
+    if (is_size) rest.volume *= factor;
+  }
+  static bool has_prestress(const Rest& rest) { return rest.prestress != 0; }
 
   // The regime is that in which a tension field of the same law would be.
   static MembraneState state(const Rest& rest, const CstVector& x) {

@@ -20,6 +20,7 @@ struct CstTensionField {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "cst_tension_field";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Membrane;
 
   struct Rest {
     CstStVK::Rest stvk;
@@ -36,6 +37,21 @@ struct CstTensionField {
     return {stvk, poisson, 2 * (1 + poisson) * stvk.mu, 0.5 * stvk.prestress / (stvk.lambda + stvk.mu),
             residual};
   }
+
+  // --- For parameters ---------------------------------------------------------------------------------
+  static const Eigen::Matrix2d& shape(const Rest& rest) { return rest.stvk.shape; }
+  static Rest reshaped(Rest rest, const Corners&, const Corners& X) {
+    const double ratio = reshape(rest.stvk.shape, X);
+    CstStVK::enlarge(rest.stvk, ratio);
+    rest.uniaxial *= ratio;
+    return rest;
+  }
+  static void stiffen(Rest& rest, double factor, bool is_size) {
+    CstStVK::stiffen(rest.stvk, factor, is_size);
+    rest.uniaxial *= factor;
+  }
+  static bool has_prestress(const Rest& rest) { return rest.stvk.prestress != 0; }
+  static bool relaxes(const Rest&) { return true; }
 
   static MembraneRegime regime(const Rest& rest, const CstVector& x) {
     return regime(rest, cst_principal(cst_strain(cst_frame(rest.stvk.shape, x))));

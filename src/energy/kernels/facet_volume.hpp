@@ -6,6 +6,7 @@
 #pragma once
 
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <Eigen/Dense>
 
@@ -15,11 +16,14 @@ struct FacetVolume {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "load_pressure";
   static constexpr TermRole kRole = TermRole::Load;
+  static constexpr TermKind kKind = TermKind::Pressure;
 
   struct Rest {
     double pressure = 0;  // along the facet's normal
     Vec3 origin = Vec3::Zero();
   };
+  static double pressure(const Rest& rest) { return rest.pressure; }
+  static void set_pressure(Rest& rest, double p) { rest.pressure = p; }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 9>& x, Eigen::Vector<double, 9>* g,
                          Eigen::Matrix<double, 9, 9>* H) {

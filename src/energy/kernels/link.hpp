@@ -9,6 +9,7 @@
 
 #include "energy/kernels/axial.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <algorithm>
 
@@ -18,6 +19,7 @@ struct Link {
   static constexpr int kNodes = 2;
   static constexpr std::string_view kType = "link";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Link;
 
   struct Rest {
     double stiffness = 0;  // k

@@ -16,6 +16,7 @@
 #include "energy/laws/blended_line.hpp"
 #include "energy/laws/rounded_elongation.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <algorithm>
 
@@ -25,6 +26,7 @@ struct Spring {
   static constexpr int kNodes = 2;
   static constexpr std::string_view kType = "spring";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Spring;
 
   struct Rest {
     double length = 0;     // r
@@ -56,6 +58,19 @@ struct Spring {
     return {rest.area * rest.length * w.energy, rest.area * w.stress * rho.slope,
             rest.area / rest.length * (w.stiffness * rho.slope * rho.slope + w.stress * rho.curvature)};
   }
+
+  static AxialLaw axial(const Rest& rest, double l) { return elastic(rest, l / rest.length - 1); }
+
+  // --- For parameters and other solvers ----------------------------------------------------------------
+  static LineTraits line(const Rest& rest) {
+    const double onset = rest.smoothing * rest.length;
+    return {.length = rest.length,
+            .onset = onset,
+            .begins_softly = onset > 0,
+            .is_one_law = rest.resists,
+            .resists = rest.resists};
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.area *= factor; }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H) {

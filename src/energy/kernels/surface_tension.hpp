@@ -4,6 +4,7 @@
 #pragma once
 
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 
 #include <Eigen/Dense>
 
@@ -13,10 +14,12 @@ struct SurfaceTension {
   static constexpr int kNodes = 3;
   static constexpr std::string_view kType = "surface_tension";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Film;
 
   struct Rest {
     double tension = 0;  // sigma
   };
+  static double film_tension(const Rest& rest) { return rest.tension; }
 
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 9>& x, Eigen::Vector<double, 9>* g,
                          Eigen::Matrix<double, 9, 9>* H) {

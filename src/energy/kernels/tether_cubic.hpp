@@ -7,6 +7,9 @@
 
 #include "energy/kernels/axial.hpp"
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
+
+#include <algorithm>
 
 namespace coapt {
 
@@ -14,6 +17,7 @@ struct TetherCubic {
   static constexpr int kNodes = 2;
   static constexpr std::string_view kType = "tether_cubic";
   static constexpr TermRole kRole = TermRole::Internal;
+  static constexpr TermKind kKind = TermKind::Line;
 
   struct Rest {
     double strength = 0;  // t
@@ -21,16 +25,26 @@ struct TetherCubic {
     double scale = 1;     // rho
   };
 
+  static AxialLaw axial(const Rest& rest, double l) {
+    const double u = std::max(l - rest.length, 0.0) / rest.scale;
+    return {rest.strength * u * u * u, 3 * rest.strength * u * u / rest.scale,
+            6 * rest.strength * u / (rest.scale * rest.scale)};
+  }
+
+  // --- For parameters and other solvers ----------------------------------------------------------------
+  static LineTraits line(const Rest& rest) { return {.length = rest.length, .begins_softly = true}; }
+  static void lengthen(Rest& rest, double length) { rest.length = length; }
+  // A function of l - r alone.
+  static RestSlope slope_by_rest(const Rest&, const AxialLaw& law, double /*l*/) {
+    return {-law.force, -law.stiffness};
+  }
+  static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.strength *= factor; }
+
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H) {
     const Vec3 difference = x.tail<3>() - x.head<3>();
     const double l = difference.norm();
-    AxialLaw law;
-    if (l > rest.length) {
-      const double u = (l - rest.length) / rest.scale;
-      law = {rest.strength * u * u * u, 3 * rest.strength * u * u / rest.scale,
-             6 * rest.strength * u / (rest.scale * rest.scale)};
-    }
+    const AxialLaw law = axial(rest, l);
     expand_axial(law, difference, l, g, H);
     return law.energy;
   }

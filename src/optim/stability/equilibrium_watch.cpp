@@ -1,7 +1,7 @@
 #include "optim/stability/equilibrium_watch.hpp"
 
-#include "energy/kernels/surface_tension.hpp"
 #include "energy/normal_motion.hpp"
+#include "energy/term_access.hpp"
 #include "optim/stability/film_size.hpp"
 
 #include <Eigen/Geometry>
@@ -56,7 +56,7 @@ EquilibriumWatch::EquilibriumWatch(const Objective& objective, const Vector& q)
   reason_ += adrift_.empty() ? ", the load is too much for it" : "; " + adrift_.front().name;
   if (!adrift_.empty()) find_obstacle(objective, x, parts);
   for (const auto& term : objective.terms()) {
-    if (term->type() != SurfaceTension::kType) continue;
+    if (kind_of(*term) != TermKind::Film) continue;
     const std::vector<int>& nodes = term->stencils().nodes;
     for (size_t k = 0; k + 2 < nodes.size(); k += 3)
       film_.push_back(

@@ -1,8 +1,7 @@
 #include "optim/stability/film_size.hpp"
 
 #include "energy/connected_parts.hpp"
-#include "energy/kernels/facet_volume.hpp"
-#include "energy/kernels/surface_tension.hpp"
+#include "energy/term_access.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +34,9 @@ std::optional<FreeFilms> free_films(const Objective& objective, const Points& x)
   bool has_film = false;
   Points tension = Points::Zero(3, x.cols()), pressure = tension;
   for (const auto& term : objective.terms()) {
-    const bool is_film = term->type() == SurfaceTension::kType;
-    if (!is_film && term->type() != FacetVolume::kType) return std::nullopt;
+    const TermKind kind = kind_of(*term);
+    const bool is_film = kind == TermKind::Film;
+    if (!is_film && kind != TermKind::Pressure) return std::nullopt;
     (is_film ? has_film : films.has_pressure) = true;
     (is_film ? tension : pressure) += nodal_forces(*term, x);
   }

@@ -200,7 +200,6 @@ void read_obstacles(const Scene& scene, Assembly& assembly) {
 }
 
 void warn_of_idle_obstacles(const Scene& scene, Assembly& assembly) {
-  const auto is_barrier = [](const TermSpec& term) { return term.type == "contact_barrier"; };
   if (scene.obstacles.empty() || std::any_of(scene.terms.begin(), scene.terms.end(), is_barrier)) return;
   assembly.warn({scene.file.string() +
                  ": obstacles: nothing keeps the membrane off them, as no term is a `contact_barrier`; where "

@@ -37,6 +37,7 @@ struct MembraneProperties {
 struct MembranePatch {
   std::vector<int> triangles;  // element e of the term covers triangles[e]
   std::function<MembraneState(int element, const CstVector& corners)> state;
+  std::string term = {};  // its name
 };
 
 // Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions), then

@@ -17,9 +17,16 @@ std::string first_few(const std::vector<int>& nodes) {
   return nodes.size() > kFew ? text + " and " + std::to_string(nodes.size() - kFew) + " more" : text;
 }
 
-bool has_term(const Scene& scene, const std::string& type) {
+bool has_pressure(const Scene& scene) {
   return std::any_of(scene.terms.begin(), scene.terms.end(),
-                     [&](const TermSpec& term) { return term.type == type; });
+                     [](const TermSpec& term) { return kind_of(term) == TermKind::Pressure; });
+}
+
+// A barrier looks for what touches at the start by itself.
+bool has_finite_contact(const Scene& scene) {
+  return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
+    return kind_of(term) == TermKind::Contact && !is_barrier(term);
+  });
 }
 
 }  // namespace
@@ -27,8 +34,8 @@ bool has_term(const Scene& scene, const std::string& type) {
 void check_surface(const Scene& scene, Model& model, std::vector<std::string>& defects) {
   if (!scene.mesh) return;
   MeshCheckOptions options;
-  options.orientation_matters = has_term(scene, "load_pressure");
-  options.contact = has_term(scene, "contact_facet");
+  options.orientation_matters = has_pressure(scene);
+  options.contact = has_finite_contact(scene);
   for (const MeshDefect& defect : check_mesh(model.mesh, options)) {
     const std::string message = scene.mesh->file.string() + ": " + defect.message;
     if (defect.severity == Severity::Error) {

@@ -40,7 +40,7 @@ ChordNetwork joined_networks(const Groundwork& ground) {
 // it opens the valve.
 bool presses_front(const Scene& scene) {
   return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
-    return term.type == "load_pressure" && term.parameters.text("side") == "front" &&
+    return kind_of(term) == TermKind::Pressure && term.parameters.text("side") == "front" &&
            term.parameters.number("value") > 0;
   });
 }

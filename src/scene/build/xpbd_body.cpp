@@ -1,14 +1,10 @@
 #include "scene/build/xpbd_body.hpp"
 
 #include "core/error.hpp"
-#include "energy/element_term.hpp"
 #include "energy/kernels/bending.hpp"
-#include "energy/kernels/cable.hpp"
-#include "energy/kernels/cable_law.hpp"
-#include "energy/kernels/spring.hpp"
-#include "energy/kernels/surface_tension.hpp"
-#include "energy/kernels/tether_cubic.hpp"
+#include "energy/term_access.hpp"
 #include "scene/build/contact_pairs.hpp"
+#include "scene/terms/term_types.hpp"
 #include "xpbd/options.hpp"
 
 #include <algorithm>
@@ -22,110 +18,77 @@ constexpr double kPushes = 0.01;            // of its modulus: stress there that
 
 // --- Lines ------------------------------------------------------------------------------------------------
 
-XpbdTether tether_of(const Cable::Rest& rest) {
-  XpbdTether tether;
-  tether.length = rest.length;
-  tether.stiffness = rest.stiffness;
-  if (rest.smoothing > 0 || rest.tension > 0)
-    tether.law = [rest](double l) {
-      AxialLaw law = Cable::elastic(rest, l - rest.length);
-      law.force += rest.tension;
-      return law;
-    };
-  return tether;
-}
-
-template <typename Law>
-XpbdTether tether_of(const typename CableLaw<Law>::Rest& rest) {
-  XpbdTether tether;
-  tether.length = rest.length;
-  tether.law = [rest](double l) { return CableLaw<Law>::elastic(rest, l / rest.length - 1); };
-  return tether;
-}
-
-XpbdTether tether_of(const Spring::Rest& rest) {
-  XpbdTether tether;
-  tether.length = rest.length;
-  tether.only_tension = !rest.resists;
-  tether.is_edge = true;
-  tether.law = [rest](double l) { return Spring::elastic(rest, l / rest.length - 1); };
-  return tether;
-}
-
-XpbdTether tether_of(const TetherCubic::Rest& rest) {
-  XpbdTether tether;
-  tether.length = rest.length;
-  tether.law = [rest](double l) {
-    const double u = std::max(l - rest.length, 0.0) / rest.scale;
-    return AxialLaw{rest.strength * u * u * u, 3 * rest.strength * u * u / rest.scale,
-                    6 * rest.strength * u / (rest.scale * rest.scale)};
-  };
-  return tether;
-}
-
-template <typename Kernel, typename TetherOf>
-bool add_lines(const EnergyTerm& term, const TetherOf& tether_of_rest, XpbdBody& body) {
-  const auto* lines = dynamic_cast<const ElementTerm<Kernel>*>(&term);
-  if (lines == nullptr) return false;
+void add_tethers(const EnergyTerm& term, const TermAccess& access, XpbdBody& body) {
   const int* nodes = term.stencils().nodes.data();
-  for (const auto& rest : lines->rest()) {
-    XpbdTether tether = tether_of_rest(rest);
-    tether.a = *nodes++;
-    tether.b = *nodes++;
-    body.tethers.push_back(std::move(tether));
+  for (int e = 0; e < term.stencils().count(); ++e, nodes += 2) {
+    const LineTraits line = access.line(e);
+    body.tethers.push_back({.a = nodes[0],
+                            .b = nodes[1],
+                            .length = line.length,
+                            .stiffness = line.stiffness,
+                            .only_tension = !line.resists,
+                            .is_edge = access.kind() == TermKind::Spring,
+                            .law = line.is_straight ? nullptr : access.line_law(e)});
   }
-  return true;
 }
 
-template <typename Law>
-bool add_cable_law(const EnergyTerm& term, XpbdBody& body) {
-  return add_lines<CableLaw<Law>>(
-      term, [](const auto& rest) { return tether_of<Law>(rest); }, body);
-}
+// --- Hinges, films and other triangles --------------------------------------------------------------------
 
-bool add_any_lines(const EnergyTerm& term, XpbdBody& body) {
-  const auto by_kernel = [](const auto& rest) { return tether_of(rest); };
-  return add_lines<Cable>(term, by_kernel, body) || add_lines<TetherCubic>(term, by_kernel, body) ||
-         add_lines<Spring>(term, by_kernel, body) || add_cable_law<BilinearLine>(term, body) ||
-         add_cable_law<OgdenLine>(term, body) || add_cable_law<ToeLine>(term, body) ||
-         add_cable_law<CrimpedLine>(term, body);
-}
-
-// --- Hinges and films -------------------------------------------------------------------------------------
-
-bool add_hinges(const EnergyTerm& term, XpbdBody& body) {
-  const auto* hinges = dynamic_cast<const ElementTerm<BendingHinge>*>(&term);
-  if (hinges == nullptr) return false;
+void add_hinges(const EnergyTerm& term, const TermAccess& access, XpbdBody& body) {
   const Points& X = body.rest;
   const int* n = term.stencils().nodes.data();
-  for (const BendingHinge::Rest& rest : hinges->rest()) {
+  for (int e = 0; e < term.stencils().count(); ++e, n += BendingHinge::kNodes)
     body.hinges.push_back({{n[0], n[1], n[2], n[3]},
                            BendingHinge::angle(X.col(n[0]), X.col(n[1]), X.col(n[2]), X.col(n[3])),
-                           rest.stiffness});
-    n += BendingHinge::kNodes;
-  }
-  return true;
+                           access.hinge_stiffness(e)});
 }
 
-bool add_films(const EnergyTerm& term, XpbdBody& body) {
-  const auto* films = dynamic_cast<const ElementTerm<SurfaceTension>*>(&term);
-  if (films == nullptr) return false;
+void add_films(const EnergyTerm& term, const TermAccess& access, XpbdBody& body) {
   const int* n = term.stencils().nodes.data();
-  for (const SurfaceTension::Rest& rest : films->rest()) {
-    body.films.push_back({{n[0], n[1], n[2]}, rest.tension});
-    n += SurfaceTension::kNodes;
-  }
-  return true;
+  for (int e = 0; e < term.stencils().count(); ++e, n += 3)
+    body.films.push_back({{n[0], n[1], n[2]}, access.film_tension(e)});
+}
+
+void add_triangles(const EnergyTerm& term, const TermAccess& access, XpbdBody& body) {
+  const int* n = term.stencils().nodes.data();
+  for (int e = 0; e < term.stencils().count(); ++e, n += 3)
+    body.others.push_back({{n[0], n[1], n[2]}, access.element_energy(e)});
+}
+
+// What the registry says of a term of the model, if that is one of the registry's.
+XpbdConstraint constraint_of(const EnergyTerm& term) {
+  const TermType* type = find_term_type(std::string(term.type()));
+  return type == nullptr || type->kind != kind_of(term) ? XpbdConstraint::None : type->xpbd;
+}
+
+// Of membranes all together: see add_membrane(). False: there is no constraint for the term.
+bool add_constraints(const EnergyTerm& term, XpbdBody& body) {
+  const TermAccess* access = access_of(term);
+  const XpbdConstraint constraint = constraint_of(term);
+  if (constraint == XpbdConstraint::Tethers) add_tethers(term, *access, body);
+  if (constraint == XpbdConstraint::Films) add_films(term, *access, body);
+  if (constraint == XpbdConstraint::Hinges) add_hinges(term, *access, body);
+  if (constraint == XpbdConstraint::Energy) add_triangles(term, *access, body);
+  return constraint != XpbdConstraint::None;
 }
 
 // --- Membranes --------------------------------------------------------------------------------------------
 
-// What covers a triangle; only these know whether they push back where they are made smaller.
+// What covers a triangle whose membrane its edges stand for; only these know whether they push back where
+// they are made smaller.
 enum class Cover : char { None, Relaxed, Resisting };
+
+bool has_edges(const Model& model, const MembranePatch& patch) {
+  const auto& terms = model.objective->terms();
+  return std::any_of(terms.begin(), terms.end(), [&](const auto& term) {
+    return term->name() == patch.term && constraint_of(*term) == XpbdConstraint::Edges;
+  });
+}
 
 std::vector<Cover> covers(const Model& model) {
   std::vector<Cover> all(static_cast<size_t>(model.mesh.triangle_count()), Cover::None);
-  for (const MembranePatch& patch : model.membrane_patches)
+  for (const MembranePatch& patch : model.membrane_patches) {
+    if (!has_edges(model, patch)) continue;
     for (size_t e = 0; e < patch.triangles.size(); ++e) {
       const auto t = static_cast<size_t>(patch.triangles[e]);
       const auto corners = model.mesh.triangles.col(patch.triangles[e]);
@@ -135,6 +98,7 @@ std::vector<Cover> covers(const Model& model) {
           patch.state(static_cast<int>(e), x).stress.minCoeff() < -kPushes * model.membrane[t].young;
       all[t] = pushes ? Cover::Resisting : Cover::Relaxed;
     }
+  }
   return all;
 }
 
@@ -175,8 +139,6 @@ void add_membrane(const Model& model, XpbdBody& body) {
   }
 }
 
-bool is_membrane(const EnergyTerm& term) { return term.type().starts_with("cst_"); }
-
 }  // namespace
 
 std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<TermSpec>& terms) {
@@ -190,8 +152,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
   std::vector<std::string> defects;
   for (const auto& term : model.objective->terms()) {
     if (term->role() == TermRole::Contact) body->has_contact = true;
-    if (term->role() != TermRole::Internal || is_membrane(*term)) continue;
-    if (!add_any_lines(*term, *body) && !add_hinges(*term, *body) && !add_films(*term, *body))
+    if (term->role() == TermRole::Internal && !add_constraints(*term, *body))
       defects.push_back("solver \"xpbd\" has no constraint for term \"" + term->name() + "\" (" +
                         std::string(term->type()) + "); leave it out or take another solver");
   }
@@ -199,7 +160,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
   add_membrane(model, *body);
   body->is_exact = body->edges.empty() && body->areas.empty() && body->hinges.empty() && !body->has_contact;
   for (const TermSpec& term : terms)
-    if (term.type == "contact_barrier" && term.parameters.has("exclude"))
+    if (is_barrier(term) && term.parameters.has("exclude"))
       for (const auto& pair :
            read_facet_pairs(term.parameters.text("exclude"),
                             static_cast<int>(model.mesh.triangles.cols() + model.obstacles.cols())))
@@ -212,8 +173,9 @@ bool xpbd_moves_the_scene_itself(const Scene& scene) {
   return options.stiffness == XpbdStiffness::Material && options.forces == XpbdForces::Scene &&
          options.phase == HeartPhase::Systole &&
          std::none_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
-           return term.type.starts_with("cst_") || term.type.starts_with("contact_") ||
-                  term.type == "bending";
+           const TermType& type = type_of(term);
+           return type.xpbd == XpbdConstraint::Edges || type.xpbd == XpbdConstraint::Hinges ||
+                  type.kind == TermKind::Contact;
          });
 }
 

@@ -24,6 +24,19 @@ const TermType* find_term_type(const std::string& name) {
   return nullptr;
 }
 
+const TermType& type_of(const TermSpec& term) { return *find_term_type(term.type); }
+
+TermKind kind_of(const TermSpec& term) { return type_of(term).kind; }
+
+bool is_membrane(const TermSpec& term) { return kind_of(term) == TermKind::Membrane; }
+
+bool is_barrier(const TermSpec& term) { return type_of(term).is_barrier; }
+
+bool relaxes(const TermSpec& membrane) {
+  const Parameters& p = membrane.parameters;
+  return p.has("compression") ? p.text("compression") == "relaxed" : type_of(membrane).is_relaxed;
+}
+
 bool takes_material(const Parameters& parameters, const std::string& material) {
   const auto names = [&](const char* key) {
     if (!parameters.has(key)) return false;

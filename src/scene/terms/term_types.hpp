@@ -2,6 +2,7 @@
 #pragma once
 
 #include "energy/term.hpp"
+#include "energy/term_kind.hpp"
 #include "formats/valve.hpp"
 #include "scene/build/model.hpp"
 #include "scene/file/scene.hpp"
@@ -11,7 +12,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace coapt {
@@ -57,6 +60,31 @@ enum class BuildStage { First, AfterMembrane, AfterLoads, AfterContact };
 inline constexpr BuildStage kBuildStages[] = {BuildStage::First, BuildStage::AfterMembrane,
                                               BuildStage::AfterLoads, BuildStage::AfterContact};
 
+// The constraints of xpbd that stand for a term of an internal energy (xpbd/constraints.hpp).
+enum class XpbdConstraint {
+  None,     // there are none
+  Tethers,  // each line by its own law
+  Films,
+  Hinges,  // an approximation
+  Edges,   // springs along the edges of a membrane, and areas: an approximation
+  Energy   // each triangle by its own energy, which is never negative
+};
+
+// The material of FEBio that is like the law of a membrane.
+struct FebioMaterial {
+  std::string type;
+  std::vector<std::pair<std::string, double>> numbers;
+  std::vector<std::string> warnings = {};  // sentences without the name of the term
+};
+
+// Nominal stress over elongation of a line, from (0, 0) on and straight between the points and beyond.
+struct StressCurve {
+  std::vector<std::pair<double, double>> points;
+  std::vector<std::string> warnings = {};
+};
+
+// All that is to be known of terms of one type. Whoever treats some of them in a way of their own asks here,
+// or the term itself (energy/term_access.hpp), and compares no names.
 struct TermType {
   std::string name;  // of `type` in the scene
   BuildStage stage = BuildStage::First;
@@ -66,12 +94,42 @@ struct TermType {
   std::function<std::vector<std::string>(const Parameters&)> check;
   // Throws InputError.
   std::function<TermPointer(const TermSpec&, BuildContext&)> build;
+
+  TermKind kind = TermKind::Other;
+  XpbdConstraint xpbd = XpbdConstraint::None;
+
+  // Contact that lets nothing through, and so needs a start without intersections.
+  bool is_barrier = false;
+
+  // --- Membranes ----------------------------------------------------------------------------------------
+  // Of those without a key `compression`: whether they wrinkle instead of being compressed.
+  bool is_relaxed = false;
+  // Linear and isotropic, so that another law of a modulus and Poisson's ratio may stand for it.
+  bool is_linear = false;
+  // Keys of its law that mean the same of the springs of `spring`. None: springs take its moduli at small
+  // strain.
+  std::vector<const char*> spring_keys = {};
+  // As FEBio's; none where it has no like of it.
+  std::function<std::optional<FebioMaterial>(const Parameters&)> febio = {};
+
+  // --- Lines ------------------------------------------------------------------------------------------
+  // For programs that know a line by its curve; none where there is no such curve.
+  std::function<std::optional<StressCurve>(const Parameters&)> stress_curve = {};
 };
 
 const std::vector<TermType>& term_types();
 
 // nullptr for an unknown name.
 const TermType* find_term_type(const std::string& name);
+
+// Of a term whose type is known, as all of a scene's are.
+const TermType& type_of(const TermSpec& term);
+TermKind kind_of(const TermSpec& term);
+bool is_membrane(const TermSpec& term);
+bool is_barrier(const TermSpec& term);
+
+// Whether a membrane wrinkles instead of being compressed.
+bool relaxes(const TermSpec& membrane);
 
 // Where a term names a network: materials of chords that interventions added for terms of their own.
 inline constexpr const char* kAddedChords = "added chords";

@@ -91,7 +91,9 @@ std::vector<TermType> bending_term_types() {
                           .doc = "Factor on the stiffness; zero turns bending off."},
                          region_key()}},
        .check = check_bending,
-       .build = build_bending}};
+       .build = build_bending,
+       .kind = TermKind::Bending,
+       .xpbd = XpbdConstraint::Hinges}};
 }
 
 }  // namespace coapt

@@ -114,7 +114,9 @@ std::vector<TermType> contact_term_types() {
                                  "from 0 a line, obstacles after the mesh; `coapt check --repair exclude` "
                                  "writes one."}}},
        .check = {},
-       .build = build_barrier},
+       .build = build_barrier,
+       .kind = TermKind::Contact,
+       .is_barrier = true},
       {.name = "contact_facet",
        .stage = BuildStage::AfterLoads,  // its default strength comes from the applied pressure
        .summary = "Smoothed repulsion of facets that come close (Burlina et al. 2010); a finite barrier, so "
@@ -148,7 +150,8 @@ std::vector<TermType> contact_term_types() {
                           .max = 16,
                           .doc = "Each facet is cut into the square of this number of parts."}}},
        .check = {},
-       .build = build_contact}};
+       .build = build_contact,
+       .kind = TermKind::Contact}};
 }
 
 }  // namespace coapt

@@ -1,5 +1,6 @@
 #include "energy/kernels/cable_law.hpp"
 #include "scene/terms/build_lines.hpp"
+#include "scene/terms/febio_laws.hpp"
 #include "scene/terms/term_types.hpp"
 
 namespace coapt {
@@ -131,7 +132,10 @@ TermType cable_type() {
                                 line_keys()),
                    .groups = {{{"network", "edges"}, true}, {{"young", "tension"}, true}}},
           .check = [](const Parameters& p) { return p.has("young") ? check_area(p) : check_constant(p); },
-          .build = build_cable};
+          .build = build_cable,
+          .kind = TermKind::Line,
+          .xpbd = XpbdConstraint::Tethers,
+          .stress_curve = cable_curve};
 }
 
 TermType cable_bilinear_type() {
@@ -151,7 +155,10 @@ TermType cable_bilinear_type() {
               defects.push_back("knee: is greater than transition_strain; it must not reach the rest state");
             return defects;
           },
-      .build = build_cable_bilinear};
+      .build = build_cable_bilinear,
+      .kind = TermKind::Line,
+      .xpbd = XpbdConstraint::Tethers,
+      .stress_curve = bilinear_curve};
 }
 
 TermType cable_ogden_type() {
@@ -179,7 +186,10 @@ TermType cable_ogden_type() {
             for (const std::string& more : check_area(p)) defects.push_back(more);
             return defects;
           },
-      .build = build_cable_ogden};
+      .build = build_cable_ogden,
+      .kind = TermKind::Line,
+      .xpbd = XpbdConstraint::Tethers,
+      .stress_curve = ogden_curve};
 }
 
 TermType cable_toe_type() {
@@ -206,7 +216,9 @@ TermType cable_toe_type() {
               defects.push_back("intercept: must be less than recruitment_strain");
             return defects;
           },
-      .build = build_cable_toe};
+      .build = build_cable_toe,
+      .kind = TermKind::Line,
+      .xpbd = XpbdConstraint::Tethers};
 }
 
 TermType cable_crimped_fibre_type() {
@@ -223,7 +235,9 @@ TermType cable_crimped_fibre_type() {
                    line_keys()),
                .groups = {{{"network", "edges"}, true}}},
       .check = check_area,
-      .build = build_cable_crimped_fibre};
+      .build = build_cable_crimped_fibre,
+      .kind = TermKind::Line,
+      .xpbd = XpbdConstraint::Tethers};
 }
 
 TermType tether_cubic_type() {
@@ -250,7 +264,9 @@ TermType tether_cubic_type() {
                                 line_keys()),
                    .groups = {{{"network", "edges"}, true}}},
           .check = {},
-          .build = build_tether};
+          .build = build_tether,
+          .kind = TermKind::Line,
+          .xpbd = XpbdConstraint::Tethers};
 }
 
 }  // namespace

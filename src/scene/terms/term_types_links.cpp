@@ -77,7 +77,8 @@ std::vector<TermType> link_term_types() {
                    defects.emplace_back("keeps_distance and length: keep one of them");
                  return defects;
                },
-           .build = build_link}};
+           .build = build_link,
+           .kind = TermKind::Link}};
 }
 
 }  // namespace coapt

@@ -129,7 +129,8 @@ TermPointer build_pressure(const TermSpec& spec, BuildContext& context) {
     throw InputError(p.where("model") + ": " + error.what());
   }
   return std::make_unique<LoadDead>(spec.name, spec.type,
-                                    frozen_pressure_forces(model.X, triangles, along_normals), model.X);
+                                    frozen_pressure_forces(model.X, triangles, along_normals), model.X,
+                                    TermKind::Pressure);
 }
 
 TermType load_field_type() {
@@ -170,7 +171,8 @@ TermType load_field_type() {
                              .doc = "Thickness of the membrane, for gravity."}},
                    .groups = {{{"direction", "toward_line", "gravity", "forces"}, true}}},
           .check = check_field,
-          .build = build_field};
+          .build = build_field,
+          .kind = TermKind::DeadLoad};
 }
 
 TermType load_pressure_type() {
@@ -195,7 +197,8 @@ TermType load_pressure_type() {
                              "the normals point to, as on a closed valve."},
                         region_key()}},
       .check = {},
-      .build = build_pressure};
+      .build = build_pressure,
+      .kind = TermKind::Pressure};
 }
 
 }  // namespace

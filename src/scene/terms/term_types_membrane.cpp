@@ -1,14 +1,18 @@
 #include "core/error.hpp"
 #include "energy/element_term.hpp"
+#include "energy/kernels/cst_prestress.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "scene/build/detail/build_membrane.hpp"
+#include "scene/terms/febio_laws.hpp"
 
 #include <algorithm>
 
 namespace coapt {
 namespace {
+
+constexpr double kAcross = 1e-3;  // sine between `direction` and a normal, below which it says nothing there
 
 std::vector<int> corner_nodes(const Triangles& all, const std::vector<int>& triangles) {
   const Triangles covered = all(Eigen::all, triangles);
@@ -101,6 +105,78 @@ TermPointer build_surface_tension(const TermSpec& spec, BuildContext& context) {
                                                        std::move(rest));
 }
 
+// The warp of each triangle of the mesh, along `direction` where it is given, else along the fibres.
+Points warp_directions(const TermSpec& spec, BuildContext& context) {
+  const Parameters& p = spec.parameters;
+  if (!p.has("direction")) return context.fibres();
+  const Vec3 along = p.vector("direction").normalized();
+  const Model& model = context.model;
+  std::vector<std::string> defects;
+  for (const int t : membrane_triangles(spec, context)) {
+    const Vec3 normal = area_vector(model.X, model.mesh.triangles.col(t)).normalized();
+    if (along.cross(normal).norm() < kAcross)
+      defects.push_back(p.where("direction") + ": triangle " + std::to_string(t) +
+                        " lies across it, so that it gives no warp there; take another, or leave it out: the "
+                        "warp then follows the fibres");
+  }
+  if (!defects.empty()) throw InputError(defects);
+  return along.replicate(1, model.mesh.triangle_count());
+}
+
+TermPointer build_prestress(const TermSpec& spec, BuildContext& context) {
+  const Points warps = warp_directions(spec, context);
+  return build_membrane<CstPrestress>(
+      spec, context,
+      [](const ElementValues& values, int t) {
+        return MembraneProperties{0, 0, values.number_or("thickness", t, 0),
+                                  std::max(values.number("warp", t), values.number("weft", t))};
+      },
+      [&](const MembraneElement& e) {
+        return CstPrestress::rest(e.X0, e.X1, e.X2, warps.col(e.triangle),
+                                  e.values.number("warp", e.triangle), e.values.number("weft", e.triangle),
+                                  e.properties.thickness);
+      });
+}
+
+std::vector<std::string> check_prestress(const Parameters& p) {
+  if (p.has("direction") && p.vector("direction").norm() == 0) return {"direction: is zero"};
+  return {};
+}
+
+KeySpec resultant(const char* name, const char* doc) {
+  return {.name = name,
+          .dimension = kForcePerLength,
+          .required = true,
+          .min = 0,
+          .excludes_min = true,
+          .doc = doc};
+}
+
+TermType prestress_type() {
+  return {.name = "cst_prestress",
+          .summary =
+              "Membrane of prescribed prestress along its warp and its weft, in the reference shape: "
+              "form finding of tents and sails.",
+          .spec = {.keys = {resultant("warp", "Stress resultant along the warp."),
+                            resultant("weft", "Stress resultant across it."),
+                            {.name = "direction",
+                             .kind = KeyKind::Triple,
+                             .doc = "Its projection onto each triangle is the warp; default: the fibres of "
+                                    "the scene."},
+                            {.name = "thickness",
+                             .dimension = kLength,
+                             .min = 0,
+                             .excludes_min = true,
+                             .doc = "For stresses in the results, which are zero without it."},
+                            region_key(),
+                            triangle_values_key(),
+                            vertex_values_key()}},
+          .check = check_prestress,
+          .build = build_prestress,
+          .kind = TermKind::Membrane,
+          .xpbd = XpbdConstraint::Energy};
+}
+
 }  // namespace
 
 std::vector<TermType> membrane_term_types() {
@@ -110,13 +186,25 @@ std::vector<TermType> membrane_term_types() {
                   "resists compression too.",
        .spec = {.keys = elastic_keys(true)},
        .check = check_stvk,
-       .build = build_stvk},
+       .build = build_stvk,
+       .kind = TermKind::Membrane,
+       .xpbd = XpbdConstraint::Edges,
+       .is_linear = true,
+       .spring_keys = {"young"},
+       .febio = febio_linear},
       {.name = "cst_tension_field",
        .summary = "Elastic membrane that wrinkles instead of being compressed (tension field: taut, wrinkled "
                   "or slack), on constant-strain triangles; like cst_stvk where it is taut.",
        .spec = {.keys = tension_field_keys()},
        .check = {},
-       .build = build_tension_field},
+       .build = build_tension_field,
+       .kind = TermKind::Membrane,
+       .xpbd = XpbdConstraint::Edges,
+       .is_relaxed = true,
+       .is_linear = true,
+       .spring_keys = {"young"},
+       .febio = febio_linear},
+      prestress_type(),
       {.name = "surface_tension",
        .summary = "Film of constant isotropic tension; its equilibria without pressure are minimal surfaces.",
        .spec = {.keys = {{.name = "tension",
@@ -127,7 +215,9 @@ std::vector<TermType> membrane_term_types() {
                           .doc = "Force per length of any cut."},
                          region_key()}},
        .check = {},
-       .build = build_surface_tension},
+       .build = build_surface_tension,
+       .kind = TermKind::Film,
+       .xpbd = XpbdConstraint::Films},
   };
 }
 

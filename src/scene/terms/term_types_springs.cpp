@@ -206,7 +206,9 @@ std::vector<TermType> spring_term_types() {
                       "isotropic on equilateral triangles alone, with a Poisson's ratio of 1/3.",
            .spec = {.keys = spring_keys(), .groups = {{{"young", "young_pre", "fibre_young_pre"}, true}}},
            .check = check_spring,
-           .build = build_spring}};
+           .build = build_spring,
+           .kind = TermKind::Spring,
+           .xpbd = XpbdConstraint::Tethers}};
 }
 
 }  // namespace coapt

@@ -2,6 +2,7 @@
 #include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/cst_isotropic.hpp"
 #include "scene/build/detail/build_membrane.hpp"
+#include "scene/terms/febio_laws.hpp"
 
 namespace coapt {
 namespace {
@@ -50,8 +51,6 @@ CrimpedFibreLaw crimped_fibre_law(const At& at) {
           CrimpedFibre(at("fibre_young"), at("crimp_ratio"), at("radius_ratio"), at("smoothing")),
           at("splay")};
 }
-
-bool relaxes(const TermSpec& spec) { return spec.parameters.text("compression") == "relaxed"; }
 
 template <typename Law>
 TermPointer build_isotropic(const TermSpec& spec, BuildContext& context, Law (*law_of)(const At&)) {
@@ -162,12 +161,14 @@ std::vector<TermType> isotropic_types() {
                      positive("transition_strain", kDimensionless, "Engineering strain of the knee.", "0.25"),
                      poisson_key(), smoothing_key(kKneeWindow)})},
        .check = [](const Parameters& p) { return check_window(p, {"transition_strain"}); },
-       .build = isotropic<&bilinear_law>},
+       .build = isotropic<&bilinear_law>,
+       .spring_keys = {"young_pre", "young_post", "transition_strain"}},
       {.name = "cst_neo_hookean",
        .summary = "Rubber-like membrane: mu/2 (I1 - 3).",
        .spec = {.keys = tissue_keys({positive("shear_modulus", kPressure, "Shear modulus mu."), bulk_key()})},
        .check = {},
-       .build = isotropic<&neo_hookean_law>},
+       .build = isotropic<&neo_hookean_law>,
+       .febio = febio_neo_hookean},
       {.name = "cst_exponential",
        .summary =
            "Isotropic soft tissue: c0/2 (I1 - 3) + c1/2 (exp(c2 (I1 - 3)^2) - 1) (Mathur et al. 2022).",
@@ -180,7 +181,8 @@ std::vector<TermType> isotropic_types() {
                                      {.name = "c2", .required = true, .min = 0, .doc = "Its exponent."},
                                      bulk_key()})},
        .check = {},
-       .build = isotropic<&exponential_law>}};
+       .build = isotropic<&exponential_law>,
+       .febio = febio_exponential}};
 }
 
 std::vector<TermType> fibrous_types() {
@@ -204,7 +206,9 @@ std::vector<TermType> fibrous_types() {
            [](const Parameters& p) {
              return check_window(p, {"fibre_transition", "cross_transition"});
            },
-       .build = fibrous<&orthotropic_law>},
+       .build = fibrous<&orthotropic_law>,
+       .spring_keys = {"fibre_young_pre", "fibre_young_post", "fibre_transition", "cross_young_pre",
+                       "cross_young_post", "cross_transition"}},
       {.name = "cst_may_newman_yin",
        .summary = "Mitral tissue: c0 (exp(c1 (I1 - 3)^2 + c2 (l_f - 1)^4) - 1), incompressible (May-Newman & "
                   "Yin 1998).",
@@ -243,6 +247,10 @@ std::vector<TermType> fibrous_types() {
 std::vector<TermType> tissue_term_types() {
   std::vector<TermType> types = isotropic_types();
   for (TermType& type : fibrous_types()) types.push_back(std::move(type));
+  for (TermType& type : types) {
+    type.kind = TermKind::Membrane;
+    type.xpbd = XpbdConstraint::Edges;
+  }
   return types;
 }
 

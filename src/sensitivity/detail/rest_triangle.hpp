@@ -3,57 +3,15 @@
 // corners.
 #pragma once
 
-#include "energy/kernels/cst_fibrous.hpp"
-#include "energy/kernels/cst_isotropic.hpp"
-#include "energy/kernels/cst_tension_field.hpp"
-
-#include <array>
-#include <cmath>
+#include "energy/term_access.hpp"
 
 namespace coapt {
 
-using Corners = std::array<Vec3, 4>;  // at rest; a triangle has three of them
-
-template <typename Rest>
-Eigen::Matrix2d& shape_of(Rest& rest) {
-  return rest.shape;
-}
-inline Eigen::Matrix2d& shape_of(CstTensionField::Rest& rest) { return rest.stvk.shape; }
-
-inline void enlarge(CstStVK::Rest& rest, double ratio) {
-  for (double* extensive : {&rest.lambda, &rest.mu, &rest.prestress, &rest.volume}) *extensive *= ratio;
-}
-inline void enlarge(CstTensionField::Rest& rest, double ratio) {
-  enlarge(rest.stvk, ratio);
-  rest.uniaxial *= ratio;
-}
-template <typename Rest>
-void enlarge(Rest& rest, double ratio) {
-  rest.volume *= ratio;
-}
-
-// Edge vectors of the triangle at rest, and its axes in space.
-inline Eigen::Matrix<double, 3, 2> rest_edges(const Corners& X) {
-  Eigen::Matrix<double, 3, 2> edges;
-  edges << X[1] - X[0], X[2] - X[0];
-  return edges;
-}
-
-// The element with its corners at X, of the same material and thickness.
-template <typename Rest>
-Rest reshaped_triangle(Rest rest, const Corners& X) {
-  const CstShape shape = cst_shape(X[0], X[1], X[2], rest_edges(X) * shape_of(rest).col(0));
-  enlarge(rest, shape.area * 2 * std::abs(shape_of(rest).determinant()));
-  shape_of(rest) = shape.inverse;
-  return rest;
-}
-
 // Whether a triangle with its corners at X has that shape, but for round-off.
-template <typename Rest>
-bool has_shape(Rest rest, const Corners& X) {
+inline bool has_shape(const Eigen::Matrix2d& frame, const Corners& X) {
   constexpr double kSameShape = 1e-8;  // relative difference of the metrics that counts as none
-  const Eigen::Matrix2d own = shape_of(rest) * shape_of(rest).transpose(),
-                        inverse = cst_shape(X[0], X[1], X[2]).inverse, wanted = inverse * inverse.transpose();
+  const Eigen::Matrix2d own = frame * frame.transpose(), inverse = cst_shape(X[0], X[1], X[2]).inverse,
+                        wanted = inverse * inverse.transpose();
   return (wanted - own).norm() <= 2 * kSameShape * wanted.norm();
 }
 
@@ -63,14 +21,14 @@ bool has_shape(Rest rest, const Corners& X) {
 // L22]]: the frame turns with its first axis.
 class RestTriangle {
  public:
-  template <typename Kernel>
-  static RestTriangle at(typename Kernel::Rest rest, const Corners& X, const CstVector& x) {
+  // Of an element whose corners are X at rest and x now. Pre: it has a rest frame.
+  static RestTriangle at(const TermAccess& access, int element, const Corners& X, const double* x) {
     RestTriangle t;
-    t.inverse_ = shape_of(rest);
+    t.inverse_ = *access.rest_frame(element);
     t.edges_ = t.inverse_.inverse();
     t.axes_ = rest_edges(X) * t.inverse_;
-    t.energy_ = Kernel::evaluate(rest, x, &t.g_, &t.h_);
-    t.F_ = edges_of(x) * t.inverse_;
+    t.energy_ = access.evaluate_element(element, x, t.g_.data(), t.h_.data());
+    t.F_ = edges_of(Eigen::Map<const CstVector>(x)) * t.inverse_;
     return t;
   }
 

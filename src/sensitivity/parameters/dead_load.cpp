@@ -75,7 +75,7 @@ class NodalForces final : public DeadLoad {
 };
 
 LoadDead& dead_load(const std::string& name, EnergyTerm& term) {
-  if (is_dead_load(term)) return dynamic_cast<LoadDead&>(term);
+  if (is_dead_load(term)) return *access_of(term)->dead_load();
   throw InputError(
       "parameter \"" + name + "\": term \"" + term.name() + "\" (" + std::string(term.type()) +
       ") has no forces that keep their direction; name a load_field, or a load_pressure of model "
@@ -84,9 +84,9 @@ LoadDead& dead_load(const std::string& name, EnergyTerm& term) {
 
 }  // namespace
 
-bool is_dead_load(const EnergyTerm& term) {
-  const auto* load = dynamic_cast<const LoadDead*>(&term);
-  return load != nullptr && load->stencils().count() > 0;
+bool is_dead_load(EnergyTerm& term) {
+  TermAccess* access = access_of(term);
+  return access != nullptr && access->dead_load() != nullptr && term.stencils().count() > 0;
 }
 
 std::unique_ptr<Parameter> make_load_factor(std::string name, EnergyTerm& term) {

@@ -8,7 +8,7 @@
 namespace coapt {
 
 // Whether the term is one of dead loads that loads a node.
-bool is_dead_load(const EnergyTerm& term);
+bool is_dead_load(EnergyTerm& term);
 
 // One factor on all forces as they are when it is made, first 1; any finite number. The forces are linear in
 // whatever they were made from (a traction, a density, an acceleration): the derivative by that is this one

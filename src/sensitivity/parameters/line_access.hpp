@@ -1,8 +1,7 @@
 // The elements of a term as lines between two nodes, whatever their law.
 #pragma once
 
-#include "energy/kernels/axial.hpp"
-#include "energy/term.hpp"
+#include "energy/term_access.hpp"
 
 #include <memory>
 
@@ -17,15 +16,20 @@ struct LineState {
 
 class LineAccess {
  public:
-  virtual ~LineAccess() = default;
+  // Pre: access.has_rest_lengths(). Both must outlive it.
+  LineAccess(const EnergyTerm& term, TermAccess& access) : term_(term), access_(access) {}
 
-  virtual double rest_length(int element) const = 0;  // 0: of constant force [length]
+  double rest_length(int element) const { return access_.line(element).length; }  // 0: of constant force
 
   // Gives the elements other rest lengths, all else about them unchanged: sections, moduli, and the rounding
   // of the onset as a share of the length. Pre: all of them are positive, one for each element.
-  virtual void set_rest_lengths(const Vector& lengths) = 0;
+  void set_rest_lengths(const Vector& lengths);
 
-  virtual LineState at(int element, double l) const = 0;
+  LineState at(int element, double l) const;
+
+ private:
+  const EnergyTerm& term_;
+  TermAccess& access_;
 };
 
 // nullptr for a term that is not one of cables (linear or of any law) or tethers. The term must outlive it.

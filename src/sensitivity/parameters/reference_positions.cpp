@@ -1,9 +1,8 @@
 #include "sensitivity/parameters/reference_positions.hpp"
 
 #include "core/error.hpp"
-#include "energy/kernels/bending.hpp"
-#include "energy/kernels/spring.hpp"
-#include "sensitivity/detail/element_visit.hpp"
+#include "energy/term_access.hpp"
+#include "sensitivity/detail/element_positions.hpp"
 #include "sensitivity/detail/rest_triangle.hpp"
 
 #include <algorithm>
@@ -12,49 +11,22 @@
 namespace coapt {
 namespace {
 
-using Membranes = KernelList<CstStVK, CstTensionField, CstBilinear, CstNeoHookean, CstExponential,
-                             CstOrthotropic, CstMayNewmanYin, CstCrimpedFibre>;
-using Hinges = KernelList<BendingHinge>;
-
 constexpr double kStep = 3e-4;  // of differences, over the edge
-
-// visit(ElementTerm<Kernel>&) for a membrane or a hinge; false: it is neither.
-template <typename Visit>
-bool visit_shaped(EnergyTerm& term, const Visit& visit) {
-  return visit_element_term(Membranes{}, term, visit) || visit_element_term(Hinges{}, term, visit);
-}
-
-// The element with its nodes at X, of the same material and thickness. from: where they were.
-template <typename Rest>
-Rest reshaped(const Rest& rest, const Corners&, const Corners& X) {
-  return reshaped_triangle(rest, X);
-}
-BendingHinge::Rest reshaped(const BendingHinge::Rest& rest, const Corners& from, const Corners& X) {
-  const BendingHinge::Rest unit = BendingHinge::rest(from[0], from[1], from[2], from[3], 1);
-  return BendingHinge::rest(X[0], X[1], X[2], X[3], rest.stiffness / unit.stiffness);
-}
 
 using HingeVector = Eigen::Vector<double, 12>;
 
-// Energy in the first place, then the gradient.
-Eigen::Vector<double, 13> hinge_at(const BendingHinge::Rest& rest, const HingeVector& x) {
-  HingeVector g;
-  Eigen::Vector<double, 13> all;
-  all[0] = BendingHinge::evaluate(rest, x, &g, nullptr);
-  all.tail<12>() = g;
-  return all;
-}
-
-// Derivative of energy and gradient by a motion of the corners at rest.
-Eigen::Vector<double, 13> hinge_slope(const BendingHinge::Rest& rest, const Corners& X,
-                                      const HingeVector& motion, const HingeVector& x) {
+// Derivative of energy, in the first place, and gradient by a motion of the corners at rest.
+Eigen::Vector<double, 13> hinge_slope(const TermAccess& access, int element, const Corners& X,
+                                      const HingeVector& motion, const ElementVector& x) {
   const double size = motion.lpNorm<Eigen::Infinity>();
   if (size == 0) return Eigen::Vector<double, 13>::Zero();
   const double step = kStep * (X[1] - X[0]).norm() / size;
   const auto at = [&](double s) {
     Corners moved = X;
     for (int a = 0; a < 4; ++a) moved[static_cast<size_t>(a)] += s * step * motion.segment<3>(3 * a);
-    return hinge_at(reshaped(rest, X, moved), x);
+    Eigen::Vector<double, 13> all;
+    all[0] = access.evaluate_reshaped(element, X, moved, x.data(), all.data() + 1);
+    return all;
   };
   return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * step);
 }
@@ -70,10 +42,11 @@ class ReferencePositions final : public Parameter {
     for (size_t k = 0; k < nodes_.size(); ++k)
       number_[static_cast<size_t>(nodes_[k])] = 3 * static_cast<int>(k);
     for (EnergyTerm* term : terms_) {
-      std::vector<size_t>& touched = touched_.emplace_back();
+      access_.push_back(access_of(*term));
+      std::vector<int>& touched = touched_.emplace_back();
       const Stencils& stencils = term->stencils();
-      for (size_t e = 0; e < static_cast<size_t>(stencils.count()); ++e) {
-        const int* first = &stencils.nodes[e * static_cast<size_t>(stencils.width)];
+      for (int e = 0; e < stencils.count(); ++e) {
+        const int* first = nodes_of(*term, e);
         if (std::any_of(first, first + stencils.width, [&](int node) { return numbers(node) >= 0; }))
           touched.push_back(e);
       }
@@ -87,7 +60,7 @@ class ReferencePositions final : public Parameter {
     if (!X.allFinite()) return "parameter \"" + name() + "\": every number must be finite";
     for (EnergyTerm* term : terms_)
       for (int e = 0; e < term->stencils().count(); ++e) {
-        const int* n = &term->stencils().nodes[static_cast<size_t>(e) * term->stencils().width];
+        const int* n = nodes_of(*term, e);
         const Vec3 a = X.col(n[1]) - X.col(n[0]);
         for (int k = 2; k < term->stencils().width; ++k)
           if (const Vec3 b = X.col(n[k]) - X.col(n[0]);
@@ -101,12 +74,8 @@ class ReferencePositions final : public Parameter {
   void set(const Vector& value) override {
     const Points X = placed(value);
     for (size_t k = 0; k < terms_.size(); ++k)
-      visit_shaped(*terms_[k], [&](auto& term) {
-        auto rest = term.rest();
-        for (const size_t e : touched_[k])
-          rest[e] = reshaped(rest[e], corners(term, e, X_), corners(term, e, X));
-        term.set_rest(std::move(rest));
-      });
+      for (const int e : touched_[k])
+        access_[k]->reshape(e, corners(*terms_[k], e, X_), corners(*terms_[k], e, X));
     X_ = X;
   }
 
@@ -114,22 +83,22 @@ class ReferencePositions final : public Parameter {
   std::vector<WrittenDatum> written() const override {
     std::vector<WrittenDatum> data;
     for (size_t k = 0; k < terms_.size(); ++k)
-      for (const size_t e : touched_[k])
-        data.push_back({WrittenDatum::Kind::Shape, terms_[k], static_cast<int>(e)});
+      for (const int e : touched_[k]) data.push_back({WrittenDatum::Kind::Shape, terms_[k], e});
     return data;
   }
 
   Vector pull_back(const Points& x, const Points& weights) const override {
     Vector result = none();
-    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
       add(term, e, t.pulled_back(element_positions(term, e, weights)), result);
     });
-    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
-      const HingeVector w = element_positions(term, e, weights), at = element_positions(term, e, x);
+    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
+      const HingeVector w = element_positions(term, e, weights);
+      const ElementVector at = element_positions(term, e, x);
       HingeVector slope = HingeVector::Zero();
       for (int i = 0; i < 12; ++i)
-        if (numbers(term.stencils().nodes[4 * e + i / 3]) >= 0)
-          slope[i] = hinge_slope(term.rest()[e], X, HingeVector::Unit(i), at).template tail<12>().dot(w);
+        if (numbers(nodes_of(term, e)[i / 3]) >= 0)
+          slope[i] = hinge_slope(access, e, X, HingeVector::Unit(i), at).tail<12>().dot(w);
       add(term, e, slope, result);
     });
     return result;
@@ -139,31 +108,29 @@ class ReferencePositions final : public Parameter {
     Points motion = Points::Zero(3, X_.cols());
     for (size_t k = 0; k < nodes_.size(); ++k)
       motion.col(nodes_[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k));
-    const auto scatter = [&](const auto& term, size_t e, const auto& slope) {
-      for (int a = 0; a < slope.size() / 3; ++a)
-        g.col(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]) +=
-            slope.template segment<3>(3 * a);
+    const auto scatter = [&](const EnergyTerm& term, int e, const ElementVector& slope) {
+      for (int a = 0; a < slope.size() / 3; ++a) g.col(nodes_of(term, e)[a]) += slope.segment<3>(3 * a);
     };
-    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
       scatter(term, e, t.pushed_forward(element_positions(term, e, motion)));
     });
-    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
+    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
       const Eigen::Vector<double, 13> slope =
-          hinge_slope(term.rest()[e], X, element_positions(term, e, motion), element_positions(term, e, x));
-      scatter(term, e, HingeVector(slope.tail<12>()));
+          hinge_slope(access, e, X, element_positions(term, e, motion), element_positions(term, e, x));
+      scatter(term, e, slope.tail<12>());
     });
   }
 
   Vector energy_derivative(const Points& x, const EnergyTerm& wanted) const override {
     Vector result = none();
-    visit(x, [&](const auto& term, size_t e, const RestTriangle& t) {
+    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
       if (&term == &wanted) add(term, e, t.energy_slope(), result);
     });
-    visit_hinges([&](const auto& term, size_t e, const Corners& X) {
+    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
       if (&term != &wanted) return;
       HingeVector slope;
       for (int i = 0; i < 12; ++i)
-        slope[i] = hinge_slope(term.rest()[e], X, HingeVector::Unit(i), element_positions(term, e, x))[0];
+        slope[i] = hinge_slope(access, e, X, HingeVector::Unit(i), element_positions(term, e, x))[0];
       add(term, e, slope, result);
     });
     return result;
@@ -179,20 +146,21 @@ class ReferencePositions final : public Parameter {
     return X;
   }
 
-  static Corners corners(const EnergyTerm& term, size_t e, const Points& X) {
+  static const int* nodes_of(const EnergyTerm& term, int e) {
+    return &term.stencils().nodes[static_cast<size_t>(e) * static_cast<size_t>(term.stencils().width)];
+  }
+
+  static Corners corners(const EnergyTerm& term, int e, const Points& X) {
     Corners corners{};
     for (int a = 0; a < term.stencils().width; ++a)
-      corners[static_cast<size_t>(a)] =
-          X.col(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]);
+      corners[static_cast<size_t>(a)] = X.col(nodes_of(term, e)[a]);
     return corners;
   }
 
   template <typename Slope>
-  void add(const EnergyTerm& term, size_t e, const Slope& slope, Vector& result) const {
+  void add(const EnergyTerm& term, int e, const Slope& slope, Vector& result) const {
     for (int a = 0; a < term.stencils().width; ++a)
-      if (const int first =
-              numbers(term.stencils().nodes[e * static_cast<size_t>(term.stencils().width) + a]);
-          first >= 0)
+      if (const int first = numbers(nodes_of(term, e)[a]); first >= 0)
         result.segment<3>(first) += slope.template segment<3>(3 * a);
   }
 
@@ -200,39 +168,38 @@ class ReferencePositions final : public Parameter {
   template <typename Visit>
   void visit(const Points& x, const Visit& visit_triangle) const {
     for (size_t k = 0; k < terms_.size(); ++k)
-      visit_element_term(Membranes{}, *terms_[k], [&]<typename Kernel>(ElementTerm<Kernel>& term) {
-        for (const size_t e : touched_[k])
-          visit_triangle(
-              term, e,
-              RestTriangle::at<Kernel>(term.rest()[e], corners(term, e, X_), element_positions(term, e, x)));
-      });
+      for (const int e : touched_[k])
+        if (access_[k]->rest_frame(e) != nullptr)
+          visit_triangle(*terms_[k], e,
+                         RestTriangle::at(*access_[k], e, corners(*terms_[k], e, X_),
+                                          element_positions(*terms_[k], e, x).data()));
   }
 
   template <typename Visit>
   void visit_hinges(const Visit& visit_hinge) const {
     for (size_t k = 0; k < terms_.size(); ++k)
-      visit_element_term(Hinges{}, *terms_[k], [&](auto& term) {
-        for (const size_t e : touched_[k]) visit_hinge(term, e, corners(term, e, X_));
-      });
+      for (const int e : touched_[k])
+        if (access_[k]->rest_frame(e) == nullptr)
+          visit_hinge(*terms_[k], *access_[k], e, corners(*terms_[k], e, X_));
   }
 
   std::vector<EnergyTerm*> terms_;
+  std::vector<TermAccess*> access_;  // to each of them
   Points X_;
   std::vector<int> nodes_;
-  std::vector<int> number_;                   // per node
-  std::vector<std::vector<size_t>> touched_;  // elements of each term that have one of the nodes
+  std::vector<int> number_;                // per node
+  std::vector<std::vector<int>> touched_;  // elements of each term that have one of the nodes
 };
 
 // Whether X is the shape at rest that the term was built from.
-bool is_shape_of(EnergyTerm& term, const Points& X) {
-  bool is_same = true;
-  visit_element_term(Membranes{}, term, [&](auto& membrane) {
-    for (size_t e = 0; e < membrane.rest().size() && is_same; ++e) {
-      const int* n = &membrane.stencils().nodes[3 * e];
-      is_same = has_shape(membrane.rest()[e], {X.col(n[0]), X.col(n[1]), X.col(n[2])});
-    }
-  });
-  return is_same;
+bool is_shape_of(const EnergyTerm& term, const TermAccess& access, const Points& X) {
+  for (int e = 0; e < term.stencils().count(); ++e) {
+    const Eigen::Matrix2d* frame = access.rest_frame(e);
+    if (frame == nullptr) continue;
+    const int* n = &term.stencils().nodes[3 * static_cast<size_t>(e)];
+    if (!has_shape(*frame, {X.col(n[0]), X.col(n[1]), X.col(n[2])})) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -249,14 +216,15 @@ std::unique_ptr<Parameter> make_reference_positions(std::string name, const Obje
                      std::to_string(objective.node_count()));
   std::vector<EnergyTerm*> terms;
   for (const auto& term : objective.terms()) {
-    if (term->type() == Spring::kType)
+    if (kind_of(*term) == TermKind::Spring)
       defects.push_back(
           where + "term \"" + term->name() + "\" (" + std::string(term->type()) +
           ") has springs that know nothing of the triangles at rest that they stand for; a rest "
           "shape can change under membranes of constant-strain triangles (cst_...) and bending");
-    if (!visit_shaped(*term, [](const auto&) {})) continue;
+    const TermAccess* access = access_of(*term);
+    if (access == nullptr || !access->has_rest_shape()) continue;
     terms.push_back(term.get());
-    if (!is_shape_of(*term, X))
+    if (!is_shape_of(*term, *access, X))
       defects.push_back(where + "the given rest shape is not that of term \"" + term->name() + "\"");
   }
   if (!defects.empty()) throw InputError(defects);

@@ -1,9 +1,7 @@
 #include "sensitivity/parameters/term_number.hpp"
 
 #include "core/error.hpp"
-#include "energy/kernels/link.hpp"
-#include "energy/kernels/surface_tension.hpp"
-#include "sensitivity/detail/elastic_kernels.hpp"
+#include "energy/term_access.hpp"
 #include "sensitivity/parameters/line_access.hpp"
 
 #include <array>
@@ -23,19 +21,6 @@ struct Stencil {
 constexpr Stencil kCentral = {{-2, -1, 0, 1, 2}, {1. / 12, -8. / 12, 0, 8. / 12, -1. / 12}};
 constexpr Stencil kForward = {{0, 1, 2, 3, 4}, {-25. / 12, 4, -3, 4. / 3, -1. / 4}};
 constexpr Stencil kBackward = {{0, -1, -2, -3, -4}, {25. / 12, -4, 3, -4. / 3, 1. / 4}};
-
-template <typename Visit>
-bool visit_elastic(EnergyTerm& term, const Visit& visit) {
-  return visit_element_term(ElasticKernels{}, term, visit) ||
-         visit_element_term(KernelList<SurfaceTension, Link>{}, term, visit);
-}
-
-// Gives `to` the data of the elements of `from`. Pre: made of the same elements.
-void take_elements(EnergyTerm& to, EnergyTerm& from) {
-  visit_elastic(to, [&](auto& elements) {
-    elements.set_rest(dynamic_cast<std::remove_reference_t<decltype(elements)>&>(from).rest());
-  });
-}
 
 // Whatever became of rest lengths since the scene was read stays.
 void carry_lengths(EnergyTerm& from, EnergyTerm& to) {
@@ -61,7 +46,7 @@ class MadeNumber final : public Parameter {
 
   void set(const Vector& value) override {
     const Terms made = made_at(value[0]);
-    for (size_t k = 0; k < made.size(); ++k) take_elements(*number_.terms[k], *made[k]);
+    for (size_t k = 0; k < made.size(); ++k) access_of(*number_.terms[k])->take_elements(*made[k]);
     value_ = value[0];
     if (number_.keep) number_.keep(value_);
   }
@@ -165,7 +150,7 @@ std::unique_ptr<Parameter> make_term_number(std::string name, TermNumber number)
   if (!(number.scale > 0 && std::isfinite(number.scale)))
     defects.push_back(where + "its scale must be positive");
   for (EnergyTerm* term : number.terms)
-    if (!visit_elastic(*term, [](const auto&) {}))
+    if (const TermAccess* access = access_of(*term); access == nullptr || !access->has_elastic_elements())
       defects.push_back(where + "term \"" + term->name() + "\" (" + std::string(term->type()) +
                         ") is not one of elastic elements");
   if (!defects.empty()) throw InputError(defects);

@@ -211,8 +211,8 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
 }
 
 StressScene turned_over(const StressScene& subject) {
-  StressScene turned =
-      with_energy_scaled(subject, -1, [](const TermSpec& term) { return term.type == "load_pressure"; });
+  StressScene turned = with_energy_scaled(
+      subject, -1, [](const TermSpec& term) { return kind_of(term) == TermKind::Pressure; });
   turn_over(turned.ground.model.mesh.triangles);
   return turned;
 }
@@ -273,10 +273,13 @@ StressScene with_chords_scaled(const StressScene& subject, double factor) {
   return scaled;
 }
 
-bool is_load(const TermSpec& term) { return term.type.starts_with("load_"); }
-bool is_line(const TermSpec& term) { return term.type.starts_with("cable") || term.type == "tether_cubic"; }
-bool is_membrane(const TermSpec& term) {
-  return !is_load(term) && !is_line(term) && !term.type.starts_with("contact_") && term.type != "bending";
+bool is_load(const TermSpec& term) {
+  return kind_of(term) == TermKind::Pressure || kind_of(term) == TermKind::DeadLoad;
+}
+bool is_line(const TermSpec& term) { return kind_of(term) == TermKind::Line; }
+bool is_sheet(const TermSpec& term) {
+  return !is_load(term) && !is_line(term) && kind_of(term) != TermKind::Contact &&
+         kind_of(term) != TermKind::Bending;
 }
 
 }  // namespace coapt

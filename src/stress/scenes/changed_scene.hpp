@@ -55,7 +55,7 @@ StressScene with_chords_scaled(const StressScene& subject, double factor);
 
 // What a term is, by its keys.
 bool is_load(const TermSpec& term);
-bool is_line(const TermSpec& term);      // cables, chords, tethers
-bool is_membrane(const TermSpec& term);  // what is neither of these, no contact and no bending
+bool is_line(const TermSpec& term);   // cables, chords, tethers
+bool is_sheet(const TermSpec& term);  // what is neither of these, no contact and no bending
 
 }  // namespace coapt

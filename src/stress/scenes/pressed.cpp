@@ -1,6 +1,7 @@
 #include "stress/scenes/pressed.hpp"
 
 #include "mesh/shapes.hpp"
+#include "scene/terms/term_types.hpp"
 
 namespace coapt {
 namespace {
@@ -10,7 +11,8 @@ StressOutcome nothing_through(const StressScene& scene, const Stressed& solved, 
   if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
   long touching = 0;
   for (const TermReport& term : solved.result.terms)
-    if (term.type == "contact_barrier") touching = term.counters.elements;
+    if (const TermType* type = find_term_type(term.type); type != nullptr && type->is_barrier)
+      touching = term.counters.elements;
   if (must_touch && touching == 0)
     return outcome_of(solved, StressVerdict::Fail, "nothing touches in the solution");
   StressOutcome outcome =

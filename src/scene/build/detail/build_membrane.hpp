@@ -42,9 +42,11 @@ TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const Pr
   }
   note_membrane(spec, triangles, properties, context.model);
   auto term = std::make_unique<ElementTerm<Kernel>>(spec.name, std::move(nodes), std::move(rest));
-  context.model.membrane_patches.push_back({triangles, [&elements = term->rest()](int e, const CstVector& x) {
+  context.model.membrane_patches.push_back({triangles,
+                                            [&elements = term->rest()](int e, const CstVector& x) {
                                               return Kernel::state(elements[static_cast<size_t>(e)], x);
-                                            }});
+                                            },
+                                            spec.name});
   return term;
 }
 

@@ -1,4 +1,4 @@
-#include "scene/build/repair.hpp"
+#include "exchange/repair.hpp"
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
@@ -43,8 +43,7 @@ RepairReport repair(const std::filesystem::path& scene_file, RepairMethod method
                     const std::optional<std::filesystem::path>& output) {
   const Scene scene = load_scene(scene_file);
   RepairReport report;
-  const auto contact = std::find_if(scene.terms.begin(), scene.terms.end(),
-                                    [](const TermSpec& term) { return term.type == "contact_barrier"; });
+  const auto contact = std::find_if(scene.terms.begin(), scene.terms.end(), is_barrier);
   if (contact == scene.terms.end() || !scene.mesh) return report;
   const Groundwork ground = lay_groundwork(scene);
   const Model& model = ground.model;
