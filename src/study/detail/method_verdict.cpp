@@ -48,8 +48,8 @@ double energy_above(const ComparedMethod& reference, const ComparedMethod& metho
 }
 
 std::string energies_text(const ComparedMethod& reference, const ComparedMethod& method) {
-  const std::string both = "energy " + energy_text(result_of(method)) + ", of " + reference.name + " " +
-                           energy_text(result_of(reference));
+  std::string both = "energy " + energy_text(result_of(method)) + ", of " + reference.name + " " +
+                     energy_text(result_of(reference));
   if (!reference.run->model.objective->has_circulatory_force()) return both;
   return both + ", each of a potential of its own; " + digits(*method.energy_above) +
          " mJ above it on the straight way between them";
