@@ -6,7 +6,7 @@
 #include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
-#include "study/sensitivity.hpp"
+#include "tuning/sensitivity_study.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -18,7 +18,7 @@ namespace {
 
 struct SensitivityArguments : StudyArguments {
   std::vector<std::string> parameters;
-  std::string perturbation = "5%";
+  std::string perturbation;
   bool starts_anew = false;
 };
 
@@ -33,24 +33,30 @@ double share(const std::string& text) {
   }
 }
 
-void print_parameter_header(bool starts_anew) {
-  std::printf("mean distances in mm, per 100 %% of each parameter; solves start from %s\n",
-              starts_anew ? "the scene's own shape" : "the first solution");
+void print_parameter_header(bool has_solves, bool starts_anew) {
+  std::printf("mean distances in mm, per 100 %% of each parameter; %s\n",
+              !has_solves   ? "exact derivatives at the first solution"
+              : starts_anew ? "solves start from the scene's own shape"
+                            : "solves start from the first solution");
   std::printf("  %-32s %12s %-7s %10s %10s %11s %8s\n", "parameter", "value", "", "movement", "error",
-              "iterations", "s");
+              has_solves ? "iterations" : "", "s");
 }
 
 void print_row(const ParameterSensitivity& p) {
   std::printf("  %-32s %12.6g %-7s", p.name.c_str(), p.value, p.unit.c_str());
   print_cell(p.movement, " %10.3f");
   print_cell(p.error_change, " %10.3f");
-  std::printf("   %4d %4d %8.2f", p.smaller.iterations, p.larger.iterations,
-              p.smaller.wall_s + p.larger.wall_s);
-  for (const SensitivityRun* run : {&p.smaller, &p.larger})
-    if (run->status != Status::Converged)
-      std::printf("  times %g: %s, residual %.1e", run->factor, std::string(status_name(run->status)).c_str(),
-                  run->residual);
+  if (p.runs.size() == 2)
+    std::printf("   %4d %4d", p.runs[0].iterations, p.runs[1].iterations);
+  else
+    std::printf("   %9s", "");
+  std::printf(" %8.2f", p.wall_s);
+  for (const SensitivityRun& run : p.runs)
+    if (run.status != Status::Converged)
+      std::printf("  times %g: %s, residual %.1e", run.factor, std::string(status_name(run.status)).c_str(),
+                  run.residual);
   std::printf("\n");
+  if (!p.message.empty()) std::printf("    solved again: %s\n", p.message.c_str());
   std::fflush(stdout);
 }
 
@@ -59,12 +65,14 @@ void study(const SensitivityArguments& arguments, int& exit_code) {
   const Scene scene = load_scene(arguments.scene);
   SensitivityOptions options;
   options.parameters = arguments.parameters;
-  options.perturbation = share(arguments.perturbation);
+  if (!arguments.perturbation.empty()) options.perturbation = share(arguments.perturbation);
   options.starts_anew = arguments.starts_anew;
   bool has_header = false;
   options.report = [&](const ParameterSensitivity& found) {
     end_progress();
-    if (!has_header) print_parameter_header(arguments.starts_anew);
+    if (!has_header)
+      print_parameter_header(options.perturbation.has_value() || arguments.starts_anew,
+                             arguments.starts_anew);
     has_header = true;
     print_row(found);
   };
@@ -90,15 +98,17 @@ void study(const SensitivityArguments& arguments, int& exit_code) {
 void add_sensitivity_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<SensitivityArguments>();
   CLI::App* command = app.add_subcommand(
-      "sensitivity", "How far the solution moves with each parameter: every one made smaller and larger");
+      "sensitivity",
+      "How far the solution moves with each parameter, by exact derivatives or by finite changes");
   add_study_arguments(*command, *arguments);
   command->add_option(
       "--parameters", arguments->parameters,
       "TERM.KEY ..., such as chords.length_scale or chords.diameter (default: all numbers of all "
       "elastic terms that may be changed so far)");
-  command->add_option("--perturb", arguments->perturbation, "Share by which each is changed (default: 5%)");
+  command->add_option("--perturb", arguments->perturbation,
+                      "Make each smaller and larger by this share, such as 5%, and solve again");
   command->add_flag("--from-start", arguments->starts_anew,
-                    "Solve each from the scene's own start instead of the first solution");
+                    "Solve each again, from the scene's own start instead of the first solution");
   command->callback([arguments, &exit_code] { study(*arguments, exit_code); });
 }
 

@@ -1,7 +1,7 @@
 // sensitivity.json and sensitivity.csv.
 #include "formats/json/csv_text.hpp"
 #include "results/study_files.hpp"
-#include "study/sensitivity.hpp"
+#include "tuning/sensitivity_study.hpp"
 
 namespace coapt {
 namespace {
@@ -17,12 +17,31 @@ OrderedJson run_json(const SensitivityRun& run) {
   return json;
 }
 
-void add_row(std::ostream& out, const std::string& name, const SensitivityRun& run) {
+// A solve; the columns of what follows from both signs are the parameter's.
+void add_run(std::ostream& out, const std::string& name, const SensitivityRun& run) {
   out << csv_text(name) << ',' << run.factor << ',' << status_name(run.status) << ',' << run.residual << ','
       << run.iterations << ',' << run.wall_s << ',' << run.to_base.mean << ',' << run.to_base.p95 << ','
       << run.to_base.max << ',';
   if (run.to_reference) out << run.to_reference->mean;
+}
+
+void add_sensitivity(std::ostream& out, const ParameterSensitivity& found) {
+  out << ',';
+  if (found.movement) out << *found.movement;
+  out << ',';
+  if (found.error_change) out << *found.error_change;
   out << '\n';
+}
+
+void add_rows(std::ostream& out, const ParameterSensitivity& found) {
+  if (found.runs.empty()) {
+    out << csv_text(found.name) << ",,derivative,,," << found.wall_s << ",,,,";
+    add_sensitivity(out, found);
+  }
+  for (const SensitivityRun& run : found.runs) {
+    add_run(out, found.name, run);
+    add_sensitivity(out, found);
+  }
 }
 
 }  // namespace
@@ -31,7 +50,7 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
   OrderedJson json = {{"scene", study.scene_file},
                       {"solver", study.solver},
                       {"tolerance", study.tolerance},
-                      {"perturbation", study.perturbation},
+                      {"perturbation", number_json(study.perturbation)},
                       {"start", study.starts_anew ? "own" : "first solution"},
                       {"converged", study.has_converged()},
                       {"cancelled", study.is_cancelled},
@@ -41,17 +60,22 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                       {"parameters", OrderedJson::array()}};
   std::ostringstream csv = csv_begun(
       "parameter,factor,status,residual,iterations,wall_s,mean_to_base_mm,p95_to_base_mm,max_to_base_mm,"
-      "mean_to_reference_mm");
-  add_row(csv, "", study.base);
+      "mean_to_reference_mm,movement_mm_per_100_percent,error_change_mm_per_100_percent");
+  add_run(csv, "", study.base);
+  csv << ",,\n";
   for (const ParameterSensitivity& parameter : study.parameters) {
+    OrderedJson runs = OrderedJson::array();
+    for (const SensitivityRun& run : parameter.runs) runs.push_back(run_json(run));
     json["parameters"].push_back({{"name", parameter.name},
                                   {"value", number_json(parameter.value)},
                                   {"unit", parameter.unit},
                                   {"movement_mm_per_100_percent", number_json(parameter.movement)},
                                   {"error_change_mm_per_100_percent", number_json(parameter.error_change)},
-                                  {"runs", {run_json(parameter.smaller), run_json(parameter.larger)}}});
-    add_row(csv, parameter.name, parameter.smaller);
-    add_row(csv, parameter.name, parameter.larger);
+                                  {"by", parameter.runs.empty() ? "derivative" : "solves"},
+                                  {"message", parameter.message},
+                                  {"wall_s", number_json(parameter.wall_s)},
+                                  {"runs", std::move(runs)}});
+    add_rows(csv, parameter);
   }
   write_study(folder, "sensitivity", json, csv.str());
 }
