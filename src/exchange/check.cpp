@@ -1,11 +1,11 @@
 #include "exchange/check.hpp"
 
 #include "core/error.hpp"
+#include "exchange/valve_doubts.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/mesh_check.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/groundwork.hpp"
-#include "scene/build/valve_doubts.hpp"
 #include "scene/file/scene.hpp"
 
 #include <nlohmann/json.hpp>

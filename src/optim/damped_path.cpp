@@ -1,6 +1,6 @@
 #include "optim/damped_path.hpp"
 
-#include "optim/prescribed_motion.hpp"
+#include "optim/move_prescribed.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "optim/path_following.hpp"
 
 #include "optim/carry_along.hpp"
-#include "optim/prescribed_motion.hpp"
+#include "optim/move_prescribed.hpp"
 #include "optim/stability/branch_watch.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optim/monitor.hpp"
-#include "optim/prescribed_motion.hpp"
+#include "optim/move_prescribed.hpp"
 
 #include <string>
 

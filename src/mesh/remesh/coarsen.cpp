@@ -110,10 +110,51 @@ void Coarsener::rehouse(const std::vector<int>& homeless, const std::vector<int>
   }
 }
 
+// The worst edges first, so that the order of triangles does not decide which are flipped.
 void Coarsener::flip_round() {
+  struct Candidate {
+    double excess;  // of the angles opposite the edge, as the sum of their cotangents
+    int a, b;
+  };
+  std::vector<Candidate> candidates;
   for (int t = 0; t < static_cast<int>(triangles_.size()); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (at(triangles_, t)[0] >= 0 && flip(t, k)) break;
+    for (int k = 0; k < 3 && at(triangles_, t)[0] >= 0; ++k) {
+      const int a = at(triangles_, t)[k], b = at(triangles_, t)[(k + 1) % 3];
+      const int s = across(t, a, b);
+      if (s < 0) continue;
+      const double excess = opposite_cotangents(t, s, a, b);
+      if (excess < -kDelaunaySlack) candidates.push_back({excess, a, b});
+    }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& l, const Candidate& r) {
+    return std::tie(l.excess, l.a, l.b) < std::tie(r.excess, r.a, r.b);
+  });
+  for (const auto& [excess, a, b] : candidates)
+    for (const int t : at(around_, a)) {
+      const Corners& corners = at(triangles_, t);
+      int k = 0;
+      while (k < 3 && (corners[k] != a || corners[(k + 1) % 3] != b)) ++k;
+      if (k == 3) continue;
+      flip(t, k);
+      break;
+    }
+}
+
+// The other triangle at an edge of t; -1: none, -2: more than one.
+int Coarsener::across(int t, int a, int b) const {
+  int found = -1;
+  for (const int other : at(around_, a))
+    if (other != t && has_corner(at(triangles_, other), b)) found = found == -1 ? other : -2;
+  return found;
+}
+
+// Of the angles of t and s opposite their common edge; negative where they add up to more than 180 degrees.
+double Coarsener::opposite_cotangents(int t, int s, int a, int b) const {
+  double sum = 0;
+  for (const int triangle : {t, s}) {
+    const int apex = at(triangles_, triangle).sum() - a - b;
+    sum += (x_.col(a) - x_.col(apex)).dot(x_.col(b) - x_.col(apex)) / normal(at(triangles_, triangle)).norm();
+  }
+  return sum;
 }
 
 // Flips the edge from corner k of t where the angles opposite it are too large.
@@ -122,20 +163,12 @@ bool Coarsener::flip(int t, int k) {
   const int a = first[k], b = first[(k + 1) % 3], c = first[(k + 2) % 3];
   // Where more than two lines meet, the vertex does not know them all.
   if (is_line(a, b) || is_line(b, a) || (at(is_locked_, a) && at(is_locked_, b))) return false;
-  int s = -1;
-  for (const int other : at(around_, a))
-    if (other != t && has_corner(at(triangles_, other), b)) {
-      if (s >= 0) return false;  // not manifold
-      s = other;
-    }
+  const int s = across(t, a, b);
   if (s < 0 || (!regions_.empty() && at(regions_, s) != at(regions_, t))) return false;
   Corners& second = at(triangles_, s);
   const int d = second.sum() - a - b;
   const Vec3 n1 = normal(first), n2 = normal(second);
-  const auto cotangent = [&](int apex, const Vec3& n) {
-    return (x_.col(a) - x_.col(apex)).dot(x_.col(b) - x_.col(apex)) / n.norm();
-  };
-  if (!(cotangent(c, n1) + cotangent(d, n2) < -kDelaunaySlack)) return false;
+  if (!(opposite_cotangents(t, s, a, b) < -kDelaunaySlack)) return false;
   if (n1.dot(n2) < kFlatCosine * n1.norm() * n2.norm()) return false;
   for (const int v : {a, b})
     if (at(around_, v).size() <= (is_on_line(v) ? 2 : kLeastTriangles)) return false;

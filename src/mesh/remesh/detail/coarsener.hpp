@@ -74,6 +74,8 @@ class Coarsener {
   void collapse(int v, int u);
   void flip_round();
   bool flip(int t, int k);
+  int across(int t, int a, int b) const;
+  double opposite_cotangents(int t, int s, int a, int b) const;
   void rehouse(const std::vector<int>& homeless, const std::vector<int>& homes);
 
   Vec3 normal(const Corners& t) const {

@@ -1,4 +1,4 @@
-#include "optim/prescribed_motion.hpp"
+#include "optim/move_prescribed.hpp"
 
 #include "optim/carry_along.hpp"
 

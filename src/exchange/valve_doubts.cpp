@@ -1,4 +1,4 @@
-#include "scene/build/valve_doubts.hpp"
+#include "exchange/valve_doubts.hpp"
 
 #include "valve/valve_check.hpp"
 
