@@ -1,8 +1,7 @@
 #include "energy/normal_motion.hpp"
 
+#include "energy/film_net.hpp"
 #include "energy/term_access.hpp"
-
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -203,41 +202,15 @@ bool NormalMotion::is_rough(const Points& x, const std::vector<Vec3>& normals) c
 
 Points NormalMotion::smooth_start(const Points& x) const {
   if (!is_rough(x, normals_at(x))) return x;
+  FilmNet net{corners_, Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, x.cols(), false)};
+  for (size_t node = 0; node < place_.size(); ++node)
+    if (place_[node] >= 0)
+      net.is_free.col(static_cast<Eigen::Index>(node)) =
+          places_[static_cast<size_t>(place_[node])].is_free != 0;
   Points smooth = x;
-  for (int coordinate = 0; coordinate < 3; ++coordinate) settle(coordinate, smooth);
+  for (int coordinate = 0; coordinate < 3; ++coordinate) settle_net(net, coordinate, smooth);
+  lessen_area(net, smooth);
   return smooth;
-}
-
-// Each free node of the film to the mean of its neighbours along one coordinate; an edge counts once for each
-// of its triangles.
-void NormalMotion::settle(int coordinate, Points& x) const {
-  std::vector<int> number(place_.size(), -1);
-  int count = 0;
-  for (size_t node = 0; node < place_.size(); ++node)
-    if (place_[node] >= 0 && places_[static_cast<size_t>(place_[node])].is_free[coordinate] != 0)
-      number[node] = count++;
-  if (count == 0) return;
-  std::vector<Eigen::Triplet<double>> entries;
-  Vector pull = Vector::Zero(count);
-  for (size_t k = 0; k < corners_.size(); ++k)
-    for (const size_t other : {k % 3 == 2 ? k - 2 : k + 1, k % 3 == 0 ? k + 2 : k - 1}) {
-      const int row = number[static_cast<size_t>(corners_[k])],
-                column = number[static_cast<size_t>(corners_[other])];
-      if (row < 0) continue;
-      entries.emplace_back(row, row, 1);
-      if (column >= 0)
-        entries.emplace_back(row, column, -1);
-      else
-        pull[row] += x(coordinate, corners_[other]);
-    }
-  Eigen::SparseMatrix<double> net(count, count);
-  net.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(net);
-  const Vector settled = factor.solve(pull);
-  // A film that nothing holds has no such net.
-  if (factor.info() != Eigen::Success || !settled.allFinite()) return;
-  for (size_t node = 0; node < place_.size(); ++node)
-    if (number[node] >= 0) x(coordinate, static_cast<Eigen::Index>(node)) = settled[number[node]];
 }
 
 }  // namespace coapt

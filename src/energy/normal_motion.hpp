@@ -47,9 +47,10 @@ class NormalMotion {
   void restrict_hessian(Eigen::SparseMatrix<double>& h);
 
   // A start that the film can leave along its normals: x itself, unless a triangle stands nearly
-  // across the normal at one of its nodes, as where only a rim was lifted. Then the nodes lie in the middle
-  // of their neighbours, a net of equal force densities (Schek 1974). Where the film is later does not depend
-  // on it but by the error of discretisation.
+  // across the normal at one of its nodes, as where only a rim was lifted. Then the nodes first lie in the
+  // middle of their neighbours, and go from there to a film of less area (energy/film_net.hpp): lines from
+  // far off would cross where the film is. Where it is later does not depend on the start but by the error of
+  // discretisation.
   Points smooth_start(const Points& x) const;
 
  private:
@@ -61,7 +62,6 @@ class NormalMotion {
 
   std::vector<Vec3> normals_at(const Points& x) const;
   bool is_rough(const Points& x, const std::vector<Vec3>& normals) const;
-  void settle(int coordinate, Points& x) const;
 
   std::vector<Place> places_;
   std::vector<int> place_;                    // of each node, -1 = none

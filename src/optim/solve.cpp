@@ -130,8 +130,47 @@ bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result&
   return false;
 }
 
+// Minimises again along lines that are turned to the normals of the films found, while some lie askew.
+Status turn_and_minimize(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
+                         const StopRule& stop, Status status) {
+  for (int turn = 0; turn < kMostTurns && status != Status::NoEquilibrium && status != Status::Cancelled &&
+                     !monitor.is_out_of_time() && objective.turn_films(q);
+       ++turn) {
+    monitor.begin_round(monitor.round() + 1, stop.tolerance);
+    status = solver.minimize(objective, q, monitor);
+  }
+  return status;
+}
+
+// What pinches off on one way may have an equilibrium on another: films are spanned between their supports
+// anew.
+std::optional<Vector> span_again(Solver& solver, const Problem& problem, const StopRule& stop,
+                                 Monitor& monitor, const Vector& q) {
+  Objective& objective = problem.objective;
+  if (problem.motion.positions || problem.continuation.load_steps > 1 ||
+      problem.continuation.stiffness_steps > 1 || monitor.is_out_of_time())
+    return std::nullopt;
+  const auto spanned = spanned_films(objective, objective.positions(q));
+  if (!spanned) return std::nullopt;
+  Vector film = objective.unknowns(*spanned);
+  objective.turn_films(film);
+  monitor.begin_round(monitor.round() + 1, stop.tolerance);
+  const Status first = solver.minimize(objective, film, monitor);
+  if (turn_and_minimize(solver, objective, film, monitor, stop, first) != Status::Converged)
+    return std::nullopt;
+  return film;
+}
+
+// Where the run stands after a way that led nowhere.
+void stand_again(const StopRule& stop, Monitor& monitor, Result& result) {
+  Vector g;  // noise is measured where the run stands again
+  monitor.begin_round(monitor.round() + 1, stop.tolerance);
+  monitor.accept(result.q, monitor.gradient(result.q, g), g);
+  result.iterations = monitor.iterations();
+}
+
 // Goes on from an unstable equilibrium to a stable one. It remains the answer where both ways from it lead to
-// none.
+// none, nor does a film that is spanned anew.
 void settle_down(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                  Result& result) {
   int lost = 0;
@@ -144,23 +183,29 @@ void settle_down(Solver& solver, const Problem& problem, const StopRule& stop, M
     if (outcome.status == Status::NoEquilibrium) {
       ++lost;
       result = std::move(unstable);
-      Vector g;  // noise is measured where the run stands again
-      monitor.begin_round(monitor.round() + 1, stop.tolerance);
-      monitor.accept(result.q, monitor.gradient(result.q, g), g);
-      result.iterations = monitor.iterations();
+      stand_again(stop, monitor, result);
       continue;
     }
     lost = 0;
     if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
     judge(outcome, solver, problem, stop, monitor, result);
   }
-  if (lost > 0) result.message += "; once left, no equilibrium was found";
+  if (lost == 0) return;
+  if (auto film = span_again(solver, problem, stop, monitor, result.q)) {
+    result.q = std::move(*film);
+    judge({Status::Converged, "an unstable one was left for films spanned between their supports anew"},
+          solver, problem, stop, monitor, result);
+    return;
+  }
+  stand_again(stop, monitor, result);
+  result.message += "; once left, no equilibrium was found";
 }
 
 // What a run found, and whether it ends there although the state is unstable.
 struct Found {
   Outcome outcome;
   bool is_only_unstable = false;
+  double least_residual = kInfinity;  // of searches that found none
 };
 
 // The same along lines that are turned to the normals of films found elsewhere.
@@ -181,7 +226,13 @@ bool find_free_film(const Problem& problem, const StopRule& stop, Monitor& monit
   const auto films = free_films(objective, objective.positions(q));
   if (!films || films->balanced.size() == 0) return false;
   Vector film = objective.unknowns(films->balanced);
-  if (!reach_stationary_film(objective, film, monitor, stop.tolerance).is_found) return false;
+  if (!reach_stationary_film(objective, film, monitor, stop.tolerance).is_found) {
+    const auto round = free_films(objective, rounded_films(objective, films->balanced));
+    if (!round || round->balanced.size() == 0) return false;
+    film = objective.unknowns(round->balanced);
+    objective.turn_films(film);
+    if (!reach_stationary_film(objective, film, monitor, stop.tolerance).is_found) return false;
+  }
   q = std::move(film);
   return true;
 }
@@ -190,7 +241,7 @@ bool find_free_film(const Problem& problem, const StopRule& stop, Monitor& monit
 // start.
 bool find_passed(const Problem& problem, const StopRule& stop, Monitor& monitor,
                  const EquilibriumWatch& watch, const Vector& start, Found& found, Vector& q) {
-  double least = kInfinity;
+  double& least = found.least_residual;
   for (const Vector* from : {&watch.nearest(), &start}) {
     if (from->size() == 0 || monitor.is_out_of_time()) continue;
     Vector film = *from;
@@ -222,16 +273,15 @@ Found run_solver(Solver& solver, const Problem& problem, const StopRule& stop, M
   Outcome& outcome = found.outcome;
   const bool is_damped = problem.continuation.damped_steps > 0 && solver.minimises_objective();
   outcome = (is_damped ? follow_damped_path : follow_path)(solver, problem, stop, monitor, result);
-  for (int turn = 0;
-       turn < kMostTurns && outcome.status != Status::NoEquilibrium && outcome.status != Status::Cancelled &&
-       !monitor.is_out_of_time() && objective.turn_films(result.q);
-       ++turn) {
-    monitor.begin_round(monitor.round() + 1, stop.tolerance);
-    outcome.status = solver.minimize(objective, result.q, monitor);
-  }
+  outcome.status = turn_and_minimize(solver, objective, result.q, monitor, stop, outcome.status);
   if (outcome.status == Status::NoEquilibrium) {
     outcome.note = watch.reason();
-    if (watch.sees_films()) find_passed(problem, stop, monitor, watch, start, found, result.q);
+    if (watch.sees_films() && !find_passed(problem, stop, monitor, watch, start, found, result.q) &&
+        found.least_residual >= kNear)
+      if (auto film = span_again(solver, problem, stop, monitor, start)) {
+        result.q = std::move(*film);
+        outcome = {Status::Converged, "from the start, " + outcome.note};
+      }
   }
   if (outcome.note.empty()) outcome.note = solver.remark();
   return found;

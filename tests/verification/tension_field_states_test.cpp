@@ -179,5 +179,50 @@ TEST(SquareAirbag, E4MatchesTheTable) {
   EXPECT_NEAR(energy / -77.75, 1, 2e-3);
 }
 
+// Two sheets sewn together, the whole of both: nothing is held, and the seam goes where it will.
+TEST(SquareAirbag, E4WithAFreeSeamHeldByNothing) {
+  const int n = is_sanitized() ? 8 : 32;
+  const double side = 0.6 / std::sqrt(2.0);
+  const TriangleMesh sheet = crossed_grid_mesh(n, 2 * side, 2 * side);
+  const auto is_seam = [&](int v) {
+    return (sheet.vertices.col(v).head<2>().array() - side).abs().maxCoeff() > side * (1 - 1e-9);
+  };
+  TriangleMesh bag = sheet;
+  std::vector<int> below(static_cast<size_t>(sheet.vertex_count()));
+  int count = sheet.vertex_count();
+  for (int v = 0; v < sheet.vertex_count(); ++v) below[static_cast<size_t>(v)] = is_seam(v) ? v : count++;
+  bag.vertices.conservativeResize(3, count);
+  bag.triangles.conservativeResize(3, 2 * sheet.triangle_count());
+  for (int v = 0; v < sheet.vertex_count(); ++v)
+    bag.vertices.col(below[static_cast<size_t>(v)]) = sheet.vertices.col(v);
+  for (int t = 0; t < sheet.triangle_count(); ++t)
+    for (int c = 0; c < 3; ++c)
+      bag.triangles(2 - c, sheet.triangle_count() + t) = below[static_cast<size_t>(sheet.triangles(c, t))];
+  const FixedMask fixed = FixedMask::Constant(3, count, false);
+  const Equilibrium found =
+      find_equilibrium(bag.vertices, fixed,
+                       terms_of(tension_field_term(bag.vertices, bag.triangles, {588e6 * 0.6e-3, 0.4, 0}),
+                                make_follower_pressure("pressure", bag.vertices, bag.triangles, 5e3, fixed)),
+                       {.tolerance = 1e-8, .max_iterations = 2000});
+  EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;
+  int middle = 0;
+  for (int v = 0; v < sheet.vertex_count(); ++v)
+    if ((sheet.vertices.col(v) - Vec3(side, side, 0)).norm() < 1e-9 * side) middle = v;
+  double volume = 0;
+  for (const auto& t : bag.triangles.colwise())
+    volume += found.x.col(t[0]).dot(found.x.col(t[1]).cross(found.x.col(t[2]))) / 6;
+  const double height = 0.5 * (found.x.col(middle) - found.x.col(below[static_cast<size_t>(middle)])).norm();
+  const double diagonal = (found.x.col(grid_node(n, 0, 0)) - found.x.col(grid_node(n, n, n))).norm();
+  const double corner = side - 0.5 * diagonal / std::sqrt(2.0), energy = found.result.energy / 8;
+  std::printf(
+      "E4, held by nothing: w_M %.5f m, corner %.5f m, volume %.5f m3, energy %.3f J, %d iterations\n",
+      height, corner, volume, energy, found.result.iterations);
+  if (is_sanitized()) return;
+  EXPECT_NEAR(height / 0.2162, 1, 5e-3);
+  EXPECT_NEAR(corner / 0.0349, 1, 1e-2);
+  EXPECT_NEAR(volume / 0.125, 1, 5e-3);
+  EXPECT_NEAR(energy / -77.75, 1, 5e-3);
+}
+
 }  // namespace
 }  // namespace coapt

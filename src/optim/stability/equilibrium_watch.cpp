@@ -18,6 +18,7 @@ constexpr int kInterval = 50;                 // iterates from one look to the n
 constexpr double kFarDrift = 100;             // drift, relative to the extent of the start
 constexpr double kCollapsed = 1e-2;           // area, relative to the start
 constexpr double kPinched = 0.02;             // share of the film that has collapsed
+constexpr double kPinchedFacets = 0.01;       // share of its facets, where nodes do not slide
 constexpr double kNothing = 0.1;              // of its area is left
 constexpr double kFarFromEquilibrium = 1e-2;  // residual above which a film may be pinching off
 constexpr int kFilmInterval = 5;              // the same, of films whose nodes do not slide
@@ -121,7 +122,8 @@ bool EquilibriumWatch::has_collapsed(const Points& x) {
     gone_before += f.area;
   }
   // A few facets without area tell of nodes that have slid together, not of the film.
-  if (first == nullptr || gone_before < kPinched * before) return false;
+  const bool is_a_waist = !slides_ && gone >= kPinchedFacets * static_cast<double>(film_.size());
+  if (first == nullptr || (gone_before < kPinched * before && !is_a_waist)) return false;
   reason_ = now < kNothing * before
                 ? "the film shrinks to nothing"
                 : "the film pinches off: " + std::to_string(gone) +

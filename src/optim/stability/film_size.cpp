@@ -1,6 +1,7 @@
 #include "optim/stability/film_size.hpp"
 
 #include "energy/connected_parts.hpp"
+#include "energy/film_net.hpp"
 #include "energy/term_access.hpp"
 
 #include <algorithm>
@@ -24,6 +25,18 @@ std::optional<Vec3> centre_of_growth(const std::vector<int>& nodes, const Points
       if (fixed(c, node) && std::abs(x(c, node) - centre[c]) > kSamePlace * extent) return std::nullopt;
   }
   return centre;
+}
+
+// All films of the objective; is_free: whatever is not prescribed.
+FilmNet net_of_films(const Objective& objective) {
+  FilmNet net;
+  for (const auto& term : objective.terms()) {
+    if (kind_of(*term) != TermKind::Film) continue;
+    const std::vector<int>& nodes = term->stencils().nodes;
+    net.corners.insert(net.corners.end(), nodes.begin(), nodes.end());
+  }
+  net.is_free = !objective.fixed();
+  return net;
 }
 
 }  // namespace
@@ -58,6 +71,46 @@ std::optional<FreeFilms> free_films(const Objective& objective, const Points& x)
   }
   if (is_balanced) films.balanced = std::move(balanced);
   return films;
+}
+
+Points rounded_films(const Objective& objective, const Points& x) {
+  const FilmNet all = net_of_films(objective);
+  Points round = x;
+  for (const auto& part : connected_parts(objective.terms(), x, objective.fixed())) {
+    const auto centre = centre_of_growth(part.nodes, x, objective.fixed());
+    if (!centre) continue;
+    FilmNet net{{}, all.is_free};
+    for (size_t k = 0; k < all.corners.size(); k += 3)
+      if (std::binary_search(part.nodes.begin(), part.nodes.end(), all.corners[k]))
+        net.corners.insert(net.corners.end(), all.corners.begin() + static_cast<std::ptrdiff_t>(k),
+                           all.corners.begin() + static_cast<std::ptrdiff_t>(k) + 3);
+    Vec3 shift = Vec3::Zero(), middle = *centre;
+    // A node that alone is prescribed along an axis moves with the others, and is brought back with them.
+    std::array<int, 3> held{-1, -1, -1};
+    for (int c = 0; c < 3; ++c) {
+      const auto is_held = [&](int node) { return objective.fixed()(c, node); };
+      if (std::count_if(part.nodes.begin(), part.nodes.end(), is_held) != 1) continue;
+      held[static_cast<size_t>(c)] = *std::find_if(part.nodes.begin(), part.nodes.end(), is_held);
+      net.is_free(c, held[static_cast<size_t>(c)]) = true;
+      middle[c] = x(c, part.nodes).mean();
+    }
+    round_net(net, middle, round);
+    for (int c = 0; c < 3; ++c)
+      if (const int node = held[static_cast<size_t>(c)]; node >= 0) shift[c] = x(c, node) - round(c, node);
+    for (const int node : part.nodes) round.col(node) += shift;
+  }
+  return round;
+}
+
+std::optional<Points> spanned_films(const Objective& objective, const Points& x) {
+  const auto is_film = [](const auto& term) { return kind_of(*term) == TermKind::Film; };
+  if (!std::all_of(objective.terms().begin(), objective.terms().end(), is_film) || free_films(objective, x))
+    return std::nullopt;
+  const FilmNet net = net_of_films(objective);
+  Points film = x;
+  for (int coordinate = 0; coordinate < 3; ++coordinate) settle_net(net, coordinate, film);
+  if (!lessen_area(net, film)) return std::nullopt;
+  return film;
 }
 
 }  // namespace coapt

@@ -21,4 +21,12 @@ struct FreeFilms {
 // equilibrium is a saddle or a maximum, and without pressure there is none. x: 3 x node_count.
 std::optional<FreeFilms> free_films(const Objective& objective, const Points& x);
 
+// Such films made rounder, each part about its centre, for a start that is far from a sphere.
+Points rounded_films(const Objective& objective, const Points& x);
+
+// Films that supports hold, tension alone acting on them, spanned anew between the supports: a start that
+// depends on them and on how triangles are joined only. Empty for all else, and where what is spanned goes on
+// shrinking.
+std::optional<Points> spanned_films(const Objective& objective, const Points& x);
+
 }  // namespace coapt
