@@ -23,6 +23,7 @@ struct AccuracyLevel {
 struct AccuracyEstimate {
   double wanted_mm = 0;
   std::optional<double> discretisation_mm;  // for 95 % of the surface; empty: not known
+  std::optional<double> farthest_mm;        // the same of its farthest point
   std::optional<double> algebraic_mm;       // of the farthest vertex; empty: not known
   std::optional<double> order;              // observed from mesh to mesh; needs three meshes
   double tolerance = 0;                     // that was chosen
@@ -35,6 +36,11 @@ struct AccuracyEstimate {
   std::optional<double> total_mm() const {
     if (!discretisation_mm || !algebraic_mm) return std::nullopt;
     return *discretisation_mm + *algebraic_mm;
+  }
+  // The same of the farthest point.
+  std::optional<double> greatest_mm() const {
+    if (!farthest_mm || !algebraic_mm) return std::nullopt;
+    return *farthest_mm + *algebraic_mm;
   }
 };
 

@@ -173,6 +173,7 @@ OrderedJson accuracy_json(const AccuracyEstimate& accuracy) {
           {"reached", accuracy.is_reached},
           {"message", accuracy.message},
           {"total_mm", optional(accuracy.total_mm())},
+          {"greatest_mm", optional(accuracy.greatest_mm())},
           {"discretisation_mm", optional(accuracy.discretisation_mm)},
           {"algebraic_mm", optional(accuracy.algebraic_mm)},
           {"order", optional(accuracy.order)},

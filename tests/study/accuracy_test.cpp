@@ -40,6 +40,7 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
                 estimate.order.value_or(-1));
     EXPECT_LE(later, wanted);
     EXPECT_NEAR(estimate.discretisation_mm.value() / later, 1, 0.25);
+    EXPECT_GT(estimate.greatest_mm().value(), estimate.total_mm().value());
     const double algebraic = (closed.vertices - level.closed.vertices).colwise().norm().maxCoeff();
     EXPECT_NEAR(*estimate.algebraic_mm, algebraic, 0.05 * algebraic + 1e-9);
     EXPECT_LE(algebraic, 0.1 * wanted);
@@ -73,6 +74,7 @@ TEST_F(AccuracyTest, IsASolveOfThatMeshToThatTolerance) {
   EXPECT_EQ(json.at("wanted_mm"), 0.3);
   EXPECT_TRUE(json.at("reached").get<bool>());
   EXPECT_EQ(json.at("total_mm").get<double>(), *found.report.accuracy->total_mm());
+  EXPECT_EQ(json.at("greatest_mm").get<double>(), found.report.accuracy->greatest_mm().value());
   EXPECT_GE(json.at("solves").size(), 2u);
   EXPECT_TRUE(std::filesystem::exists(found.folder / "result.json"));
 }
@@ -83,6 +85,7 @@ TEST_F(AccuracyTest, SaysWhatItDidNotReach) {
   EXPECT_FALSE(found.report.accuracy->is_reached);
   EXPECT_EQ(found.report.accuracy->cuts, 1);
   EXPECT_FALSE(found.report.accuracy->total_mm());  // two meshes tell no order
+  EXPECT_FALSE(found.report.accuracy->greatest_mm());
   EXPECT_NE(found.report.accuracy->message.find("the last moved 95 % of the surface"), std::string::npos);
   ASSERT_FALSE(found.report.warnings.empty());
   EXPECT_NE(found.report.warnings.back().find("not reached"), std::string::npos);

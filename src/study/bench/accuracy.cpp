@@ -70,7 +70,7 @@ class Search {
       const DiscretisationEstimate found = estimate_discretisation(distances);
       estimate.order = found.order;
       mesh = std::move(finer);
-      estimate.discretisation_mm = std::nullopt;
+      estimate.discretisation_mm = estimate.farthest_mm = std::nullopt;
       if (!orders_agree(distances)) continue;
       const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {
         return error <= (1 - kAlgebraicShare) * estimate.wanted_mm;
@@ -81,7 +81,7 @@ class Search {
       // What the farthest point is beside the 95th percentile, as the distance to the finest mesh shows it.
       const DistanceFigures& seen =
           chosen < mesh.cuts ? distances.to_finest[chosen] : distances.to_next.back();
-      if (seen.p95 > 0) greatest_mm = found.error_mm[chosen] * seen.max / seen.p95;
+      if (seen.p95 > 0) estimate.farthest_mm = found.error_mm[chosen] * seen.max / seen.p95;
       if (!is_enough) continue;
       return tightened(chosen == mesh.cuts ? std::move(mesh) : solved(chosen));
     }
@@ -91,7 +91,6 @@ class Search {
   const SolveSetup& setup() const { return setup_; }
 
   AccuracyEstimate estimate;
-  double greatest_mm = 0;  // error of the mesh at the farthest point, where it is known for the rest
 
  private:
   static RunOptions refining(const SolverTable& solvers, RunOptions options) {
@@ -183,15 +182,16 @@ std::string last_change(const AccuracyEstimate& estimate) {
   return ", as there was no finer mesh to compare";
 }
 
-std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh, double greatest_mm) {
+std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) {
   const std::string where = " on " + std::to_string(mesh.model.mesh.triangle_count()) +
                             " triangles at tolerance " + page_number(estimate.tolerance);
   const std::string wanted = " (wanted: " + page_number(estimate.wanted_mm) + " mm)";
   if (!mesh.has_converged()) return "not known, as the solve" + where + " did not converge" + wanted;
   const std::optional<double> total = estimate.total_mm();
   if (!total) return "not known" + where + (estimate.discretisation_mm ? "" : last_change(estimate)) + wanted;
-  return page_number(*total, 2) + " mm by estimate for 95 % of the surface, " +
-         page_number(greatest_mm + *estimate.algebraic_mm, 2) + " mm at its farthest point" + where + wanted;
+  const std::optional<double> greatest = estimate.greatest_mm();
+  return page_number(*total, 2) + " mm by estimate for 95 % of the surface" +
+         (greatest ? ", " + page_number(*greatest, 2) + " mm at its farthest point" : "") + where + wanted;
 }
 
 }  // namespace
@@ -208,11 +208,12 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
   }
   SolvedMesh mesh = search.solve();
   AccuracyEstimate estimate = std::move(search.estimate);
-  if (!mesh.has_converged()) estimate.discretisation_mm = estimate.algebraic_mm = std::nullopt;
+  if (!mesh.has_converged())
+    estimate.discretisation_mm = estimate.farthest_mm = estimate.algebraic_mm = std::nullopt;
   const std::optional<double> total = estimate.total_mm();
   estimate.cuts = static_cast<int>(mesh.cuts);
   estimate.is_reached = total && *total <= wanted_mm;
-  estimate.message = described(estimate, mesh, search.greatest_mm);
+  estimate.message = described(estimate, mesh);
 
   SolveSetup setup = search.setup();
   setup.stop.tolerance = estimate.tolerance;
