@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Closes valves as people have them, with no option given, and prints Markdown tables.
 
-    bench/real_valves.py [path of coapt] [--data FOLDER] [--seeds N] [--triangles N] [--wide] [--before COAPT]
+    bench/real_valves.py [path of coapt] [--data FOLDER] [--seeds N] [--triangles N] [--wide] [--before COAPT] [--branches N]
 
 What `coapt import FILE` and `coapt solve` do with each valve of FOLDER (the shared data), `coapt generate --rough` and
 `coapt solve` with N seeds each of the mitral and the tricuspid kind (default 10, of 900 triangles), and --wide: the
 tricuspid valves with their annulus made wider and their tips moved by several millimetres, as in a diseased heart. A
 solve is given --max-seconds (default 300). Iterations are those on the finest mesh; the floor is a factorisation and an
 assembly for each of them, timed in the same run, over the CPU time; distances are to the published closed surface, from
-ours to it and from it to ours. --before: another coapt solves the same scenes, for a column beside ours.
+ours to it and from it to ours. --before: another coapt solves the same scenes, for a column beside ours. --branches: a
+column with the range of the orifice over other equilibria, from N perturbed starts of each kind (N times the work).
 """
 import argparse
 import json
@@ -30,9 +31,9 @@ def run(coapt: str, *arguments: str) -> subprocess.CompletedProcess:
     return subprocess.run([coapt, *arguments], capture_output=True, text=True, check=False)
 
 
-def solved(coapt: str, folder: pathlib.Path, seconds: float) -> dict:
+def solved(coapt: str, folder: pathlib.Path, seconds: float, *options: str) -> dict:
     out = folder / "out"
-    run(coapt, "solve", str(folder / "scene.json"), "-o", str(out), "--max-seconds", str(seconds))
+    run(coapt, "solve", str(folder / "scene.json"), "-o", str(out), "--max-seconds", str(seconds), *options)
     return json.loads((out / "result.json").read_text())
 
 
@@ -57,12 +58,28 @@ def distances(result: dict) -> str:
     return f"{there['mean_mm']:.3f}, {back['mean_mm']:.3f}; {there['p95_mm']:.3f}, {back['p95_mm']:.3f}"
 
 
-def cells(result: dict) -> list[str]:
-    counts, metrics, time = result["evaluations"], result["metrics"], result["time"]
-    phases = time["by_phase"]
+def spread(result: dict) -> str:
+    """The other equilibria that --branches found, with their orifice [mm2]."""
+    branches = result.get("branches")
+    if not branches:
+        return ""
+    orifice = branches["others"].get("orifice_area_mm2")
+    found = f"{len(branches['equilibria']) - 1} in {branches['starts']} starts"
+    return f"{found}: {orifice['lowest']:.2f} to {orifice['highest']:.2f}" if orifice else found
+
+
+def floor_seconds(result: dict) -> float:
+    """CPU time of a factorisation and an assembly for each iteration on the finest mesh."""
+    counts, time = result["evaluations"], result["time"]
+    phases = time["by_phase"]  # in wall time
     factorised = phases.get("factorise", 0) / max(counts["factorisations"], 1)
     assembled = phases.get("hessian", 0) / max(counts["hessian"], 1)
-    floor = result["iterations"] * (factorised + assembled) / max(time["cpu_s"], 1e-9)
+    return result["iterations"] * (factorised + assembled) * time["cpu_s"] / max(time["wall_s"], 1e-9)
+
+
+def cells(result: dict) -> list[str]:
+    counts, metrics, time = result["evaluations"], result["metrics"], result["time"]
+    floor = floor_seconds(result) / max(time["cpu_s"], 1e-9)
     return [result["status"], f"{result['residual']:.0e}", str(result["iterations"]), str(counts["factorisations"]),
             f"{time['cpu_s']:.2f}", f"{floor:.2f}", str(metrics["intersections"]),
             f"{metrics.get('orifice_area_mm2', float('nan')):.2f}", distances(result),
@@ -78,9 +95,13 @@ def main() -> None:
     parser.add_argument("--max-seconds", type=float, default=300)
     parser.add_argument("--wide", action="store_true")
     parser.add_argument("--before")
+    parser.add_argument("--branches", type=int, default=0)
     arguments = parser.parse_args()
     columns = ["valve", "triangles", "status", "residual", "iterations", "factorisations", "CPU s", "floor / CPU",
                "intersections", "orifice mm2", "mean; 95 % mm, to and from", "stability"]
+    search = ["--branches", str(arguments.branches)] if arguments.branches else []
+    if search:
+        columns.append("others: orifice mm2")
     if arguments.before:
         columns.append("before: status, iterations, CPU s")
     print_header(*columns)
@@ -89,6 +110,8 @@ def main() -> None:
     def row(name: str, folder: pathlib.Path) -> dict:
         result = solved(arguments.coapt, folder, arguments.max_seconds)
         line = [name, str(result["mesh"]["triangles"]), *cells(result)]
+        if search:
+            line.append(spread(solved(arguments.coapt, folder, arguments.max_seconds, *search)))
         if arguments.before:
             before = solved(arguments.before, folder, arguments.max_seconds)
             line.append(f"{before['status']}, {before['iterations']}, {before['time']['cpu_s']:.2f}")
