@@ -34,7 +34,8 @@ PairCorners gather(const Points& x, const int* nodes) {
 // Whether the boxes around the two features are `range` apart, which costs a fifth of their distance.
 template <int kFirst>
 bool boxes_are_apart(const PairCorners& x, double range) {
-  const auto a = x.leftCols<kFirst>().array(), b = x.rightCols<4 - kFirst>().array();
+  const auto a = x.leftCols<kFirst>().array();
+  const auto b = x.rightCols<4 - kFirst>().array();
   const Eigen::Array3d gap = (b.rowwise().minCoeff() - a.rowwise().maxCoeff())
                                  .max(a.rowwise().minCoeff() - b.rowwise().maxCoeff())
                                  .max(0.0);

@@ -33,7 +33,9 @@ class StudyTest(unittest.TestCase):
         return self.folder / "scene.json"
 
     def valve(self, triangles=300):
-        return self.generate("mitral", "--triangles", triangles, "--contact", "none")
+        scene = self.generate("mitral", "--triangles", triangles, "--contact", "none")
+        scene.write_text(scene.read_text().replace('"damped_steps": 20', '"damped_steps": 0'))  # solved at once: time
+        return scene
 
     def study(self, name, *arguments, code=0):
         run = coapt(name, *arguments, "-o", self.out)

@@ -214,7 +214,10 @@ TEST(Import, MakesTheRelaxedMitralValveSolvable) {
     EXPECT_EQ(valve.closed_reference->triangles, valve.leaflets.triangles);
     RunOptions options;
     options.writes = false;
-    const RunReport report = run(load_scene(folder.path() / "scene.json"), scene_solvers(), options);
+    Scene scene = load_scene(folder.path() / "scene.json");
+    EXPECT_EQ(scene.solver.continuation.damped_steps, 20);
+    scene.solver.continuation.damped_steps = 0;  // what slivers cost is what a solve at once needs
+    const RunReport report = run(scene, scene_solvers(), options);
     EXPECT_EQ(report.report.result.status, Status::Converged) << size;
     EXPECT_LE(report.report.result.iterations, 60) << size;
   }

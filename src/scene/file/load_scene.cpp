@@ -323,8 +323,8 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
     scene.writes_page = output.has("report") && output.flag("report");
   }
   check_generated(scene, file, reading);
-  check_continuation(values, file, reading);
   if (!has_mesh_in_memory) check_substance(scene, json, file, reading);
+  if (reading.defects.empty()) check_continuation(values, file, reading);
   if (!reading.defects.empty()) throw InputError(reading.defects);
   scene.solver = solver_from(values.object("solver"));
   return scene;
