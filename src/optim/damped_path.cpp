@@ -3,6 +3,8 @@
 #include "optim/move_prescribed.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <exception>
 
 namespace coapt {
 namespace {
@@ -23,7 +25,7 @@ class DampedPath {
     Objective& objective = problem_.objective;
     const double extent = objective.extent(result_.q), nodes = static_cast<double>(result_.q.size()) / 3;
     if (extent > 0 && nodes > 0) damping_ = objective.total_load(result_.q) / (kTravel * extent * nodes);
-    while (!has_ended() && !is_at_rest()) take_step();
+    while (!is_at_rest() && !has_ended()) take_step();
     objective.scale(1, 1);
     if (!has_ended()) {
       outcome_.status =
@@ -46,12 +48,22 @@ class DampedPath {
   // Whether the dampers may go; weakens them by what the residual fell by.
   bool is_at_rest() {
     if (!is_at_full_problem()) return false;
-    const double residual = problem_.objective.true_residual(result_.q);
+    const double residual = true_residual();
+    if (!std::isfinite(residual)) outcome_.status = Status::NonFinite;
     if (residual <= std::max(kAtRest, stop_.tolerance) || damping_ == 0) return true;
     if (++steps_at_full_problem_ > kMostStepsAtRest) return true;
     if (residual_ < kInfinity) damping_ *= std::clamp(residual / residual_, kMostFall, 1.0);
     residual_ = residual;
     return false;
+  }
+
+  // Without dampers; infinite where a term that a program wrote throws.
+  double true_residual() {
+    try {
+      return problem_.objective.true_residual(result_.q);
+    } catch (const std::exception&) {
+      return kInfinity;
+    }
   }
 
   void take_step() {

@@ -3,12 +3,17 @@
 #include "optim/carry_along.hpp"
 
 #include <cmath>
+#include <exception>
 
 namespace coapt {
 
 bool is_finite(Objective& objective, const Vector& q) {
   Vector g;
-  return std::isfinite(objective.gradient(q, g)) && std::isfinite(g.squaredNorm());
+  try {
+    return std::isfinite(objective.gradient(q, g)) && std::isfinite(g.squaredNorm());
+  } catch (const std::exception&) {  // of a term that a program wrote
+    return false;
+  }
 }
 
 Move move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q) {

@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import stat
@@ -158,9 +159,8 @@ class CommandTest(CommandCase):
             heights[solver] = max(float(line.split()[3]) for line in closed if line.startswith("v "))
         self.assertGreater(heights["newton"], 0)
         self.assertAlmostEqual(heights["lbfgs"] / heights["newton"], 1, places=5)
-        fields = {a.get("Name"): a for a in ElementTree.parse(self.folder / "result" / "closed.vtp").iter("DataArray")}
-        stress = [name for name in fields if "stress" in name]
-        self.assertTrue(stress, list(fields))
+        fields = re.findall(rb'DataArray [^>]*Name="([^"]+)"', (self.folder / "result" / "closed.vtp").read_bytes())
+        self.assertTrue([name for name in fields if b"stress" in name], fields)
         across = self.square_of(sail.replace("[1, 0, 0]", "[0, 0, 1]"))
         self.assert_bad_input(coapt("solve", across), "direction", "triangle 0")
 
