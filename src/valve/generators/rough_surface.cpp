@@ -22,6 +22,12 @@ Vec3 random_direction(RandomSource& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
+// Of a length between these. Draws the length first: the order of operands is left to the compiler.
+Vec3 random_vector(RandomSource& random, double least, double most) {
+  const double length = random.between(least, most);
+  return length * random_direction(random);
+}
+
 // A smooth, invertible deformation of space that leaves nothing symmetric.
 struct Unevenness {
   struct Wave {
@@ -32,8 +38,9 @@ struct Unevenness {
 
   explicit Unevenness(RandomSource& random) {
     for (Wave& wave : waves) {
-      wave.number = random_direction(random) * kFullTurn / random.between(35, 70);
-      wave.amplitude = random_direction(random) * random.between(0.2, 0.6);
+      const double length = random.between(35, 70);
+      wave.number = random_direction(random) * kFullTurn / length;
+      wave.amplitude = random_vector(random, 0.2, 0.6);
       wave.phase = random.between(0, kFullTurn);
     }
   }
@@ -125,7 +132,7 @@ TricuspidDimensions tricuspid_dimensions_of(RandomSource& random) {
 void move_closed_valve(RoughSurface& surface, RandomSource& random) {
   const Vec3 axis = random_direction(random);
   const double angle = random.between(0, 0.1);
-  const Vec3 shift = random_direction(random) * random.between(1, 3.5);
+  const Vec3 shift = random_vector(random, 1, 3.5);
   const auto still = surface.closed;
   for (double share = 1; share > 0.01; share *= 0.8) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(share * angle, axis).toRotationMatrix();
@@ -147,12 +154,12 @@ void add_tips(RoughKind kind, RandomSource& random, RoughSurface& surface) {
     const double depth = random.between(27, 33);
     const Vec3 centre(outward * commissure.x(),
                       outward * commissure.y() * (kind == RoughKind::Mitral ? 0.4 : 1), -depth);
-    const Vec3 motion = random_direction(random) * random.between(1.5, 4.2);
+    const Vec3 motion = random_vector(random, 1.5, 4.2);
     const int count = 2 + random.below(4);
     for (int i = 0; i < count; ++i) {
       const double angle = kFullTurn * (i + random.between(-0.2, 0.2)) / count, out = random.between(1.5, 4);
       open.push_back(centre + Vec3(out * std::cos(angle), out * std::sin(angle), random.between(-1.5, 1.5)));
-      closed.push_back(open.back() + motion + random_direction(random) * random.between(0, 0.6));
+      closed.push_back(open.back() + motion + random_vector(random, 0, 0.6));
       surface.tip_group.push_back(static_cast<int>(group));
     }
   }
