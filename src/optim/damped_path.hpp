@@ -9,9 +9,9 @@ namespace coapt {
 // Follows c dq/dt = -dE/dq, with the same damping c for every node, by steps of implicit Euler: each is a
 // minimum of the energy with dampers to the state before, found by the solver. Loads and prescribed motion
 // grow together in continuation.damped_steps equal steps; at the full problem the dampers weaken as the
-// residual falls, and go. As a step has one minimum near its start, neither the order of nodes nor the method
-// decides where the path leads (docs/decisions/019). Of the result it changes q, rounds and damped_steps. A
-// run that is cut short stays where it had got to, with all loads.
+// residual falls, and go. As a step has one minimum near its start, the order of nodes and the method hardly
+// ever decide where the path leads: in 1 of 80 solves (docs/decisions/019). Of the result it changes q,
+// rounds and damped_steps. A run that is cut short stays where it had got to, with all loads.
 Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                            Result& result);
 
