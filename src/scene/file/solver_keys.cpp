@@ -202,8 +202,8 @@ KeySpec continuation_key() {
                                .min = 0,
                                .max = 100000,
                                .doc = "Equal steps of all loads and of the prescribed motion along a damped "
-                                      "path, which leads to the same shape whatever the order of the nodes "
-                                      "and the method, at two to four times the time; 0: none. It takes "
+                                      "path, which the order of the nodes and the method hardly ever divert "
+                                      "to another shape, at two to four times the time; 0: none. It takes "
                                       "neither load_steps nor stiffness_steps."}}},
           .doc =
               "Way to the full problem by easier ones, together with the prescribed "
