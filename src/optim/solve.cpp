@@ -142,14 +142,19 @@ Status turn_and_minimize(Solver& solver, Objective& objective, Vector& q, Monito
   return status;
 }
 
+// Whether no easier problem is on the way to the full one.
+bool is_at_once(const Problem& problem) {
+  const Continuation& way = problem.continuation;
+  return !problem.motion.positions && way.load_steps <= 1 && way.stiffness_steps <= 1 &&
+         way.damped_steps == 0;
+}
+
 // What pinches off on one way may have an equilibrium on another: films are spanned between their supports
 // anew.
 std::optional<Vector> span_again(Solver& solver, const Problem& problem, const StopRule& stop,
                                  Monitor& monitor, const Vector& q) {
   Objective& objective = problem.objective;
-  if (problem.motion.positions || problem.continuation.load_steps > 1 ||
-      problem.continuation.stiffness_steps > 1 || monitor.is_out_of_time())
-    return std::nullopt;
+  if (!is_at_once(problem) || monitor.is_out_of_time()) return std::nullopt;
   const auto spanned = spanned_films(objective, objective.positions(q));
   if (!spanned) return std::nullopt;
   Vector film = objective.unknowns(*spanned);
@@ -220,9 +225,7 @@ StationarySearch reach_stationary_film(Objective& objective, Vector& q, Monitor&
 // comes to.
 bool find_free_film(const Problem& problem, const StopRule& stop, Monitor& monitor, Vector& q) {
   Objective& objective = problem.objective;
-  if (problem.motion.positions || problem.continuation.load_steps > 1 ||
-      problem.continuation.stiffness_steps > 1 || problem.continuation.damped_steps > 0)
-    return false;
+  if (!is_at_once(problem)) return false;
   const auto films = free_films(objective, objective.positions(q));
   if (!films || films->balanced.size() == 0) return false;
   Vector film = objective.unknowns(films->balanced);
