@@ -2,6 +2,7 @@
 
 #include "mesh/distance/triangle_distance.hpp"
 #include "mesh/remesh/detail/coarsener.hpp"
+#include "mesh/remesh/detail/order_of_place.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -235,9 +236,10 @@ Coarsening Coarsener::result(const TriangleMesh& fine) const {
 }  // namespace coarsening
 
 Coarsening coarsen(const TriangleMesh& mesh, const CoarsenOptions& options) {
-  coarsening::Coarsener coarsener(mesh, options);
+  const coarsening::OrderedMesh ordered = coarsening::in_order_of_place(mesh, options);
+  coarsening::Coarsener coarsener(ordered.mesh, ordered.options);
   coarsener.run(static_cast<int>(std::ceil(options.share * mesh.triangle_count())));
-  return coarsener.result(mesh);
+  return coarsening::renumbered(coarsener.result(ordered.mesh), ordered, mesh);
 }
 
 }  // namespace coapt
