@@ -142,6 +142,7 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
                  options.excluded),
         gap_(options.gap),
         skin_(kSkin * options.gap),
+        given_pressure_(options.pressure),
         pressure_(options.pressure) {}
 
   std::string_view type() const override { return "contact_barrier"; }
@@ -212,6 +213,8 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     return is_too_soft;
   }
 
+  bool restore_stiffness() override { return std::exchange(pressure_, given_pressure_) != given_pressure_; }
+
  private:
   // Visits the pairs that may collide while x moves to x + s d, 0 <= s <= most; `most` may fall meanwhile.
   template <class Visit>
@@ -255,7 +258,7 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
 
   ContactSurface surface_;
   double gap_, skin_;
-  double pressure_;
+  double given_pressure_, pressure_;
   Candidates candidates_;
   Points searched_at_;
   long searches_ = 0;

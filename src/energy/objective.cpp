@@ -153,6 +153,11 @@ bool Objective::stiffen(const Vector& q) {
   return is_stiffer;
 }
 
+void Objective::restore_stiffness() {
+  for (const auto& term : terms_)
+    if (term->restore_stiffness()) pattern_is_current_ = scale_is_current_ = false;
+}
+
 void Objective::prescribe(const Points& x) {
   x_ = fixed_.select(x, x_);
   scale_is_current_ = false;

@@ -148,6 +148,9 @@ class Objective {
   // Whether a term became stiffer, as the state q shows that it was too soft.
   bool stiffen(const Vector& q);
 
+  // Takes back what stiffen() did, so that a solve does not depend on those before it.
+  void restore_stiffness();
+
   // --- Loads without a potential --------------------------------------------------------------------
   bool has_circulatory_force() const;
 

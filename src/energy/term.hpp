@@ -124,6 +124,9 @@ class EnergyTerm {
   // did: then the energy is another one.
   virtual bool stiffen(const Points& /*x*/) { return false; }
 
+  // Takes back what stiffen() did. Returns whether it had done anything.
+  virtual bool restore_stiffness() { return false; }
+
   // The elements that touch a node which moves, as a term of its own in the numbers of the part: its
   // derivatives by these nodes are those of this term as it is now (rounded, limited) as long as only they
   // move, and none farther than the part's reach. Null: this cannot be had.

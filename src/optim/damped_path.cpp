@@ -12,8 +12,10 @@ namespace {
 constexpr double kTravel = 0.2;  // of the extent, by which its share of the loads moves a node in one step
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
+constexpr double kNearEnd = 10;          // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
 constexpr int kMostStepsAtRest = 200;    // at the full problem
+constexpr double kLost = 1;              // residual of a loaded start whose first steps lead nowhere
 constexpr int kMostWithoutMotion = 3;    // steps in a row in which the prescribed motion gets no further
 
 class DampedPath {
@@ -25,7 +27,12 @@ class DampedPath {
     Objective& objective = problem_.objective;
     const double extent = objective.extent(result_.q), nodes = static_cast<double>(result_.q.size()) / 3;
     if (extent > 0 && nodes > 0) damping_ = objective.total_load(result_.q) / (kTravel * extent * nodes);
-    while (!is_at_rest() && !has_ended()) take_step();
+    if (is_loaded()) {
+      damping_ *= kNearEnd;
+      moved_ = 1;
+    }
+    do take_step();
+    while (!has_ended() && !is_at_rest());
     objective.scale(1, 1);
     if (!has_ended()) {
       outcome_.status =
@@ -39,8 +46,10 @@ class DampedPath {
   }
 
  private:
-  bool has_ended() const { return is_blocked_ || ends_the_run(outcome_.status); }
+  bool is_loaded() const { return problem_.continuation.is_loaded; }
+  bool has_ended() const { return is_blocked_ || is_lost_ || ends_the_run(outcome_.status); }
   double load() const {
+    if (is_loaded()) return 1;
     return std::min(1.0, static_cast<double>(result_.damped_steps) / problem_.continuation.damped_steps);
   }
   bool is_at_full_problem() const { return load() == 1 && moved_ == 1; }
@@ -76,6 +85,7 @@ class DampedPath {
     outcome_.status =
         settle(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
     objective.damp({}, {});
+    is_lost_ = is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost;
   }
 
   // What is pressed together or overstretched gives way in the next steps, up to a limit.
@@ -101,7 +111,7 @@ class DampedPath {
   double moved_ = 0;             // of the prescribed motion
   double residual_ = kInfinity;  // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
-  bool is_blocked_ = false;
+  bool is_blocked_ = false, is_lost_ = false;
 };
 
 }  // namespace

@@ -10,7 +10,9 @@ namespace coapt {
 // minimum of the energy with dampers to the state before, found by the solver. Loads and prescribed motion
 // grow together in continuation.damped_steps equal steps; at the full problem the dampers weaken as the
 // residual falls, and go. As a step has one minimum near its start, the order of nodes and the method hardly
-// ever decide where the path leads: in 1 of 80 solves (docs/decisions/019). Of the result it changes q,
+// ever decide where the path leads: in 1 of 80 solves (docs/decisions/019). With
+// continuation.is_loaded the path begins at the full problem, with ten times the damping: for the shape that
+// a coarser mesh gives, which may be near several equilibria of the finer one. Of the result it changes q,
 // rounds and damped_steps. A run that is cut short stays where it had got to, with all loads.
 Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                            Result& result);

@@ -327,6 +327,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   const EvaluationCounts counts_before = objective.counts();
   Monitor monitor(objective, stop, observer);
 
+  objective.restore_stiffness();
   Result result;
   result.q = objective.smooth_start(problem.q0);
   objective.turn_films(result.q);

@@ -103,7 +103,8 @@ struct Continuation {
   int load_steps = 1;          // equal steps of all loads; 1: the full load at once
   int stiffness_steps = 1;     // steps of all other energies, in equal ratios; 1: the full stiffness at once
   double first_stiffness = 1;  // factor before the first step
-  int damped_steps = 0;  // equal steps of all loads along a damped path (optim/damped_path.hpp); 0: none
+  int damped_steps = 0;    // equal steps of all loads along a damped path (optim/damped_path.hpp); 0: none
+  bool is_loaded = false;  // the damped path begins at the full problem, near its end
 };
 
 struct Problem {

@@ -18,6 +18,8 @@ constexpr int kFewestTriangles = 500;  // of a coarse mesh
 constexpr size_t kMostCoarseMeshes = 4;
 constexpr double kLeastCoarsening = 0.67;  // a mesh with more than this share of the next is no help
 constexpr double kCoarseTolerance = 1e-3;
+constexpr double kDampedTolerance =
+    1e-6;  // of coarse meshes along a damped path, as little decides where it leads
 constexpr double kMostResidual = 1e6;  // of a start
 constexpr double kGapPerEdge = 0.1;    // left between facets that are pushed apart, of the mean edge
 
@@ -99,6 +101,15 @@ bool is_bearable(const Problem& problem) {
   return residual < kMostResidual;
 }
 
+// From the shape that a coarser mesh gave; the dampers of a damped path keep it to the equilibrium next to
+// it.
+Problem problem_near(const Points& x, Model& model, const Continuation& continuation) {
+  Problem problem = problem_at(x, model);
+  problem.continuation.damped_steps = continuation.damped_steps;
+  problem.continuation.is_loaded = continuation.damped_steps > 0;
+  return problem;
+}
+
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
 
 class Cascade {
@@ -161,6 +172,7 @@ struct Start {
 };
 std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, Cascade& cascade) {
   const std::vector<Step> steps = coarser_meshes(scene, ground);
+  const Continuation& continuation = scene.solver.continuation;
   if (steps.empty()) {
     cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
     return std::nullopt;
@@ -176,10 +188,10 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
       const bool is_coarsest = start.x.size() == 0;
       if (!is_coarsest && !make_startable(start.x, model))
         throw InputError("the shape found on a coarser one passes through itself there");
-      const Problem problem =
-          is_coarsest ? Problem{*model.objective, model.q0, model.motion, scene.solver.continuation}
-                      : problem_at(start.x, model);
-      const Result result = cascade.level(problem, model, kCoarseTolerance);
+      const Problem problem = is_coarsest ? Problem{*model.objective, model.q0, model.motion, continuation}
+                                          : problem_near(start.x, model, continuation);
+      const Result result =
+          cascade.level(problem, model, continuation.damped_steps > 0 ? kDampedTolerance : kCoarseTolerance);
       start = {model.objective->positions(result.q), result.status};
       if (result.status != Status::Converged) failure = result.message;
     } catch (const InputError& error) {
@@ -227,7 +239,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
     }
   }
   if (start) {
-    Problem problem = problem_at(start->x, model);
+    Problem problem = problem_near(start->x, model, scene.solver.continuation);
     problem.stability = stability;
     Result result = cascade.level(problem, model, stop.tolerance);
     if (result.status == Status::Converged || result.status == Status::IterationLimit ||

@@ -141,6 +141,16 @@ TEST(Coarsen, GivesTheSameMeshEachTime) {
   EXPECT_EQ(a.weights, b.weights);
 }
 
+TEST(Coarsen, DoesNotDependOnTheFrame) {
+  TriangleMesh mesh = two_regions(), turned;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.01, 0.01);
+  for (double& x : mesh.vertices.reshaped()) x += shift(random);
+  turned = mesh;
+  turned.vertices = Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix() * mesh.vertices;
+  EXPECT_EQ(coarsen(mesh).kept, coarsen(turned).kept);
+}
+
 std::multiset<std::set<int>> corner_sets(const TriangleMesh& mesh) {
   std::multiset<std::set<int>> sets;
   for (const auto& t : mesh.triangles.colwise()) sets.insert({t.begin(), t.end()});
@@ -159,7 +169,8 @@ Reordered reordered(const TriangleMesh& mesh) {
   std::iota(other.vertex.begin(), other.vertex.end(), 0);
   std::shuffle(other.vertex.begin(), other.vertex.end(), random);
   std::vector<int> number(other.vertex.size()), order(static_cast<size_t>(mesh.triangle_count()));
-  for (size_t k = 0; k < number.size(); ++k) number[static_cast<size_t>(other.vertex[k])] = static_cast<int>(k);
+  for (size_t k = 0; k < number.size(); ++k)
+    number[static_cast<size_t>(other.vertex[k])] = static_cast<int>(k);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), random);
   other.mesh.vertices = mesh.vertices(Eigen::all, other.vertex);

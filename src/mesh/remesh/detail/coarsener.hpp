@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace coapt::coarsening {
@@ -42,10 +43,24 @@ struct Star {
   double worst = 1;           // quality of its triangles
 };
 
-// One vertex may go into the other.
+// Without the digits that a rotation changes, so that what is equal but for round-off counts as equal.
+inline double leading_digits(double value) {
+  constexpr double kUnit = 1 << 30;
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  return std::ldexp(std::round(kUnit * fraction) / kUnit, exponent);
+}
+
+// One vertex may go into the other. Collapses that make the same worst triangle have the same cost; then the
+// shorter edge goes first. Both without their last digits.
 struct Collapse {
-  double cost = 0;
+  double cost = 0, length = 0;
   int vertex = 0, into = 0;
+
+  bool is_before(const Collapse& other) const {
+    return std::tie(cost, length, vertex, into) <
+           std::tie(other.cost, other.length, other.vertex, other.into);
+  }
 };
 
 class Coarsener {

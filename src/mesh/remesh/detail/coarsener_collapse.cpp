@@ -2,12 +2,12 @@
 #include "mesh/remesh/detail/coarsener.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace coapt::coarsening {
 namespace {
 
 constexpr double kLeastQuality = 0.3;  // of a new triangle, or no worse than the worst before
+constexpr double kRoundOff = 1e-8;     // within which costs count as equal
 constexpr double kLineCosine = 0.6;    // between the two edges of a line at a vertex that may go
 
 }  // namespace
@@ -42,12 +42,14 @@ void Coarsener::look_at(int v) {
 std::optional<Collapse> Coarsener::best_collapse(int v) {
   if (at(is_locked_, v)) return std::nullopt;
   look_at(v);
-  Collapse best{kInfinity, v, -1};
+  Collapse best{kInfinity, kInfinity, v, -1};
   for (const int u : star_.ring) {
     if (is_on_line(v) && !is_line(v, u)) continue;
     if (at(kinds_, v) != 0 && at(kinds_, u) != at(kinds_, v)) continue;
-    const std::optional<double> cost = cost_of(v, u, best.cost);
-    if (cost && std::tie(*cost, u) < std::tie(best.cost, best.into)) best = {*cost, v, u};
+    const std::optional<double> cost = cost_of(v, u, (1 + kRoundOff) * best.cost);
+    if (!cost) continue;
+    const Collapse collapse{leading_digits(*cost), leading_digits((x_.col(u) - x_.col(v)).norm()), v, u};
+    if (collapse.is_before(best)) best = collapse;
   }
   return best.into < 0 ? std::nullopt : std::optional(best);
 }
@@ -109,9 +111,8 @@ void Coarsener::collapse_round(int wanted) {
   for (int v = 0; v < static_cast<int>(around_.size()); ++v)
     if (!at(around_, v).empty())
       if (const auto candidate = best_collapse(v)) candidates.push_back(*candidate);
-  std::sort(candidates.begin(), candidates.end(), [](const Collapse& l, const Collapse& r) {
-    return std::tie(l.cost, l.vertex) < std::tie(r.cost, r.vertex);
-  });
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Collapse& l, const Collapse& r) { return l.is_before(r); });
   std::vector<char> is_touched(around_.size(), false);
   for (const Collapse& candidate : candidates) {
     if (triangle_count_ <= wanted) return;

@@ -1,5 +1,5 @@
-// A mesh in an order of its own, so that what is made of it does not depend on the numbers of its vertices and
-// triangles. Private to this room.
+// A mesh in an order of its own, so that what is made of it does not depend on the numbers of its vertices
+// and triangles. Private to this room.
 #pragma once
 
 #include "mesh/remesh/coarsen.hpp"
