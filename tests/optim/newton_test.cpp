@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -254,6 +255,7 @@ class Hardening final : public EnergyTerm {
     if (is_too_soft) stiffness_ *= 10;
     return is_too_soft;
   }
+  bool restore_stiffness() override { return std::exchange(stiffness_, 1) != 1; }
 
  private:
   Points start_;
@@ -279,6 +281,20 @@ TEST(Trace, BeginsARoundWhereATermStiffens) {
     } else {
       EXPECT_GT(trace[k].energy, trace[k - 1].energy);
     }
+}
+
+TEST(Solve, DoesNotDependOnWhatAnEarlierOneMadeStiffer) {
+  Points X = Points::Zero(3, 2), force = X;
+  X(0, 1) = -10;
+  force(0, 0) = 1;
+  Objective objective(
+      X, fixed_nodes(2, {1}),
+      terms_of(std::make_unique<Hardening>(X), std::make_unique<LoadDead>("pull", "load_field", force, X)));
+  const Problem problem{objective, objective.unknowns(X)};
+  const Result first = solve(*make_newton(), problem, {}), second = solve(*make_newton(), problem, {});
+  EXPECT_NEAR(first.q[0], 0.01, 1e-9);  // stiffened twice
+  EXPECT_EQ(first.q, second.q);
+  EXPECT_EQ(first.iterations, second.iterations);
 }
 
 // No residual of a sum of forces is below its rounding.
