@@ -109,15 +109,14 @@ def solved(coapt: str, folder: pathlib.Path, *options: str) -> tuple[dict, numpy
 
 
 def row(coapt: str, folder: pathlib.Path, work: pathlib.Path, solvers: list[str], is_direct: bool) -> tuple[list, int, int]:
-    def form() -> Form:
-        made = Form(folder)
-        if is_direct:
-            made.scene = made.scene.replace('"damped_steps": 20', '"damped_steps": 0')
-        return made
+    path = ["--damped-steps", "0"] if is_direct else []
 
-    given = form()
+    def solve(place: pathlib.Path, *options: str) -> tuple[dict, numpy.ndarray]:
+        return solved(coapt, place, *path, *options)
+
+    given = Form(folder)
     given.write(work / "given")
-    first, shape = solved(coapt, work / "given")
+    first, shape = solve(work / "given")
     count = len(given.vertices)
     cells = [first["status"], str(first["iterations"]), f"{first['time']['cpu_s']:.2f}", first["certificate"]["stability"]]
     seen = [0, 0]
@@ -129,23 +128,23 @@ def row(coapt: str, folder: pathlib.Path, work: pathlib.Path, solvers: list[str]
         cells.append(f"{distance:.0e}{'' if result['converged'] else '!'} ({result['iterations']})")
 
     for seed in (1, 2):
-        other = form()
+        other = Form(folder)
         number = other.shuffle(seed)
         other.write(work / f"order{seed}")
-        result, moved = solved(coapt, work / f"order{seed}")
+        result, moved = solve(work / f"order{seed}")
         compare(result, moved[number])
     rotation, centre = skew_rotation(), numpy.array([5.0, -3.0, 7.0])
-    other = form()
+    other = Form(folder)
     other.move(rotation, centre)
     other.write(work / "rotated")
-    result, moved = solved(coapt, work / "rotated")
+    result, moved = solve(work / "rotated")
     compare(result, (moved - centre) @ rotation + centre)
-    other = form()
+    other = Form(folder)
     other.scene = other.scene.replace('"type": "newton"', '"type": "newton", "globalisation": "trust_region"')
     other.write(work / "trust_region")
-    compare(*solved(coapt, work / "trust_region"))
+    compare(*solve(work / "trust_region"))
     for solver in solvers:
-        compare(*solved(coapt, work / "given", "--solver", solver))
+        compare(*solve(work / "given", "--solver", solver))
     return cells, *seen
 
 

@@ -168,6 +168,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
           "Of each solve that errors are measured to: on the finest mesh, and on to 1e-12 (default: as "
           "--max-seconds)")
       ->check(positive_defect);
+  add_path_option(*command, arguments->damped_steps);
   add_branch_options(*command, arguments->branches);
   command->add_flag("--json", arguments->prints_json, "Print bench.json instead of the tables");
   command->callback([arguments, &exit_code] { bench_scene(*arguments, exit_code); });

@@ -25,6 +25,7 @@ struct SolveArguments {
   std::string scene, folder, solver, accuracy;
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
+  std::optional<int> damped_steps;
   bool has_no_report = false;
   BranchSearch branches = {.starts = 0};
   CheckpointArguments checkpoint;
@@ -142,8 +143,12 @@ void print_summary(const RunReport& run) {
 // What a checkpoint of this run is recognised by.
 RunIdentity identity(const Scene& scene, const RunOptions& options,
                      const std::optional<double>& accuracy_mm) {
-  return {version(), scene_fingerprint(scene), options.solver.empty() ? scene.solver.type : options.solver,
-          options.tolerance.value_or(scene.solver.tolerance), accuracy_mm};
+  return {version(),
+          scene_fingerprint(scene),
+          options.solver.empty() ? scene.solver.type : options.solver,
+          options.tolerance.value_or(scene.solver.tolerance),
+          accuracy_mm,
+          options.damped_steps.value_or(scene.solver.continuation.damped_steps)};
 }
 
 // Returns the exit code.
@@ -201,6 +206,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                            ->add_option("--frames", arguments->frames,
                                         "Write every N-th iterate as a frame of an animation (frames.pvd)")
                            ->check(CLI::Range(1, 1000000000));
+  add_path_option(*command, arguments->damped_steps);
   add_branch_options(*command, arguments->branches);
   add_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
@@ -211,6 +217,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     options.folder = arguments->folder;
     if (tolerance->count() > 0) options.tolerance = arguments->tolerance;
     if (seconds->count() > 0) options.max_seconds = arguments->max_seconds;
+    options.damped_steps = arguments->damped_steps;
     if (modes->count() > 0) options.modes = arguments->modes;
     if (frames->count() > 0) options.frame_interval = arguments->frames;
     if (arguments->has_no_report) options.writes_page = false;

@@ -28,7 +28,9 @@ std::string settings_text(const ParameterStudyArguments& arguments) {
   char text[96];
   std::snprintf(text, sizeof text, "tolerance %.17g, seconds %.17g, solver ", arguments.tolerance,
                 arguments.max_seconds);
-  return text + arguments.solver;
+  const std::string steps =
+      arguments.damped_steps ? ", damped steps " + std::to_string(*arguments.damped_steps) : "";
+  return text + arguments.solver + steps;
 }
 
 // In a process of its own: solves the point into its folder.

@@ -13,6 +13,7 @@ RunOptions StudyArguments::options() const {
   options.solver = solver;
   if (tolerance > 0) options.tolerance = tolerance;
   if (max_seconds > 0) options.max_seconds = max_seconds;
+  options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.judge = intersection_judge();
   options.observer = make_observer();
@@ -41,6 +42,15 @@ std::vector<std::string> comma_list(const std::string& text) {
   return all;
 }
 
+void add_path_option(CLI::App& command, std::optional<int>& damped_steps) {
+  command
+      .add_option("--damped-steps", damped_steps,
+                  "Steps of all loads and of the prescribed motion along a damped path; 0 solves at once "
+                  "(default: the scene's)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 100000));
+}
+
 void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
   command.add_option("SCENE", arguments.scene, "Scene file (JSON)")->required();
   command.add_option("-o,--output", arguments.folder,
@@ -49,6 +59,7 @@ void add_run_arguments(CLI::App& command, StudyArguments& arguments) {
       ->check(positive_defect);
   command.add_option("--max-seconds", arguments.max_seconds, "Of each solve (default: the scene's)")
       ->check(positive_defect);
+  add_path_option(command, arguments.damped_steps);
 }
 
 void add_branch_options(CLI::App& command, BranchSearch& search) {

@@ -3,6 +3,7 @@
 
 #include "run/branches.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace coapt::cli {
 struct StudyArguments {
   std::string scene, folder, solver;
   double tolerance = 0, max_seconds = 0;  // 0: not given
+  std::optional<int> damped_steps;
 
   RunOptions options() const;
   // Where the files go: `-o`, or the scene's result folder. Made if it is missing. Throws InputError.
@@ -27,7 +29,10 @@ std::string positive_defect(const std::string& text);
 // "newton, lbfgs" as a list.
 std::vector<std::string> comma_list(const std::string& text);
 
-// SCENE, -o, --tolerance, --max-seconds.
+// --damped-steps.
+void add_path_option(CLI::App& command, std::optional<int>& damped_steps);
+
+// SCENE, -o, --tolerance, --max-seconds, --damped-steps.
 void add_run_arguments(CLI::App& command, StudyArguments& arguments);
 
 // The same and --solver.

@@ -160,7 +160,7 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
     RandomSource random(search.seed, static_cast<std::uint64_t>(start));
     const Points x = moved(objective, from, random, branches);
     const Result result =
-        is_from_own_start ? solve_along_path(scene, x, model, setup) : solve_again(x, model, setup);
+        is_from_own_start ? solve_along_path(x, model, setup) : solve_again(x, model, setup);
     if (result.status == Status::Cancelled) break;
     ++branches.starts;
     if (is_from_own_start) ++branches.starts_of_the_way;

@@ -170,9 +170,9 @@ struct Start {
   Points x;
   Status status = Status::Converged;
 };
-std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, Cascade& cascade) {
+std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground,
+                                  const Continuation& continuation, Cascade& cascade) {
   const std::vector<Step> steps = coarser_meshes(scene, ground);
-  const Continuation& continuation = scene.solver.continuation;
   if (steps.empty()) {
     cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
     return std::nullopt;
@@ -214,10 +214,11 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground, 
 }  // namespace
 
 CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
-                             const SolverMaker& make_solver, const StopRule& stop, const Observer& observer,
+                             const SolverMaker& make_solver, const StopRule& stop,
+                             const Continuation& continuation, const Observer& observer,
                              const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
-  std::optional<Start> start = coarse_start(scene, ground, cascade);
+  std::optional<Start> start = coarse_start(scene, ground, continuation, cascade);
   if (start && !make_startable(start->x, model)) {
     cascade.warn(
         "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
@@ -239,7 +240,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
     }
   }
   if (start) {
-    Problem problem = problem_near(start->x, model, scene.solver.continuation);
+    Problem problem = problem_near(start->x, model, continuation);
     problem.stability = stability;
     Result result = cascade.level(problem, model, stop.tolerance);
     if (result.status == Status::Converged || result.status == Status::IterationLimit ||
@@ -251,9 +252,8 @@ CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model
                  "): the mesh was solved from its own start.");
     model.objective->prescribe(model.X);
   }
-  cascade.finish(
-      cascade.level({*model.objective, model.q0, model.motion, scene.solver.continuation, stability}, model,
-                    stop.tolerance));
+  cascade.finish(cascade.level({*model.objective, model.q0, model.motion, continuation, stability}, model,
+                               stop.tolerance));
   return std::move(cascade.outcome);
 }
 

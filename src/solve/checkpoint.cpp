@@ -86,6 +86,7 @@ Json identity_json(const RunIdentity& identity) {
                {"solver", identity.solver},
                {"tolerance", identity.tolerance}};
   if (identity.accuracy_mm) json["accuracy_mm"] = *identity.accuracy_mm;
+  if (identity.damped_steps > 0) json["damped_steps"] = identity.damped_steps;
   return json;
 }
 
@@ -120,6 +121,7 @@ std::vector<std::string> differences(const std::string& file, const Json& known,
   compare("tolerance", "to the tolerance ",
           "this one is to " + number_text(identity.tolerance) + ": give the same with --tolerance");
   compare("accuracy_mm", "to an accuracy [mm] of ", "give the same with --accuracy");
+  compare("damped_steps", "whose damped steps were ", "give the same with --damped-steps");
   return defects;
 }
 

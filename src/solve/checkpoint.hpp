@@ -17,12 +17,13 @@ struct RunIdentity {
   std::string solver;   // name
   double tolerance = 0;
   std::optional<double> accuracy_mm;  // where one is wanted
+  int damped_steps = 0;               // of its continuation
 };
 
 // 16 hexadecimal digits, of the scene file and of every file that it names; but not of what has no influence
-// on the way of a run: name, output, reference, limit of time, threads and certificate. Method and tolerance,
-// which may be given from outside, stand apart in the identity. Throws InputError where the scene was not
-// read from a file.
+// on the way of a run: name, output, reference, limit of time, threads and certificate. Method, tolerance and
+// damped steps, which may be given from outside, stand apart in the identity. Throws InputError where the
+// scene was not read from a file.
 std::string scene_fingerprint(const Scene& scene);
 
 // 16 hexadecimal digits of all that the files hold which the text of a scene in `folder` names. Throws

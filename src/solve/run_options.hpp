@@ -14,6 +14,7 @@ struct RunOptions {
   std::string solver;                 // empty: the scene's
   std::optional<double> tolerance;    // empty: the scene's
   std::optional<double> max_seconds;  // empty: the scene's
+  std::optional<int> damped_steps;    // of Continuation, 0: solves at once; empty: the scene's
   std::optional<int> modes;           // smallest eigenvalues in the certificate; empty: the scene's
   std::optional<int> frame_interval;  // accepted iterates from frame to frame, at least 1; empty: the scene's
   std::optional<bool> writes_page;    // report.html; empty: as the scene says

@@ -7,6 +7,7 @@
 #include "scene/build/xpbd_body.hpp"
 #include "xpbd/solver_xpbd.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
@@ -62,6 +63,18 @@ StopRule stop_rule(const Scene& scene, const RunOptions& options) {
   return stop;
 }
 
+Continuation chosen_continuation(const Scene& scene, const RunOptions& options) {
+  Continuation chosen = scene.solver.continuation;
+  if (!options.damped_steps) return chosen;
+  if (*options.damped_steps < 0)
+    throw InputError("--damped-steps: must be a number of steps, or 0 for a solve at once");
+  if (*options.damped_steps > 0 && std::max(chosen.load_steps, chosen.stiffness_steps) > 1)
+    throw InputError("--damped-steps: raise the loads themselves, as do load_steps and stiffness_steps in " +
+                     scene.file.string() + "; leave these out, or --damped-steps");
+  chosen.damped_steps = *options.damped_steps;
+  return chosen;
+}
+
 }  // namespace
 
 SolverTable scene_solvers() {
@@ -80,6 +93,7 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
     return make(solver_options(spec, terms, factorisation, model));
   };
   setup.stop = stop_rule(scene, options);
+  setup.continuation = chosen_continuation(scene, options);
   setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
   setup.observer = options.observer;
   return setup;
@@ -88,21 +102,20 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
 CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
                            const SolveSetup& setup) {
   if (scene.solver.cascade)
-    return solve_cascade(scene, ground, model, setup.make_solver, setup.stop, setup.observer,
-                         setup.stability);
+    return solve_cascade(scene, ground, model, setup.make_solver, setup.stop, setup.continuation,
+                         setup.observer, setup.stability);
   CascadeOutcome outcome;
-  outcome.result =
-      solve(*setup.make_solver(model),
-            {*model.objective, model.q0, model.motion, scene.solver.continuation, setup.stability},
-            setup.stop, setup.observer);
+  outcome.result = solve(*setup.make_solver(model),
+                         {*model.objective, model.q0, model.motion, setup.continuation, setup.stability},
+                         setup.stop, setup.observer);
   return outcome;
 }
 
-Result solve_along_path(const Scene& scene, const Points& x, Model& model, const SolveSetup& setup) {
+Result solve_along_path(const Points& x, Model& model, const SolveSetup& setup) {
   Objective& objective = *model.objective;
   objective.prescribe(model.X);
   return solve(*setup.make_solver(model),
-               {objective, objective.unknowns(x), model.motion, scene.solver.continuation, setup.stability},
+               {objective, objective.unknowns(x), model.motion, setup.continuation, setup.stability},
                setup.stop, setup.observer);
 }
 

@@ -14,12 +14,14 @@ struct SolveSetup {
   std::string solver;  // name
   SolverMaker make_solver;
   StopRule stop;
+  Continuation continuation;
   StabilityOptions stability;
   Observer observer;  // may be empty
 };
 
 // Throws InputError for a solver that is not in the table (listing those that are), a factorisation that is
-// not in the build, or a stop rule without meaning.
+// not in the build, a stop rule without meaning, or damped steps that are negative or that the scene's own
+// continuation does not go with.
 SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options);
 
 // From the scene's own start, by the cascade where the scene wants one; levels are empty where it does not.
@@ -27,9 +29,9 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
 CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
                            const SolveSetup& setup);
 
-// Along the scene's own motion and continuation on this mesh alone, from the free coordinates of x
-// (3 x node_count) and the supports where their motion begins.
-Result solve_along_path(const Scene& scene, const Points& x, Model& model, const SolveSetup& setup);
+// Along the model's own motion and the continuation of the setup on this mesh alone, from the free
+// coordinates of x (3 x node_count) and the supports where their motion begins.
+Result solve_along_path(const Points& x, Model& model, const SolveSetup& setup);
 
 // From x (3 x node_count), with the supports where their motion ends.
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup);

@@ -84,6 +84,7 @@ std::map<std::string, std::string> chord_tuning_identity(const Scene& scene,
     target = fingerprint(formats::read_whole(file)) + " times " + text_of(options.target_scale);
   return {{"version", version()},
           {"scene", scene_fingerprint(scene)},
+          {"damped steps", std::to_string(run.damped_steps.value_or(scene.solver.continuation.damped_steps))},
           {"tolerance", text_of(run.tolerance.value_or(scene.solver.tolerance))},
           {"target", target},
           {"distance weight", text_of(distance_weight_of(options))},

@@ -84,6 +84,12 @@ class CommandTest(CommandCase):
         broken["status"] = "fine"
         self.assertNotEqual(list(validator.iter_errors(broken)), [])
 
+    def test_refuses_two_ways_to_raise_the_loads(self):
+        scene = self.generate("disc", "--triangles", 100)
+        scene.write_text(scene.read_text().replace('"solver": {', '"solver": { "continuation": { "load_steps": 2 },'))
+        self.assert_bad_input(coapt("solve", scene, "--damped-steps", 5), "--damped-steps", "load_steps", "scene.json")
+        self.assertEqual(coapt("solve", scene, "--no-report", "--damped-steps", 0).returncode, 0)
+
     def test_looks_for_other_equilibria(self):
         scene = self.generate("mitral", "--triangles", 300)
         self.assertEqual(coapt("solve", scene, "--no-report").returncode, 0)
@@ -100,9 +106,7 @@ class CommandTest(CommandCase):
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
         # The way of a damped path is long by design, that of a solve at once is judged.
         self.assertEqual(result["neighbours"], {"judged": False, "suspected": False, "iterates": 0})
-        at_once = self.folder / "at_once.json"
-        at_once.write_text(scene.read_text().replace('"damped_steps": 20', '"damped_steps": 0'))
-        self.assertEqual(coapt("solve", at_once, "--no-report").returncode, 0)
+        self.assertEqual(coapt("solve", scene, "--no-report", "--damped-steps", 0).returncode, 0)
         direct = self.result()
         self.assertEqual(direct["damped_steps"], 0)
         self.assertGreater(result["damped_steps"], 20)

@@ -123,9 +123,8 @@ class CompareTest(command_case.CommandCase):
 
     def test_says_who_did_not_converge(self):
         scene = self.valve()
-        at_once = scene.read_text().replace('"damped_steps": 20', '"damped_steps": 0')
-        scene.write_text(at_once.replace('"solver": {', '"solver": {"max_iterations": 40, '))
-        text, found, rows = self.compare(scene, "--methods", "newton,lbfgs", code=1)
+        scene.write_text(scene.read_text().replace('"solver": {', '"solver": {"max_iterations": 40, '))
+        text, found, rows = self.compare(scene, "--methods", "newton,lbfgs", "--damped-steps", 0, code=1)
         self.assertEqual([row["verdict"] for row in rows], ["reference", "not converged"], text)
         self.assertEqual([m["converged"] for m in found["methods"]], [True, False])
         self.assertFalse(found["converged"])

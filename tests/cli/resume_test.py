@@ -216,6 +216,7 @@ class ResumeTest(CommandCase):
         self.assert_bad_input(self.solve(scene, "--checkpoint", self.kept), "run.checkpoint", "--resume", "remove")
         self.assert_bad_input(self.solve(scene, "--resume", self.kept, "--solver", "lbfgs", "--tolerance", "1e-7"),
                               "newton", "--solver", "--tolerance")
+        self.assert_bad_input(self.solve(scene, "--resume", self.kept, "--damped-steps", 20), "--damped-steps")
         text = scene.read_text()
         scene.write_text(text.replace('"poisson"', '"poisson" '))
         self.assertEqual(self.solve(scene, "--resume", self.kept, "--max-seconds", 1e-9).returncode, 1, "only spaces")

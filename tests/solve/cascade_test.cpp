@@ -38,7 +38,7 @@ class CascadeTest : public testing::Test {
     model_ = build(scene, ground_);
     StopRule stop;
     stop.tolerance = scene.solver.tolerance;
-    return solve_cascade(scene, ground_, model_, maker, stop, observer);
+    return solve_cascade(scene, ground_, model_, maker, stop, scene.solver.continuation, observer);
   }
 
   static std::unique_ptr<Solver> lbfgs(const Model&) { return make_lbfgs(); }
