@@ -31,8 +31,8 @@ constexpr const char* kUsualPressure = "120 mmHg";
 // the damped path takes half the time: over sixteen rough valves of 2,500 triangles.
 constexpr int kCascadeTriangles = 2000;
 
-// Of a damped path, which leads to one shape whatever the order of nodes, the frame and the method
-// (docs/decisions/019): fewer steps let small changes decide on more valves.
+// Of a damped path, which leads to one shape in 79 of 80 solves in other orders and frames and by other
+// methods (docs/decisions/019): fewer steps let small changes decide on more valves.
 constexpr int kDampedSteps = 20;
 
 using detail::digits;
@@ -139,8 +139,9 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
   text += "  \"boundary\": " + boundary_text(valve) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
   text +=
-      "  // Loads and motion grow together along a damped path: slower than a solve at once, but one "
-      "shape.\n";
+      "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
+      "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
+      "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n";
   text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) +
           ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
           (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
