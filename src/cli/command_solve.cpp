@@ -57,9 +57,12 @@ struct MetricPrinter {
   }
 };
 
-void print_reference(const DistanceFigures& distance) {
-  std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "distance to reference", distance.mean,
+void print_reference(const ReferenceDistance& reference) {
+  const DistanceFigures distance = both_directions(reference);
+  std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm", "distance to reference", distance.mean,
               distance.p95, distance.max);
+  if (reference.left_out > 0) std::printf(" (undetermined nodes left out: %d)", reference.left_out);
+  std::printf("\n");
 }
 
 void print_certificate(const Certificate& certificate) {
@@ -133,7 +136,7 @@ void print_summary(const RunReport& run) {
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
   print_metrics(run.model, m, branches);
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
-  if (report.reference) print_reference(both_directions(*report.reference));
+  if (report.reference) print_reference(*report.reference);
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
   std::string files;
   for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;

@@ -116,6 +116,8 @@ PageTable distance_table(const ReferenceDistance& distance) {
                           {page_number(distance.same_vertex->mean)},
                           {""},
                           {page_number(distance.same_vertex->max)}});
+  if (distance.left_out > 0)
+    table.caption += "; nodes that can move at no cost, left out: " + std::to_string(distance.left_out);
   return table;
 }
 

@@ -27,6 +27,7 @@ nlohmann::ordered_json equilibrium_json(const NearbyEquilibrium& equilibrium) {
           {"residual", finite_or_null(equilibrium.residual)},
           {"greatest_distance_mm", finite_or_null(equilibrium.greatest_mm)},
           {"mean_distance_mm", finite_or_null(equilibrium.mean_mm)},
+          {"left_out_nodes", equilibrium.left_out},
           {"metrics", metrics}};
 }
 

@@ -17,6 +17,7 @@ struct NearbyEquilibrium {
   int found = 0;                        // by how many perturbed starts
   double greatest_mm = 0, mean_mm = 0;  // distance of the nodes from the solve's own equilibrium
   Metrics metrics;
+  int left_out = 0;  // nodes that one of the two does not determine: in neither distance
 };
 
 // Lowest and highest of one metric over the other equilibria.

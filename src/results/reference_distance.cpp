@@ -1,9 +1,8 @@
 #include "results/reference_distance.hpp"
 
-#include "mesh/distance/surface_distance.hpp"
-
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
 namespace coapt {
@@ -34,7 +33,7 @@ DistanceFigures both_directions(const ReferenceDistance& distance) {
 }
 
 DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b) {
-  return both_directions({figures(surface_distance(a, b)), figures(surface_distance(b, a)), std::nullopt});
+  return both_directions({figures(surface_distance(a, b)), figures(surface_distance(b, a)), {}, 0});
 }
 
 TriangleMesh surface_at(const Model& model, const Points& x) {
@@ -44,22 +43,46 @@ TriangleMesh surface_at(const Model& model, const Points& x) {
 }
 
 ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
-                                     Vector& vertex_distances) {
-  const SurfaceDistance there = surface_distance(closed, reference);
+                                     Vector& vertex_distances, const UncountedVertices& uncounted) {
+  const SurfaceDistance there = surface_distance(closed, reference, uncounted),
+                        back = surface_distance(reference, closed, {uncounted.to, uncounted.from});
   vertex_distances = there.vertex_distances;
-  ReferenceDistance distance{figures(there), figures(surface_distance(reference, closed)), std::nullopt};
+  const std::vector<int> left_out = either_of(uncounted.from, uncounted.to, closed.vertices.cols());
+  ReferenceDistance distance{figures(there), figures(back), {}, static_cast<int>(left_out.size())};
   const bool is_same_mesh = reference.vertices.cols() == closed.vertices.cols() &&
                             facets(reference.triangles) == facets(closed.triangles);
-  if (is_same_mesh) {
-    const Eigen::RowVectorXd apart = (reference.vertices - closed.vertices).colwise().norm();
-    distance.same_vertex = VertexDistance{apart.mean(), apart.maxCoeff()};
-  }
+  if (is_same_mesh) distance.same_vertex = apart(reference.vertices, closed.vertices, left_out);
   return distance;
 }
 
-std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields) {
+std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
+                                                        const std::vector<int>& free_nodes) {
   if (!model.closed_reference) return std::nullopt;
-  return reference_distance(surface_at(model, fields.x), *model.closed_reference, fields.reference_distance);
+  return reference_distance(surface_at(model, fields.x), *model.closed_reference, fields.reference_distance,
+                            {free_nodes, {}});
+}
+
+VertexDistance apart(const Points& a, const Points& b, const std::vector<int>& left_out) {
+  if (a.cols() == 0) return {};
+  VertexDistance distance;
+  int count = 0;
+  for (int k = 0; k < static_cast<int>(a.cols()); ++k) {
+    if (std::binary_search(left_out.begin(), left_out.end(), k)) continue;
+    const double here = (a.col(k) - b.col(k)).norm();
+    distance.mean += here;
+    distance.max = std::max(distance.max, here);
+    ++count;
+  }
+  if (count == 0) return {kNaN, kNaN};
+  distance.mean /= count;
+  return distance;
+}
+
+std::vector<int> either_of(const std::vector<int>& a, const std::vector<int>& b, Eigen::Index count) {
+  std::vector<int> both;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  std::erase_if(both, [count](int k) { return k >= count; });
+  return both;
 }
 
 }  // namespace coapt

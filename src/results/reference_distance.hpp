@@ -1,9 +1,11 @@
 // How far a solved surface lies from a given closed one.
 #pragma once
 
+#include "mesh/distance/surface_distance.hpp"
 #include "results/fields.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace coapt {
 
@@ -19,6 +21,7 @@ struct ReferenceDistance {
   DistanceFigures to_reference;               // from the solved surface to the reference
   DistanceFigures from_reference;             // from the reference to the solved surface
   std::optional<VertexDistance> same_vertex;  // when both have the same facets, in any order
+  int left_out = 0;  // vertices whose place is not determined, and which have no part in these figures
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.
@@ -28,14 +31,24 @@ DistanceFigures both_directions(const ReferenceDistance& distance);
 DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b);
 
 // From one surface to another and back; `vertex_distances` gets the distance of every vertex of `closed` to
-// the closest point of `reference` [mm]. Throws InputError when one of them has no area.
+// the closest point of `reference` [mm], also of the uncounted ones. Figures that nothing is left for are
+// NaN. Throws InputError when one of them has no area.
 ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
-                                     Vector& vertex_distances);
+                                     Vector& vertex_distances, const UncountedVertices& uncounted = {});
 
 // The model's surface with its nodes at x (3 x node_count, relative to the origin).
 TriangleMesh surface_at(const Model& model, const Points& x);
 
-// Nothing for a model without a closed reference. Also fills fields.reference_distance.
-std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields);
+// Nothing for a model without a closed reference. Also fills fields.reference_distance. free_nodes: that the
+// certificate found to move at no cost; they are left out.
+std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
+                                                        const std::vector<int>& free_nodes = {});
+
+// The mean and the greatest distance of points of the same number; NaN where all are left out, by number in
+// ascending order, and 0 where there are none. Pre: as many in both.
+VertexDistance apart(const Points& a, const Points& b, const std::vector<int>& left_out = {});
+
+// The numbers below `count` that are in one of two ascending lists.
+std::vector<int> either_of(const std::vector<int>& a, const std::vector<int>& b, Eigen::Index count);
 
 }  // namespace coapt

@@ -100,7 +100,8 @@ OrderedJson reference_distance() {
        {"same_vertex",
         object({{"mean_mm", number("mean [mm]")}, {"max_mm", number("greatest [mm]")}},
                "between vertices of the same number, when the reference has as many and the same facets"),
-        Need::Optional}},
+        Need::Optional},
+       {"left_out_nodes", count("vertices without a part in these figures: they can be moved at no cost")}},
       "distance between the solved surface and the closed surface that the scene names");
 }
 
@@ -204,6 +205,7 @@ OrderedJson branches() {
               {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
               {"greatest_distance_mm", number("of a node from the first equilibrium [mm]")},
               {"mean_distance_mm", number("of the nodes from the first equilibrium [mm]")},
+              {"left_out_nodes", count("without a part in both: one of the two equilibria leaves them free")},
               {"metrics", metrics()}},
              "one equilibrium");
   OrderedJson others = described({{"type", "object"}}, "range of each metric over the other equilibria");

@@ -76,6 +76,7 @@ OrderedJson reference_json(const ReferenceDistance& distance) {
   OrderedJson json = figures_json(both_directions(distance));
   json["to_reference"] = figures_json(distance.to_reference);
   json["from_reference"] = figures_json(distance.from_reference);
+  json["left_out_nodes"] = distance.left_out;
   if (distance.same_vertex)
     json["same_vertex"] = {{"mean_mm", number(distance.same_vertex->mean)},
                            {"max_mm", number(distance.same_vertex->max)}};

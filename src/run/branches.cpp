@@ -76,6 +76,7 @@ struct KnownState {
 
 struct NodeDistance {
   double greatest = 0, mean = 0;  // [mm]
+  int left_out = 0;               // nodes
 };
 
 // Over the nodes that are not held and whose place both states determine.
@@ -83,9 +84,12 @@ NodeDistance node_distance(const KnownState& a, const KnownState& b, const Fixed
   NodeDistance distance;
   int count = 0;
   for (int k = 0; k < static_cast<int>(a.x.cols()); ++k) {
-    if (fixed.col(k).all() || std::binary_search(a.free_nodes.begin(), a.free_nodes.end(), k) ||
-        std::binary_search(b.free_nodes.begin(), b.free_nodes.end(), k))
+    if (fixed.col(k).all()) continue;
+    if (std::binary_search(a.free_nodes.begin(), a.free_nodes.end(), k) ||
+        std::binary_search(b.free_nodes.begin(), b.free_nodes.end(), k)) {
+      ++distance.left_out;
       continue;
+    }
     const double here = (a.x.col(k) - b.x.col(k)).norm();
     distance.greatest = std::max(distance.greatest, here);
     distance.mean += here;
@@ -96,8 +100,14 @@ NodeDistance node_distance(const KnownState& a, const KnownState& b, const Fixed
 }
 
 NearbyEquilibrium nearby(const Result& result, const NodeDistance& distance, Metrics metrics) {
-  return {result.energy, result.residual,   result.certificate.stability.verdict, 0, distance.greatest,
-          distance.mean, std::move(metrics)};
+  return {result.energy,
+          result.residual,
+          result.certificate.stability.verdict,
+          0,
+          distance.greatest,
+          distance.mean,
+          std::move(metrics),
+          distance.left_out};
 }
 
 std::vector<BranchRange> ranges_of_others(const std::vector<NearbyEquilibrium>& equilibria) {
@@ -150,7 +160,8 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   branches.kick_mm = search.kick * edge;
   branches.tolerance_mm = kSameState * edge;
   std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
-  branches.equilibria = {nearby(own, {}, run.report.metrics)};
+  branches.equilibria = {
+      nearby(own, node_distance(states.front(), states.front(), objective.fixed()), run.report.metrics)};
   branches.spread_mm = Vector::Zero(objective.node_count());
   const bool goes_the_way = search.goes_the_way && run.report.levels.empty();
   for (int start = 0; start < (goes_the_way ? 2 : 1) * search.starts; ++start) {

@@ -61,7 +61,7 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
     report.fields.undetermined =
         undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
   report.metrics = measure(model, result.q, report.fields, options.judge);
-  report.reference = compare_with_reference(model, report.fields);
+  report.reference = compare_with_reference(model, report.fields, result.certificate.free_nodes);
   if (setup.stability.modes > 0 && !has_smallest_modes())
     report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
   const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);

@@ -42,6 +42,7 @@ inline constexpr double kSameShape = 1e-6;
 struct MethodGap {
   std::optional<ReferenceDistance> surfaces;  // none for a scene without a mesh
   VertexDistance same_vertex;                 // of the mesh; of all nodes in a scene without one
+  int left_out = 0;  // of these, nodes that one of the two does not determine: in no distance
 };
 
 // Both shapes again, after newton went on from them to a smaller residual: what is left of the distance is

@@ -118,6 +118,7 @@ OrderedJson distance_json(const ReferenceDistance& distance) {
   OrderedJson json = distances_json(both_directions(distance));
   json["to_reference"] = distances_json(distance.to_reference);
   json["from_reference"] = distances_json(distance.from_reference);
+  json["left_out_nodes"] = distance.left_out;
   if (const auto& same = distance.same_vertex)
     json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
   return json;
@@ -127,6 +128,7 @@ OrderedJson gap_json(const MethodGap& gap) {
   OrderedJson json = gap.surfaces ? distance_json(*gap.surfaces) : OrderedJson::object();
   json["same_vertex"] = {{"mean_mm", number_json(gap.same_vertex.mean)},
                          {"max_mm", number_json(gap.same_vertex.max)}};
+  json["left_out_nodes"] = gap.left_out;
   return json;
 }
 

@@ -275,6 +275,31 @@ TEST(ReferenceDistance, MeasuresAParallelSurfaceBothWaysAndVertexByVertex) {
   EXPECT_NEAR(fields.reference_distance[3], 0.5, 1e-12);
 }
 
+TEST(ReferenceDistance, LeavesOutNodesThatCanMoveAtNoCost) {
+  Model model = model_of(square(10, 200));
+  model.closed_reference = model.mesh;
+  model.closed_reference->vertices.row(2).array() += 0.5;
+  const int loose = 20, beyond = model.mesh.vertex_count() + 3;  // a chord's junction is no vertex
+  Points x = model.X;
+  x(2, loose) += 7;
+  Fields fields = compute_fields(model, x);
+  EXPECT_NEAR(compare_with_reference(model, fields)->to_reference.max, 6.5, 1e-12);
+  const auto distance = compare_with_reference(model, fields, {loose, beyond});
+  EXPECT_EQ(distance->left_out, 1);
+  for (const DistanceFigures& figures : {distance->to_reference, distance->from_reference}) {
+    EXPECT_NEAR(figures.mean, 0.5, 1e-12);
+    EXPECT_NEAR(figures.max, 0.5, 1e-12);
+  }
+  EXPECT_NEAR(distance->same_vertex->max, 0.5, 1e-12);
+  EXPECT_NEAR(fields.reference_distance[loose], 6.5, 1e-12) << "the map shows every vertex";
+
+  std::vector<int> all;
+  for (int v = 0; v < model.mesh.vertex_count(); ++v) all.push_back(v);
+  const auto nothing = compare_with_reference(model, fields, all);
+  EXPECT_TRUE(std::isnan(nothing->to_reference.max) && std::isnan(nothing->from_reference.mean));
+  EXPECT_TRUE(std::isnan(nothing->same_vertex->max));
+}
+
 TEST(ReferenceDistance, ComparesVerticesHoweverTheFacetsAreListed) {
   Model model = model_of(square(10, 200));
   model.closed_reference = model.mesh;

@@ -124,6 +124,7 @@ TEST_F(BranchesOfAScene, WritesThemIntoEveryFileOfTheResult) {
   EXPECT_EQ(page.find("Warning: ", figures), std::string::npos);
   const nlohmann::json result = nlohmann::json::parse(text_of(options.folder / "result.json"));
   EXPECT_EQ(result["undetermined_nodes"]["differing"], 1);
+  EXPECT_EQ(result["branches"]["equilibria"][1]["left_out_nodes"], 0);
   EXPECT_EQ(result["branches"]["equilibria"].size(), 2u);
 }
 

@@ -9,6 +9,7 @@
 #include "scene/file/scene_text.hpp"
 #include "solve/solve_scene.hpp"
 #include "study/comparison_report.hpp"
+#include "study/detail/method_verdict.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/xpbd_bodies.hpp"
 #include "valve/generators/mitral.hpp"
@@ -148,6 +149,21 @@ TEST_F(ComparisonTest, MethodsOnOneEnergyFindOneEquilibrium) {
     EXPECT_NEAR(method.run->report.result.energy, energy, 1e-9 * std::abs(energy));
     EXPECT_FALSE(method.refined);
   }
+}
+
+TEST_F(ComparisonTest, NodesThatMoveAtNoCostAreInNoDistance) {
+  Comparison found = compare(disc_scene(), {"newton", "trust_region"});
+  const ComparedMethod& reference = found.methods[0];
+  ComparedMethod& method = found.methods[1];
+  const int loose = 40;
+  method.run->report.fields.x(2, loose) += 1;
+  measure_gap(reference, method);
+  EXPECT_NEAR(method.gap->same_vertex.max, 1, 1e-6);
+  method.run->report.result.certificate.free_nodes = {loose};
+  measure_gap(reference, method);
+  EXPECT_LT(method.gap->same_vertex.max, 1e-6);
+  EXPECT_LT(both_directions(*method.gap->surfaces).max, 1e-6);
+  EXPECT_EQ(method.gap->left_out, 1);
 }
 
 TEST_F(ComparisonTest, WritesWhatSolveWritesAndTheMap) {

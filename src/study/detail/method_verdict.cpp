@@ -28,6 +28,12 @@ Points compared_points(const Model& model, const Points& x) {
   return x.leftCols(count).colwise() + model.origin;
 }
 
+// Of what is compared, the nodes that the certificate of one of the two finds to move at no cost.
+std::vector<int> left_out_nodes(const ComparedMethod& reference, const ComparedMethod& method) {
+  return either_of(result_of(reference).certificate.free_nodes, result_of(method).certificate.free_nodes,
+                   compared_points(method.run->model, method.run->report.fields.x).cols());
+}
+
 std::string energy_text(const Result& result) {
   return digits(result.energy, "%.9g") + " mJ (" +
          spaced(stability_name(result.certificate.stability.verdict)) + ")";
@@ -77,13 +83,16 @@ std::optional<RefinedPair> refined_pair(ComparedMethod& reference, ComparedMetho
                                         const SolveSetup& setup) {
   const RefinedShape there = refined_shape(*reference.run, setup), here = refined_shape(*method.run, setup);
   if (there.is_cancelled || here.is_cancelled) return std::nullopt;
-  return RefinedPair{setup.stop.tolerance, here.residual, there.residual,
-                     here.energy,          there.energy,  apart(here.x, there.x).max};
+  return RefinedPair{setup.stop.tolerance, here.residual,
+                     there.residual,       here.energy,
+                     there.energy,         apart(here.x, there.x, left_out_nodes(reference, method)).max};
 }
 
 void say(ComparedMethod& method, Verdict verdict, const std::string& what) {
   method.verdict = verdict;
   method.message = std::string(verdict_name(verdict)) + ": " + what;
+  if (method.gap && method.gap->left_out > 0)
+    method.message += "; nodes that move at no cost, left out: " + std::to_string(method.gap->left_out);
 }
 
 void judge_equilibria(ComparedMethod& reference, ComparedMethod& method, double same_mm,
@@ -119,22 +128,19 @@ std::string gap_text(const MethodGap& gap) {
 
 }  // namespace
 
-VertexDistance apart(const Points& a, const Points& b) {
-  if (a.cols() == 0) return {};
-  const Eigen::RowVectorXd distances = (a - b).colwise().norm();
-  return {distances.mean(), distances.maxCoeff()};
-}
-
 void measure_gap(const ComparedMethod& reference, ComparedMethod& method) {
   const Model &there = reference.run->model, &here = method.run->model;
   Fields& fields = method.run->report.fields;
   MethodGap gap;
-  gap.same_vertex =
-      apart(compared_points(here, fields.x), compared_points(there, reference.run->report.fields.x));
+  const std::vector<int> left_out = left_out_nodes(reference, method);
+  gap.left_out = static_cast<int>(left_out.size());
+  gap.same_vertex = apart(compared_points(here, fields.x),
+                          compared_points(there, reference.run->report.fields.x), left_out);
   if (here.mesh.triangle_count() > 0) {
     TriangleMesh closed = surface_at(there, reference.run->report.fields.x);
     closed.vertices.colwise() += there.origin - here.origin;
-    gap.surfaces = reference_distance(surface_at(here, fields.x), closed, fields.method_distance);
+    gap.surfaces =
+        reference_distance(surface_at(here, fields.x), closed, fields.method_distance, {left_out, left_out});
   }
   method.gap = gap;
 }

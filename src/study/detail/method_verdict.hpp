@@ -6,9 +6,6 @@
 
 namespace coapt {
 
-// Between points of the same number. Pre: as many in both.
-VertexDistance apart(const Points& a, const Points& b);
-
 // Fills gap and, in the fields of the method's report, the map of distances. Pre: both have a result.
 // Throws InputError where a surface has no area.
 void measure_gap(const ComparedMethod& reference, ComparedMethod& method);
