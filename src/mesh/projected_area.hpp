@@ -31,4 +31,15 @@ struct UncoveredArea {
 UncoveredArea uncovered_area(const Points& points, const Triangles& triangles, const Points& polygon,
                              const Vec3& normal);
 
+// The derivatives of that area by what it is made of, with the view held; of a size with each [length].
+struct UncoveredAreaGradient {
+  Points by_points, by_polygon;
+};
+
+// Summed over rows as the area is, of how the ends of what is uncovered move in each; once over rows as they
+// are there and once across, so that each edge is met by rows that it is at more than 45 degrees to. Pre and
+// throws: as above.
+UncoveredAreaGradient uncovered_area_gradient(const Points& points, const Triangles& triangles,
+                                              const Points& polygon, const Vec3& normal);
+
 }  // namespace coapt

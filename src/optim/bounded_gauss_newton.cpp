@@ -9,8 +9,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kFirstDamping = 1e-3;   // of the greatest diagonal of J^T J
-constexpr double kLeastDamping = 1e-12;  // likewise: keeps the system definite
+constexpr double kLeastDamping = 1e-12;  // of the greatest diagonal of J^T J: keeps the system definite
 constexpr double kMostDamping = 1e12;    // of the same: no smaller step is tried
 constexpr double kLeastShare = 1e-3;     // of the gain that was to be expected, which a step must bring
 constexpr double kFailedDamping = 10;    // factor on the damping after a failed step
@@ -28,7 +27,7 @@ class GaussNewton final : public BoundedMinimiser {
     Vector z = start, r, r_there;
     Eigen::MatrixXd J;
     if (!function.residuals(z, r, &J)) return {false, "the start cannot be evaluated"};
-    double damping = kFirstDamping, growth = 2;
+    double damping = stop.damping, growth = 2;
     bool is_new = true;  // no trial from here has failed
     int idle = 0;        // trials in a row without a gain that is worth it
     while (!function.is_over()) {

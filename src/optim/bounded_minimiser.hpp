@@ -37,6 +37,9 @@ struct BoundedStop {
   double step = 1e-3;  // of any variable: smaller ones end the search
   double gain = 1e-6;  // relative, of the value: a smaller one that is to be expected ends the search
   double enough = 0;   // a value below which the search ends
+  // Of the first step, over the greatest diagonal of J^T J: more keeps numbers of little influence, and all
+  // that few residuals leave open, nearer to the start.
+  double damping = 1e-3;
 };
 
 struct BoundedOutcome {

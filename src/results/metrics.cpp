@@ -1,7 +1,7 @@
 #include "results/metrics.hpp"
 
 #include "core/error.hpp"
-#include "mesh/projected_area.hpp"
+#include "results/orifice_area.hpp"
 #include "scene/build/contact_pairs.hpp"
 
 #include <algorithm>
@@ -12,17 +12,14 @@
 namespace coapt {
 namespace {
 
-void measure_annulus(const Model& model, const Fields& fields, const std::vector<int>& annulus,
-                     Metrics& metrics) {
-  const ViewFrame frame = annulus_frame(model, fields, annulus);
-  const Points surface = fields.x.leftCols(model.mesh.vertex_count());
-  const UncoveredArea area =
-      uncovered_area(surface, model.mesh.triangles, fields.x(Eigen::all, annulus), frame.up);
-  metrics.orifice_area_mm2 = area.area;
-  metrics.annulus_area_mm2 = area.polygon_area;
-  if (area.polygon_area > 0) metrics.orifice_area_percent = 100 * area.area / area.polygon_area;
+void measure_annulus(const Model& model, const Fields& fields, Metrics& metrics) {
+  const std::optional<OrificeArea> area = orifice_area(model, fields.x);
+  if (!area) return;  // an annulus on one line encloses nothing: its metrics stay undefined
+  metrics.orifice_area_mm2 = area->open;
+  metrics.annulus_area_mm2 = area->annulus;
+  metrics.orifice_area_percent = 100 * area->open / area->annulus;
   Closure closure = closure_of(model, fields);
-  metrics.regurgitant_area_mm2 = std::min(closure.regurgitant_area_mm2, area.area);
+  metrics.regurgitant_area_mm2 = std::min(closure.regurgitant_area_mm2, area->open);
   metrics.coaptation_length_mm = closure.coaptation_length_mm;
   metrics.coaptation_height_mm = closure.coaptation_height_mm;
   metrics.tenting_height_mm = closure.tenting_height_mm;
@@ -84,9 +81,9 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
   measure_lines(model, fields, metrics);
   measure_regimes(model, fields, metrics);
 
-  if (const std::vector<int>* annulus = annulus_of(model); annulus && is_finite) try {
-      measure_annulus(model, fields, *annulus, metrics);
-    } catch (const InputError&) {  // an annulus on one line encloses nothing: its metrics stay undefined
+  if (is_finite) try {
+      measure_annulus(model, fields, metrics);
+    } catch (const InputError&) {  // of what cannot be measured of it, nothing is said
     }
   if (looks_for_contact(model)) {
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);

@@ -24,9 +24,9 @@ inline constexpr double kNoInfluence = 1e-8;  // singular value, over the greate
 Determinacy determinacy(const Eigen::MatrixXd& jacobian, const Vector& noise);
 
 // Whether residuals that a fit leaves can be noise of this standard deviation each, independent and normal:
-// they are together no greater, and nowhere stands out one of them, or a patch (ResidualSet::patch_sums of
-// the residuals over the noise), by six deviations. What a fit that is trapped leaves is in few places, and
-// alike in neighbours.
+// they are together no greater, and nowhere stands out one of them, or a patch (MeasuredResiduals::patch_sums
+// of the residuals over the noise), by six deviations. What a fit that is trapped leaves is in few places,
+// and alike in neighbours.
 bool is_explained_by_noise(const Vector& residuals, const Vector& noise, const Vector& patch_sums);
 
 }  // namespace coapt

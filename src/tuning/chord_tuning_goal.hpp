@@ -6,7 +6,7 @@
 namespace coapt {
 
 struct ChordTuningGoal {
-  std::unique_ptr<ResidualSet> residuals;  // null without a target
+  std::unique_ptr<MeasuredResiduals> residuals;  // null without a target
   std::vector<std::unique_ptr<Metric>> metrics;
   TuningGoal goal;  // of these; without weights of changes
 };

@@ -3,9 +3,8 @@
 //
 // Unknown are the logarithms of a factor per region on all moduli of the membrane, and, where wanted, of one
 // per elastic cable term on the cross-sections. Minimised is the sum of squares of what exceeds the limits
-// (strain of each chord over the yield strain, orifice over its limit, each with a margin of 1 %), by a
-// Levenberg-Marquardt iteration with bounded steps; derivatives are one-sided differences between solved
-// scenes, each started from the last shape.
+// (strain of each chord over the yield strain, orifice over its limit, each with a margin of 1 %), as every
+// tuning is (sensitivity/tuning.hpp): each trial is a warm solve, with exact derivatives by all factors.
 #pragma once
 
 #include "run/run.hpp"
@@ -37,7 +36,7 @@ struct RegionTuningOptions {
   std::optional<double> orifice_limit_mm2;  // empty: 2 % of the annulus area
   bool tunes_chords = false;                // the cross-sections too
   double greatest_factor = 10;              // and its inverse is the least
-  int max_rounds = 20;
+  int max_solves = 60;
   std::function<void(int round, const TuningState&)> report = {};  // after each accepted step; may be empty
 };
 
@@ -50,7 +49,8 @@ struct RegionTuning {
   TuningState before, after;
   std::vector<TunedFactor> regions, chords;
   std::vector<int> region_of_triangle;
-  int rounds = 0, solves = 0, failed_solves = 0;  // the last: those that did not converge
+  int rounds = 0;                     // trials that came nearer
+  int solves = 0, failed_solves = 0;  // the first, the trials and the last; those that did not converge
   double wall_s = 0;
 };
 

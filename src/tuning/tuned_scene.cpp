@@ -117,6 +117,15 @@ Scene TunedScene::scene(const Vector& factors) const {
   return scene;
 }
 
+std::vector<std::string> TunedScene::terms_of(Eigen::Index factor) const {
+  const auto index = static_cast<size_t>(factor);
+  if (!is_region(factor)) return {split_.terms[cables_[index - region_count_]].name};
+  std::vector<std::string> names;
+  for (const Part& part : parts_)
+    if (part.region == index) names.push_back(split_.terms[part.term].name);
+  return names;
+}
+
 void TunedScene::name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                               std::vector<TunedFactor>& chords) const {
   const TriangleMesh& mesh = ground.model.mesh;

@@ -15,6 +15,9 @@ class TunedScene {
 
   // With factors on the moduli of each region, then on the cross-sections of each cable term.
   Scene scene(const Vector& factors) const;
+  // The terms that a factor is on: those of its region, or a cable.
+  std::vector<std::string> terms_of(Eigen::Index factor) const;
+  bool is_region(Eigen::Index factor) const { return factor < static_cast<Eigen::Index>(region_count_); }
   void name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                     std::vector<TunedFactor>& chords) const;
 

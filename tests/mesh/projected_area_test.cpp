@@ -88,6 +88,31 @@ TEST(ProjectedArea, DoesNotChangeWithARotationAndAShift) {
   EXPECT_GT(here.area, 1);
 }
 
+TEST(ProjectedArea, HasTheGradientOfItsValue) {
+  TriangleMesh sheet = wavy_sheet(6);
+  Triangles kept(3, 66);  // with a hole, and a triangle that hangs into it
+  for (int t = 0, n = 0; t < 72; ++t)
+    if (t < 28 || t > 33) kept.col(n++) = sheet.triangles.col(t);
+  Points polygon(3, 5);
+  polygon << -.5, 1.2, .6, 1.2, -.5, -.5, -.5, .5, 1.5, 1.5, 0, 0, 0, 0, 0;  // with a notch
+  const Vec3 normal(0.2, -0.1, 1);
+  const UncoveredAreaGradient gradient = uncovered_area_gradient(sheet.vertices, kept, polygon, normal);
+  ASSERT_GT(gradient.by_points.norm(), 0.1);
+  ASSERT_GT(gradient.by_polygon.norm(), 0.1);
+  EXPECT_LT((gradient.by_points.transpose() * normal).norm(),
+            1e-12);  // what moves along the view shows nothing
+  std::srand(7);
+  for (int trial = 0; trial < 5; ++trial) {
+    const Points move = Points::Random(3, sheet.vertices.cols()), turn = Points::Random(3, 5);
+    const auto area = [&](double t) {
+      return uncovered_area(sheet.vertices + t * move, kept, polygon + t * turn, normal).area;
+    };
+    const double h = 2e-3, slope = (area(h) - area(-h)) / (2 * h);
+    EXPECT_NEAR(gradient.by_points.cwiseProduct(move).sum() + gradient.by_polygon.cwiseProduct(turn).sum(),
+                slope, 2e-3 * (1 + std::abs(slope)));
+  }
+}
+
 TEST(ProjectedArea, FitsAPlane) {
   Points points = wavy_sheet(3).vertices;
   points.row(2) = 0.5 * points.row(0).array() + 2;

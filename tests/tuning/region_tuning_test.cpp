@@ -6,6 +6,8 @@
 #include "scene/build/build.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "tuning/detail/region_factors.hpp"
+#include "tuning/detail/yield_excess.hpp"
 #include "tuning/tuned_scene.hpp"
 #include "valve/generators/mitral.hpp"
 
@@ -69,6 +71,57 @@ class RegionTuningTest : public testing::Test {
   TemporaryFolder folder_;
   RegionTuningOptions options_;
 };
+
+TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
+  options_.tunes_chords = true;
+  const Scene valve = scene("none");
+  const TunedScene tuned(valve, lay_groundwork(valve), options_);
+  const Scene split = tuned.scene(Vector::Ones(tuned.factor_count()));
+  Model model = build(split, tuned.ground);
+  const Result first =
+      solve_scene(split, tuned.ground, model, solve_setup(split, scene_solvers(), {})).result;
+  ASSERT_EQ(first.status, Status::Converged);
+
+  TrackingOptions tracking;
+  tracking.tolerance = 1e-11;
+  tracking.checks_branch = false;
+  const EquilibriumMaker make = region_factor_maker(tuned, model, tracking);
+  const auto equilibrium = make(first.q);
+  ASSERT_EQ(equilibrium->number_count(), 3);  // anterior, posterior, sections
+  const YieldExcess excess(model, 0.02, 2);
+  const Points x = equilibrium->positions();
+  const Vector at = equilibrium->value(), values = excess.values(x),
+               weights = Vector::LinSpaced(values.size(), 1, 2);
+  EXPECT_GT(values.maxCoeff(), 0);
+  EXPECT_GT(values[values.size() - 1], 0) << "the orifice is within its limit";
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    equilibrium->set(at);
+    ASSERT_EQ(equilibrium->settle().status, Status::Converged);
+    const Points motion = equilibrium->response(Vector::Unit(3, k));
+    const Vector derived = excess.derivatives(x, {motion}).col(0);
+    EXPECT_NEAR(excess.pull_back(x, weights).cwiseProduct(motion).sum(), weights.dot(derived),
+                1e-9 * derived.norm());
+    const double h = 1e-3;
+    std::vector<Points> shapes;
+    for (const double sign : {-1.0, 1.0}) {
+      equilibrium->set(at + sign * h * Vector::Unit(3, k));
+      ASSERT_EQ(equilibrium->settle().status, Status::Converged);
+      shapes.push_back(equilibrium->positions());
+    }
+    const Points difference = (shapes[1] - shapes[0]) / (2 * h);
+    Points error = motion - difference;
+    for (const int node : first.certificate.free_nodes) error.col(node).setZero();  // anywhere is their place
+    EXPECT_LT(error.norm(), 2e-3 * difference.norm()) << "factor " << k;
+    const Vector of_values = (excess.values(shapes[1]) - excess.values(shapes[0])) / (2 * h);
+    EXPECT_LT((derived - of_values).norm(), 1e-2 * of_values.norm()) << "factor " << k;
+  }
+
+  // Made again, it begins where it began.
+  const auto again = make(first.q);
+  EXPECT_EQ(again->value(), at);
+  ASSERT_EQ(again->settle().status, Status::Converged);
+  EXPECT_LT((again->positions() - x).norm(), 1e-6 * x.norm());
+}
 
 TEST_F(RegionTuningTest, SparesTheChordsOfAValveInContact) {
   const Scene valve = scene("barrier");

@@ -1,4 +1,4 @@
-// Residuals of a least-squares fit of a shape, with exact derivatives.
+// Residuals of least squares that depend on a shape, with exact derivatives.
 #pragma once
 
 #include "core/types.hpp"
@@ -20,7 +20,11 @@ class ResidualSet {
 
   // sum_k weights_k grad r_k, 3 x node_count.
   virtual Points pull_back(const Points& x, const Vector& weights) const = 0;
+};
 
+// Those of a fit to what was measured.
+class MeasuredResiduals : public ResidualSet {
+ public:
   // Factor of each residual on what was measured: a measurement off by e moves it by at most that times e.
   virtual Vector noise_factors() const = 0;
 

@@ -46,7 +46,7 @@ Shares shares_of(const Points& x, const Triangles& triangles) {
   return shares;
 }
 
-class SurfaceResiduals final : public ResidualSet {
+class SurfaceResiduals final : public MeasuredResiduals {
  public:
   SurfaceResiduals(const Triangles& triangles, const Points& x, const TriangleMesh& target, FitSides sides)
       : triangles_(triangles),
@@ -179,8 +179,8 @@ class SurfaceResiduals final : public ResidualSet {
 
 }  // namespace
 
-std::unique_ptr<ResidualSet> make_surface_residuals(const Triangles& triangles, const Points& x_weights,
-                                                    const TriangleMesh& target, FitSides sides) {
+std::unique_ptr<MeasuredResiduals> make_surface_residuals(const Triangles& triangles, const Points& x_weights,
+                                                          const TriangleMesh& target, FitSides sides) {
   std::vector<std::string> defects;
   if (!(surface_area(x_weights, triangles) > 0))
     defects.emplace_back("surface residuals: the surface has no area");

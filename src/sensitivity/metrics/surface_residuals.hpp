@@ -27,8 +27,8 @@ enum class FitSides { Both, Surface, Target };
 // face as the surface does around the vertex count, unless there are none within some times the distance of
 // the nearest. The target as a whole may face either way; that which fits at x_weights is taken. Throws
 // InputError for a target or a surface without area, and for a vertex of the target that is not finite.
-std::unique_ptr<ResidualSet> make_surface_residuals(const Triangles& triangles, const Points& x_weights,
-                                                    const TriangleMesh& target,
-                                                    FitSides sides = FitSides::Both);
+std::unique_ptr<MeasuredResiduals> make_surface_residuals(const Triangles& triangles, const Points& x_weights,
+                                                          const TriangleMesh& target,
+                                                          FitSides sides = FitSides::Both);
 
 }  // namespace coapt
