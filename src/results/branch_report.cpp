@@ -22,7 +22,7 @@ nlohmann::ordered_json equilibrium_json(const NearbyEquilibrium& equilibrium) {
       metrics[row.name] = finite_or_null(row.value.value_or(kNaN));
   }
   return {{"found", equilibrium.found},
-          {"energy", finite_or_null(equilibrium.energy)},
+          {"energy_mj", finite_or_null(equilibrium.energy)},
           {"stability", stability_name(equilibrium.stability)},
           {"residual", finite_or_null(equilibrium.residual)},
           {"greatest_distance_mm", finite_or_null(equilibrium.greatest_mm)},

@@ -59,8 +59,8 @@ OrderedJson terms() {
   return list(
       object({{"name", text("as in the scene")},
               {"type", text("as in the scene")},
-              {"energy", number("energy of the term [mJ]")},
-              {"greatest_force", number("largest nodal force of the term [N]")},
+              {"energy_mj", number("energy of the term [mJ]")},
+              {"greatest_force_n", number("largest nodal force of the term [N]")},
               {"counters", object({{"elements", count("elements; for contact the active pairs at the end")},
                                    {"candidates", count("contact: pairs in the candidate list at the end")},
                                    {"searches", count("contact: how often the list was renewed")}},
@@ -200,7 +200,7 @@ OrderedJson undetermined_nodes_schema() {
 OrderedJson branches() {
   const OrderedJson equilibrium =
       object({{"found", count("by how many perturbed starts")},
-              {"energy", number("potential energy [mJ]")},
+              {"energy_mj", number("potential energy [mJ]")},
               {"stability", stability("as in the certificate")},
               {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
               {"greatest_distance_mm", number("of a node from the first equilibrium [mm]")},
@@ -285,7 +285,7 @@ std::string result_schema() {
               {"message", text("the same in one sentence")},
               {"converged", flag("the residual is below the tolerance")},
               {"residual", number("largest out-of-balance nodal force over the largest load or reaction")},
-              {"energy", number("potential energy [mJ]")},
+              {"energy_mj", number("potential energy [mJ]")},
               {"certificate", certificate()},
               {"terms", terms()},
               {"iterations", count("accepted iterates")},

@@ -42,7 +42,7 @@ double differing_results(const fs::path& a, const fs::path& b) {
     return nlohmann::json::parse(formats::read_whole(folder / "result.json"));
   };
   const nlohmann::json one = json_of(a), other = json_of(b);
-  for (const char* key : {"status", "energy", "residual", "iterations", "metrics"})
+  for (const char* key : {"status", "energy_mj", "residual", "iterations", "metrics"})
     different += one.at(key) != other.at(key);
   return different;
 }

@@ -101,7 +101,7 @@ class CommandTest(CommandCase):
         self.assertIn(branches["message"], run.stdout)
         self.assertEqual((branches["starts"], branches["starts_of_the_way"]), (4, 2))
         self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 4)
-        self.assertEqual(branches["equilibria"][0]["energy"], result["energy"])
+        self.assertEqual(branches["equilibria"][0]["energy_mj"], result["energy_mj"])
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
         # The way of a damped path is long by design, that of a solve at once is judged.

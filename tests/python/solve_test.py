@@ -72,7 +72,7 @@ def test_writes_a_result_folder_only_where_one_is_asked_for(tmp_path, monkeypatc
     assert not list(tmp_path.iterdir())
     result = coapt.solve(scene(), folder=tmp_path / "out", report=False)
     assert {"result.json", "closed.vtp", "trace.csv"} <= {path.name for path in (tmp_path / "out").iterdir()}
-    assert json.loads((tmp_path / "out/result.json").read_text())["energy"] == result.fun
+    assert json.loads((tmp_path / "out/result.json").read_text())["energy_mj"] == result.fun
 
 
 def test_every_defect_of_a_scene_is_said_in_one_pass(tmp_path):

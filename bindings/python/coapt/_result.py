@@ -116,11 +116,11 @@ def result_of(solution: _core.Solution) -> Result:
     if branches is not None:
         branches = {**branches, "spread": solution.branch_spread}
     return Result(
-        x=solution.x, fun=document["energy"], jac=solution.gradient, nit=document["iterations"],
+        x=solution.x, fun=document["energy_mj"], jac=solution.gradient, nit=document["iterations"],
         nfev=values + gradients + hessians, njev=gradients + hessians, nhev=hessians,
         success=status is Status.CONVERGED, status=status, message=document["message"], history=solution.history,
         metrics=document["metrics"], certificate=document["certificate"], residual=document["residual"],
-        reactions=solution.reactions, energies={term["name"]: term["energy"] for term in document["terms"]},
+        reactions=solution.reactions, energies={term["name"]: term["energy_mj"] for term in document["terms"]},
         vertex_count=document["mesh"]["vertices"], faces=solution.faces, lines=solution.lines, fields=solution.fields,
         undetermined=solution.undetermined, branches=branches, warnings=document["warnings"], seconds=document["time"]["wall_s"],
         library_seconds=solution.seconds, document=document)
