@@ -146,6 +146,16 @@ void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
   branches.equilibria.back().found = 1;
 }
 
+// The report with what the search found, which says more than a suspicion of neighbours.
+Report with_branches(Report report, const Objective& objective, Branches branches) {
+  std::erase(report.warnings, neighbour_warning(report.neighbours));
+  report.branches = std::move(branches);
+  report.fields.branch_spread = report.branches->spread_mm;
+  report.fields.undetermined =
+      undetermined_flags(report.result.certificate.free_nodes, report.branches, objective.node_count());
+  return report;
+}
+
 }  // namespace
 
 Branches find_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
@@ -188,18 +198,14 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
 void search_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
                      const BranchSearch& search, RunReport& run) {
   if (search.starts == 0) return;
-  Report& report = run.report;
-  if (report.result.status != Status::Converged) {
-    report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
+  if (run.report.result.status != Status::Converged) {
+    run.report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
   } else {
     RunOptions again = options;
-    again.solver = report.solver;
-    again.tolerance = report.tolerance;
-    report.branches = find_branches(scene, solvers, again, search, run);
-    std::erase(report.warnings, neighbour_warning(report.neighbours));  // the search says more
-    report.fields.branch_spread = report.branches->spread_mm;
-    report.fields.undetermined = undetermined_flags(report.result.certificate.free_nodes, report.branches,
-                                                    run.model.objective->node_count());
+    again.solver = run.report.solver;
+    again.tolerance = run.report.tolerance;
+    Branches branches = find_branches(scene, solvers, again, search, run);
+    run.report = with_branches(std::move(run.report), *run.model.objective, std::move(branches));
   }
   if (!run.folder.empty()) write_run(run);
 }

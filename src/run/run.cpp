@@ -18,41 +18,44 @@ std::filesystem::path result_folder(const Scene& scene) {
   return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
 }
 
-void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
-                  Report& report) {
-  report.scene_file = scene.file.filename().string();
-  report.scene_title = scene_title(scene);
-  report.solver = setup.solver;
-  report.tolerance = setup.stop.tolerance;
-  report.warnings = model.warnings;
-  report.has_page = options.writes && options.writes_page.value_or(scene.writes_page);
+bool wants_page(const Scene& scene, const RunOptions& options) {
+  return options.writes && options.writes_page.value_or(scene.writes_page);
 }
 
-CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
-                              Report& report, const Points* start) {
+SolvedRun solve_run(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+                    bool keeps_way, const Points* start) {
   std::optional<ShapeRecord> record;
-  if (report.has_page && has_shape_view()) {
+  if (keeps_way && has_shape_view()) {
     record.emplace(model, page_shapes(model));
     setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
       record->see(iteration, q);
       return !next || next(iteration, q);
     };
   }
-  CascadeOutcome outcome;
+  SolvedRun solved;
   if (start == nullptr)
-    outcome = solve_scene(scene, ground, model, setup);
+    solved.outcome = solve_scene(scene, ground, model, setup);
   else
-    outcome.result = solve_again(*start, model, setup);
-  if (record) report.way = record->shapes(model.objective->positions(outcome.result.q));
-  return outcome;
+    solved.outcome.result = solve_again(*start, model, setup);
+  if (record) solved.way = record->shapes(model.objective->positions(solved.outcome.result.q));
+  return solved;
 }
 
-void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run) {
-  const Model& model = run.model;
-  Report& report = run.report;
-  report.result = std::move(outcome.result);
-  report.levels = std::move(outcome.levels);
-  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
+                   const RunNotes& notes, const IntersectionJudge& judge) {
+  Report report;
+  report.scene_file = scene.file.filename().string();
+  report.scene_title = scene_title(scene);
+  report.solver = setup.solver;
+  report.tolerance = setup.stop.tolerance;
+  report.has_page = notes.has_page;
+  report.has_frames = notes.has_frames;
+  report.accuracy = notes.accuracy;
+  report.way = std::move(solved.way);
+  report.result = std::move(solved.outcome.result);
+  report.levels = std::move(solved.outcome.levels);
+  for (const auto* warnings : {&model.warnings, &notes.warnings, &std::as_const(solved.outcome.warnings)})
+    report.warnings.insert(report.warnings.end(), warnings->begin(), warnings->end());
 
   const Result& result = report.result;
   report.pressure_route = pressure_route(model, result);
@@ -60,7 +63,7 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   if (!result.certificate.free_nodes.empty())
     report.fields.undetermined =
         undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
-  report.metrics = measure(model, result.q, report.fields, options.judge);
+  report.metrics = measure(model, result.q, report.fields, judge);
   report.reference = compare_with_reference(model, report.fields, result.certificate.free_nodes);
   if (setup.stability.modes > 0 && !has_smallest_modes())
     report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
@@ -74,7 +77,7 @@ void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOption
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
     report.warnings.insert(report.warnings.begin(), warning);
-  if (options.writes) write_run(run);
+  return report;
 }
 
 void write_run(const RunReport& run) {
@@ -89,7 +92,6 @@ void write_run(const RunReport& run) {
 
 void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,
                RunReport& run, const Points* start) {
-  Report& report = run.report;
   Model& model = run.model;
   // Only now: a scene that is refused leaves no folder behind.
   if (options.writes) {
@@ -108,11 +110,12 @@ void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, c
       };
     }
   }
-  begin_report(scene, setup, model, options, report);
-  CascadeOutcome outcome = solve_recorded(scene, ground, model, setup, report, start);
+  const bool has_page = wants_page(scene, options);
+  SolvedRun solved = solve_run(scene, ground, model, setup, has_page, start);
   if (frames) frames->finish();
-  report.has_frames = frames.has_value();
-  finish_run(setup, std::move(outcome), options, run);
+  run.report = measure_run(scene, setup, model, std::move(solved),
+                           {.has_page = has_page, .has_frames = frames.has_value()}, options.judge);
+  if (options.writes) write_run(run);
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {

@@ -7,14 +7,34 @@
 
 namespace coapt {
 
-// What is known of a report before the solve.
-void begin_report(const Scene& scene, const SolveSetup& setup, const Model& model, const RunOptions& options,
-                  Report& report);
+// --- solve, measure, write, page: each a value in and a value out; run_built() composes them --------------
 
-// Solves as solve_scene() does, or from `start` as solve_again(), and keeps the shapes on the way where the
-// report has a page that shows them.
-CascadeOutcome solve_recorded(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
-                              Report& report, const Points* start = nullptr);
+// What a solve leaves, nothing of it measured.
+struct SolvedRun {
+  CascadeOutcome outcome;
+  std::vector<RecordedShape> way;  // to the result, where it was kept
+};
+
+// Solves as solve_scene() does, or from `start` as solve_again(). keeps_way: a page will show it.
+SolvedRun solve_run(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+                    bool keeps_way, const Points* start = nullptr);
+
+// What a report says beside what is measured.
+struct RunNotes {
+  bool has_page = false, has_frames = false;
+  std::optional<AccuracyEstimate> accuracy = {};
+  std::vector<std::string> warnings = {};
+};
+
+// Whether the options and the scene want report.html.
+bool wants_page(const Scene& scene, const RunOptions& options);
+
+// Measures the shape of the outcome; writes nothing.
+Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
+                   const RunNotes& notes, const IntersectionJudge& judge);
+
+// The files of the result, then its page, into run.folder. Throws InputError when one cannot be written.
+void write_run(const RunReport& run);
 
 // solve_setup(), without a certificate where it would need Hessians that are not there. Throws InputError for
 // given terms together with a cascade.
@@ -27,13 +47,6 @@ Groundwork given_ground(const Scene& scene, Given& given);
 // A given start, 3 x node_count, relative to the model's origin. Throws InputError for another number of
 // nodes and for coordinates that are not finite.
 Points relative_start(const Eigen::Map<const Points>& start, const Model& model);
-
-// Measures the shape of the outcome on run.model and writes run.report into run.folder where the options want
-// files.
-void finish_run(const SolveSetup& setup, CascadeOutcome outcome, const RunOptions& options, RunReport& run);
-
-// The files of the result and its page, into run.folder. Throws InputError when one cannot be written.
-void write_run(const RunReport& run);
 
 // All that run() does with run.model once it is built; start: 3 x node_count, relative to the model's origin,
 // or null for the scene's own.

@@ -26,9 +26,8 @@ constexpr int kMostTightenings = 4;
 struct SolvedMesh {
   size_t cuts = 0;
   Model model;
-  Report report;  // begun
-  CascadeOutcome outcome;
-  const Result& result() const { return outcome.result; }
+  SolvedRun solved;
+  const Result& result() const { return solved.outcome.result; }
   bool has_converged() const { return result().status == Status::Converged; }
   TriangleMesh closed() const { return surface_at(model, model.objective->positions(result().q)); }
 };
@@ -109,9 +108,8 @@ class Search {
   SolvedMesh solved(size_t cuts) {
     setup_.stop.tolerance = estimate.tolerance;
     setup_.stop.max_seconds = seconds_left();
-    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .report = {}, .outcome = {}};
-    begin_report(scene_, setup_, mesh.model, options_, mesh.report);
-    mesh.outcome = solve_recorded(scene_, ground(cuts), mesh.model, setup_, mesh.report);
+    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .solved = {}};
+    mesh.solved = solve_run(scene_, ground(cuts), mesh.model, setup_, wants_page(scene_, options_));
     const Result& result = mesh.result();
     estimate.levels.push_back({mesh.model.mesh.triangle_count(), estimate.tolerance, result.status,
                                result.iterations, result.wall_s, result.cpu_s});
@@ -217,15 +215,16 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
 
   SolveSetup setup = search.setup();
   setup.stop.tolerance = estimate.tolerance;
-  run.report = std::move(mesh.report);
+  RunNotes notes{.has_page = wants_page(scene, options)};
   if (!estimate.is_reached)
-    run.report.warnings.push_back("The wanted accuracy was not reached: " + estimate.message + ".");
+    notes.warnings.push_back("The wanted accuracy was not reached: " + estimate.message + ".");
   if (scene.frame_interval > 0)
-    run.report.warnings.emplace_back(
+    notes.warnings.emplace_back(
         "Frames are not written for a wanted accuracy, as several meshes are solved.");
-  run.report.accuracy = std::move(estimate);
+  notes.accuracy = std::move(estimate);
   run.model = std::move(mesh.model);
-  finish_run(setup, std::move(mesh.outcome), options, run);
+  run.report = measure_run(scene, setup, run.model, std::move(mesh.solved), notes, options.judge);
+  if (options.writes) write_run(run);
   return run;
 }
 

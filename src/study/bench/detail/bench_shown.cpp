@@ -35,12 +35,13 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwor
   RunReport once;
   try {
     const Scene scene = scene_of(method, course.scene);
-    SolveSetup setup = solve_setup(scene, course.solvers, options);
+    const SolveSetup setup = solve_setup(scene, course.solvers, options);
     once.model = build(scene, ground);
-    begin_report(scene, setup, once.model, options, once.report);
-    CascadeOutcome outcome = solve_recorded(scene, ground, once.model, setup, once.report);
+    const bool has_page = wants_page(scene, options);
+    SolvedRun solved = solve_run(scene, ground, once.model, setup, has_page);
     options.writes = false;
-    finish_run(setup, std::move(outcome), options, once);
+    once.report =
+        measure_run(scene, setup, once.model, std::move(solved), {.has_page = has_page}, options.judge);
     if (once.report.result.status == Status::Converged)
       search_branches(scene, course.solvers, options, course.options.branches, once);
     found.branches = once.report.branches;
