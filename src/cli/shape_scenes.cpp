@@ -1,6 +1,7 @@
 #include "cli/shape_scenes.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/mesh_io.hpp"
@@ -136,12 +137,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-std::string millimetres(double length) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.12g mm", length);
-  return text;
-}
-
 bool has_contact(const ShapeOptions& options) {
   return !options.contact.empty() && options.contact != "none";
 }
@@ -156,11 +151,9 @@ std::string scene_text(const Shape& shape, const ShapeOptions& options) {
   text += "  \"boundary\": " + shape.boundary + ",\n  \"terms\": " + terms + "\n  ],\n";
   text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": 1e-8 }\n}\n";
   text = replaced(text, "$MODEL", model);
-  text = replaced(text, "$SIDE", millimetres(kAirbagSide));
+  text = replaced(text, "$SIDE", number_text(kAirbagSide, 12) + " mm");
   // The whole chain weighs 1.2 N.
-  char weight[40];
-  std::snprintf(weight, sizeof weight, "%.12g N", 1.2 / kChainLinks);
-  return replaced(text, "$WEIGHT", weight);
+  return replaced(text, "$WEIGHT", number_text(1.2 / kChainLinks, 12) + " N");
 }
 
 void check_options(const Shape& shape, const ShapeOptions& options) {

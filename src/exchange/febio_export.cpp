@@ -1,6 +1,7 @@
 #include "exchange/febio_export.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "exchange/detail/febio_laws.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "formats/xml_escaped.hpp"
@@ -13,7 +14,6 @@
 namespace coapt {
 namespace {
 
-using detail::digits;
 using detail::FebioLaw;
 using formats::xml_escaped;
 
@@ -153,7 +153,7 @@ class FebioWriter {
                       "><density>1e-09</density>" + law->keys + "</material>\n";
       domains_text_ += "<ShellDomain" + attribute("name", domain.name) + attribute("mat", domain.term->name) +
                        " type=\"elastic-shell\"><shell_thickness>" +
-                       digits(domain.term->parameters.number("thickness")) +
+                       exact_text(domain.term->parameters.number("thickness")) +
                        "</shell_thickness></ShellDomain>\n";
     }
   }
@@ -168,8 +168,8 @@ class FebioWriter {
     mesh_ += "<Nodes name=\"nodes\">\n";
     for (int node = 0; node < model.X.cols(); ++node) {
       const Vec3 x = model.X.col(node) + model.origin;
-      mesh_ += "<node id=\"" + std::to_string(node + 1) + "\">" + digits(x[0]) + "," + digits(x[1]) + "," +
-               digits(x[2]) + "</node>\n";
+      mesh_ += "<node id=\"" + std::to_string(node + 1) + "\">" + exact_text(x[0]) + "," + exact_text(x[1]) +
+               "," + exact_text(x[2]) + "</node>\n";
     }
     mesh_ += "</Nodes>\n";
     for (const Domain& domain : domains_) {
@@ -242,7 +242,7 @@ class FebioWriter {
           "<NodeData" + attribute("name", map) + attribute("node_set", name) + " data_type=\"scalar\">\n";
       for (size_t k = 0; k < nodes.size(); ++k)
         data_ += "<node lid=\"" + std::to_string(k + 1) + "\">" +
-                 digits(displacement(static_cast<int>(c), nodes[k])) + "</node>\n";
+                 exact_text(displacement(static_cast<int>(c), nodes[k])) + "</node>\n";
       data_ += "</NodeData>\n";
       boundary_ += "<bc" + attribute("name", name + "_" + axis) + attribute("node_set", name) +
                    " type=\"prescribed displacement\"><dof>" + axis + "</dof><value lc=\"1\" type=\"map\">" +
@@ -312,7 +312,7 @@ class FebioWriter {
       const Parameters& p = term->parameters;
       const double value = p.text("side") == "back" ? -p.number("value") : p.number("value");
       loads_ += "<surface_load" + attribute("name", term->name) + " surface=\"surface\" type=\"pressure\">" +
-                "<pressure lc=\"1\">" + digits(value) +
+                "<pressure lc=\"1\">" + exact_text(value) +
                 "</pressure><symmetric_stiffness>0</symmetric_stiffness>" + "<linear>" +
                 (p.text("model") == "frozen" ? "1" : "0") + "</linear></surface_load>\n";
     }

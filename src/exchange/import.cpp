@@ -1,6 +1,7 @@
 #include "exchange/import.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "exchange/detail/import_repair.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/valve_curves.hpp"
@@ -35,7 +36,6 @@ constexpr int kCascadeTriangles = 2000;
 // methods (docs/decisions/019): fewer steps let small changes decide on more valves.
 constexpr int kDampedSteps = 20;
 
-using detail::digits;
 using detail::law_terms;
 using detail::quoted;
 
@@ -69,10 +69,10 @@ std::string pressure_text(const Valve& valve, const ImportOptions& options) {
   if (!options.pressure.empty()) return options.pressure;
   if (valve.pressure <= 0) return kUsualPressure;
   const double mmhg = std::round(valve.pressure / quantity_value("1 mmHg", kPressure));
-  std::string text = digits(mmhg) + " mmHg";
+  std::string text = exact_text(mmhg) + " mmHg";
   constexpr double kSame = 1e-6;  // sources differ in the seventh digit of 1 mmHg
   if (mmhg > 0 && std::abs(quantity_value(text, kPressure) / valve.pressure - 1) < kSame) return text;
-  return digits(valve.pressure) + " MPa";
+  return exact_text(valve.pressure) + " MPa";
 }
 
 // The line that a field load points to: the commissures, or the longest chord of the annulus from its
@@ -142,7 +142,7 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
       "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
       "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
       "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n";
-  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + digits(options.tolerance) +
+  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + exact_text(options.tolerance) +
           ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
           (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
@@ -215,14 +215,14 @@ void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::stri
 // becomes a linear law of its own.
 void take_moduli(const ImportOptions& options, Valve& valve) {
   if (!options.young.empty()) {
-    const std::string usual = quoted(digits(valve.thickness) + " mm");
+    const std::string usual = quoted(exact_text(valve.thickness) + " mm");
     std::erase_if(valve.membranes, [&](const auto& entry) {
       const std::string* thickness = key_of(entry.second, "thickness");
       return thickness == nullptr || *thickness == usual;
     });
     for (auto& [region, law] : valve.membranes) {
       Material linear{detail::linear_membrane_type(options), {{"young", quoted(options.young)}}};
-      if (options.membrane != "spring") linear.keys.emplace_back("poisson", digits(options.poisson));
+      if (options.membrane != "spring") linear.keys.emplace_back("poisson", exact_text(options.poisson));
       linear.keys.emplace_back("thickness", *key_of(law, "thickness"));
       law = std::move(linear);
     }
@@ -239,7 +239,7 @@ bool complete_thickness(const ImportOptions& options, Valve& valve) {
     is_missing |= !valve.membranes.contains(region);
   for (auto& [region, law] : valve.membranes)
     if (is_sheet(law) && key_of(law, "thickness") == nullptr) {
-      law.keys.emplace_back("thickness", quoted(digits(options.default_thickness) + " mm"));
+      law.keys.emplace_back("thickness", quoted(exact_text(options.default_thickness) + " mm"));
       is_missing = true;
     }
   return is_missing;
@@ -308,7 +308,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   take_moduli(options, valve);
   if (complete_thickness(options, valve))
     warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
-                       digits(options.default_thickness) + " mm.");
+                       exact_text(options.default_thickness) + " mm.");
   if (valve.pressure == 0 && options.pressure.empty())
     warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
   if (valve.annulus.empty() && valve.supports.empty())

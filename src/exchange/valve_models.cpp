@@ -1,6 +1,7 @@
 #include "exchange/valve_models.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "formats/json/suggestion.hpp"
 #include "formats/json/units.hpp"
@@ -53,7 +54,7 @@ void apply_valve_model(const std::string& name, Valve& valve, ImportOptions& opt
     throw InputError("model \"" + name + "\" is not known" + suggestion(name, valve_model_names()) +
                      "; there are: " + listed(valve_model_names()));
   Material law{"spring", model->spring};
-  law.keys.emplace_back("thickness", detail::quoted(detail::digits(model->thickness) + " mm"));
+  law.keys.emplace_back("thickness", detail::quoted(exact_text(model->thickness) + " mm"));
   for (const std::string& region : valve.leaflets.region_names) valve.membranes[region] = law;
   valve.thickness = model->thickness;
   valve.name += ", " + std::string(model->title);

@@ -1,5 +1,6 @@
 #include "formats/tissue_laws.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/text.hpp"
 
 namespace coapt::formats {
@@ -10,7 +11,7 @@ std::optional<Material> exponential_law(double c0, double c1, double c2, double 
   if (!none_is_negative) refuse("C1, C2 and D must not be negative");
   if (!is_positive || !none_is_negative) return std::nullopt;
   Material law{"cst_exponential",
-               {{"c0", pressure_text(c0)}, {"c1", pressure_text(c1)}, {"c2", number_text(c2)}}};
+               {{"c0", pressure_text(c0)}, {"c1", pressure_text(c1)}, {"c2", exact_text(c2)}}};
   if (d > 0) law.keys.emplace_back("bulk", pressure_text(2 / d));
   return law;
 }
@@ -23,18 +24,12 @@ std::optional<Material> ogden_law(const std::vector<double>& pairs) {
   for (size_t k = 0; k < terms; ++k) {
     if (!(pairs[2 * k] > 0) || pairs[2 * k + 1] == 0) return std::nullopt;
     mu += (k == 0 ? "" : ", ") + pressure_text(pairs[2 * k]);
-    alpha += (k == 0 ? "" : ", ") + number_text(pairs[2 * k + 1]);
+    alpha += (k == 0 ? "" : ", ") + exact_text(pairs[2 * k + 1]);
   }
   return Material{"cable_ogden", {{"mu", "[" + mu + "]"}, {"alpha", "[" + alpha + "]"}}};
 }
 
-std::string number_text(double value) {
-  std::string text;
-  append_number(text, value);
-  return text;
-}
-
-std::string pressure_text(double value) { return "\"" + number_text(value) + " MPa\""; }
-std::string length_text(double value) { return "\"" + number_text(value) + " mm\""; }
+std::string pressure_text(double value) { return "\"" + exact_text(value) + " MPa\""; }
+std::string length_text(double value) { return "\"" + exact_text(value) + " mm\""; }
 
 }  // namespace coapt::formats

@@ -23,8 +23,7 @@ std::optional<Material> exponential_law(double c0, double c1, double c2, double 
 // at constant volume. Nothing where the scene has no such law: more than three terms, or one that pushes.
 std::optional<Material> ogden_law(const std::vector<double>& pairs);
 
-// A number in the shortest form that reads back to the same bits; "0.001 MPa" and "0.65 mm" in quotes.
-std::string number_text(double value);
+// "0.001 MPa" and "0.65 mm", in quotes, in the shortest form that reads back to the same bits.
 std::string pressure_text(double value);
 std::string length_text(double value);
 

@@ -1,5 +1,6 @@
 #include "mesh/mesh_check.hpp"
 
+#include "core/number_text.hpp"
 #include "mesh/distance/intersections.hpp"
 #include "mesh/mesh_topology.hpp"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <string>
@@ -40,11 +40,6 @@ std::string listed(const std::vector<int>& elements, size_t width = 1) {
   }
   if (count > kListed) text += " and " + std::to_string(count - kListed) + " more";
   return text;
-}
-
-std::string rounded(double value) {
-  char buffer[40];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
 }
 
 std::string counted(size_t count, const std::string& one, const std::string& many) {
@@ -216,19 +211,19 @@ void check_shapes(const TriangleMesh& mesh, Report& report) {
                    ": no area (height below 1e-12 of the longest edge), so strain is undefined; " +
                    "collapse an edge or remove it");
   report.warn(Kind::Sliver, slivers,
-              triangles_text(slivers) + ": slivers, longest edge up to " + rounded(worst) +
+              triangles_text(slivers) + ": slivers, longest edge up to " + number_text(worst) +
                   " times the height; results there are poor and a solve may stall: `coapt import` repairs "
                   "those of a "
                   "valve, other meshes want remeshing there");
   if (longest > kMixedScales * shortest)
     report.warn(Kind::MixedScales, {0},
-                "edge lengths differ by a factor of " + rounded(longest / shortest) +
+                "edge lengths differ by a factor of " + number_text(longest / shortest) +
                     "; mixed units, or a fine part beside a coarse one, make solving slow and inexact");
   const double size = box.isEmpty() ? 0 : box.diagonal().stableNorm();
   const double offset = box.isEmpty() ? 0 : box.center().stableNorm();
   if (size > 0 && offset > kLargeOffset * size)
     report.warn(Kind::LargeOffset, {0},
-                "the mesh lies " + rounded(offset / size) +
+                "the mesh lies " + number_text(offset / size) +
                     " times its size away from the origin, which costs digits; move it to the origin");
 }
 

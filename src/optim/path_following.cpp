@@ -1,12 +1,12 @@
 #include "optim/path_following.hpp"
 
+#include "core/number_text.hpp"
 #include "optim/carry_along.hpp"
 #include "optim/move_prescribed.hpp"
 #include "optim/stability/branch_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -17,12 +17,6 @@ constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate 
 constexpr double kBranchTolerance = 1e-4;  // and an intermediate load, which has to stay on its branch
 constexpr int kLeastPath = 3;              // steps of a path on which a change of branch can be told
 constexpr int kMostStiffenings = 5;        // of a contact that proves too soft
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 // Loads and stiffnesses at t of the path.
 void set_scales(const Continuation& continuation, double t, Objective& objective) {
@@ -59,7 +53,7 @@ PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& sto
 
 std::string described(const BranchChange& change) {
   return "the path left its branch of equilibria in step " + std::to_string(change.step) + "; at step " +
-         std::to_string(change.before) + " the two are " + number(change.distance) + " apart";
+         std::to_string(change.before) + " the two are " + number_text(change.distance) + " apart";
 }
 
 }  // namespace
@@ -77,7 +71,7 @@ Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) 
   outcome.note =
       (move.is_overloaded ? "the prescribed motion stretches an element until its energy is not finite, at "
                           : "the prescribed motion presses facets against each other, at ") +
-      number(100 * move.reached) + " % of it";
+      number_text(100 * move.reached) + " % of it";
   return outcome;
 }
 
@@ -115,7 +109,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   }
   q = best;
   note = "the outer iterations of the follower pressure on free edges did not converge (last contraction " +
-         number(contraction) + " an iteration)";
+         number_text(contraction) + " an iteration)";
   return Status::Stalled;
 }
 
@@ -167,7 +161,7 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
   if (is_blocked) return blocked_motion(move, objective, result.q);
   outcome.is_on_the_way = step < steps || !has_arrived;
   if (!has_arrived)
-    outcome.note = "after " + number(100 * move.reached) + " % of the prescribed motion";
+    outcome.note = "after " + number_text(100 * move.reached) + " % of the prescribed motion";
   else if (outcome.is_on_the_way)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
                    " of the prescribed motion or of the continuation";

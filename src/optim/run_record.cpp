@@ -1,8 +1,8 @@
 #include "optim/run_record.hpp"
 
+#include "core/number_text.hpp"
 #include "optim/monitor.hpp"
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -135,9 +135,8 @@ const RunRecord& RunRecorder::record() {
 
 std::string RunRecorder::earlier_work() const {
   if (iterations_before_ == 0) return {};
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%.3g", seconds_before_);
-  return "taken up again after " + std::to_string(iterations_before_) + " iterates in " + seconds + " s";
+  return "taken up again after " + std::to_string(iterations_before_) + " iterates in " +
+         number_text(seconds_before_) + " s";
 }
 
 const MinimisationEnd* RunRecorder::next_end(const Objective& objective) {

@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "optim/bfgs.hpp"
 #include "optim/damped_path.hpp"
 #include "optim/dynamic/dynamic.hpp"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -23,15 +23,9 @@ constexpr double kNear = 1e-3;       // residual of what is all but an equilibri
 constexpr double kFirstKick = 1e-2;  // off a saddle, relative to the extent of the unknowns
 constexpr int kKickTrials = 8;       // lengths that are tried, each a quarter of the last
 
-std::string residual_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string sentence(const Result& result, double tolerance, const std::string& note) {
-  const std::string wanted = " (tolerance " + residual_text(tolerance) + ")";
-  const std::string at = " at residual " + residual_text(result.residual);
+  const std::string wanted = " (tolerance " + number_text(tolerance) + ")";
+  const std::string at = " at residual " + number_text(result.residual);
   std::string text;
   switch (result.status) {
     case Status::Converged:
@@ -103,7 +97,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
                                     : "the start is an equilibrium already";
   }
   if (result.status == Status::Converged && note.empty() && sliding > stop.tolerance)
-    note = "forces along its films, up to " + residual_text(sliding) + ", are the mesh's and left out";
+    note = "forces along its films, up to " + number_text(sliding) + ", are the mesh's and left out";
   result.message = sentence(result, stop.tolerance, note);
 }
 
@@ -256,7 +250,7 @@ bool find_passed(const Problem& problem, const StopRule& stop, Monitor& monitor,
     return true;
   }
   if (least < kInfinity)
-    found.outcome.note += "; on the way no residual below " + residual_text(least) + " was found" +
+    found.outcome.note += "; on the way no residual below " + number_text(least) + " was found" +
                           (least < kNear ? ", so little that a finer mesh may have one" : "");
   return false;
 }

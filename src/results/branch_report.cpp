@@ -1,10 +1,10 @@
 #include "results/branch_report.hpp"
 
+#include "core/number_text.hpp"
 #include "results/branches_json.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -61,11 +61,7 @@ UndeterminedNodes undetermined_nodes(const std::vector<int>& free_nodes,
 }
 
 std::string branches_message(const Branches& branches) {
-  const auto millimetres = [](double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.2g mm", value);
-    return std::string(text);
-  };
+  const auto millimetres = [](double value) { return number_text(value, 2) + " mm"; };
   const std::string starts =
       std::to_string(branches.starts) + " perturbed start" + (branches.starts == 1 ? "" : "s");
   const std::string lost =

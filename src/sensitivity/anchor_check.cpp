@@ -1,6 +1,6 @@
 // Whether warm steps have left the branch of equilibria that they began on.
 #include "core/error.hpp"
-#include "sensitivity/detail/short_number.hpp"
+#include "core/number_text.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 
 #include <algorithm>
@@ -115,7 +115,7 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   else
     check.message =
         "has left the branch of the anchor: the same numbers reached at once give a shape up to " +
-        short_number(apart) + " away";
+        number_text(apart) + " away";
   return check;
 }
 

@@ -1,6 +1,6 @@
 // The derivatives of a tracked equilibrium: linear systems with its exact tangent.
 #include "core/error.hpp"
-#include "sensitivity/detail/short_number.hpp"
+#include "core/number_text.hpp"
 #include "sensitivity/metrics/covariance.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 
@@ -30,7 +30,7 @@ Points nodal_motion(const Objective& objective, const Vector& direction) {
 void TrackedEquilibrium::check_solved(double residual, double tolerance) const {
   if (!(residual <= std::max(kSolved, tolerance)))
     throw InputError("equilibrium: the tangent is nearly singular (its linear system solves to " +
-                     short_number(residual) +
+                     number_text(residual) +
                      " only), or the metric depends on nodes that nothing holds, such as junctions of slack "
                      "chords; derivatives are not defined here");
 }

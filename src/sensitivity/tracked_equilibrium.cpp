@@ -1,8 +1,8 @@
 #include "sensitivity/tracked_equilibrium.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "optim/newton.hpp"
-#include "sensitivity/detail/short_number.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -141,7 +141,7 @@ Settling TrackedEquilibrium::settle_at(const Vector& now) {
     report.message +=
         "; the shape has changed to another branch of equilibria: when the change was undone, it "
         "came back " +
-        short_number(report.lost_branch->distance) + " away from where it was";
+        number_text(report.lost_branch->distance) + " away from where it was";
   if (report.status == Status::Converged) {
     ElementStates states = element_states(objective_, positions());
     if (states_) report.switched = switches_between(objective_, *states_, states);
@@ -205,7 +205,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report)
     if (report.residual <= options_.tolerance) {
       report.residual = residual_at(q_);
       report.status = report.residual <= options_.tolerance ? Status::Converged : Status::Stalled;
-      report.message = "converged at residual " + short_number(report.residual);
+      report.message = "converged at residual " + number_text(report.residual);
       return report.status == Status::Converged;
     }
     if (report.iterations == options_.quick_steps) return false;

@@ -1,12 +1,12 @@
 #include "solve/checkpoint.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/sealed_json.hpp"
 #include "formats/whole_file.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -90,14 +90,8 @@ Json identity_json(const RunIdentity& identity) {
   return json;
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 std::string text_of(const Json& value) {
-  if (value.is_number()) return number_text(value.get<double>());
+  if (value.is_number()) return number_text(value.get<double>(), 6);
   return value.is_string() ? value.get<std::string>() : value.is_null() ? "none" : "something else";
 }
 
@@ -119,7 +113,7 @@ std::vector<std::string> differences(const std::string& file, const Json& known,
   compare("version", "of coapt ", "this is " + identity.version + kBeginAnew);
   compare("solver", "by the solver ", "this one is by " + identity.solver + ": give the same with --solver");
   compare("tolerance", "to the tolerance ",
-          "this one is to " + number_text(identity.tolerance) + ": give the same with --tolerance");
+          "this one is to " + number_text(identity.tolerance, 6) + ": give the same with --tolerance");
   compare("accuracy_mm", "to an accuracy [mm] of ", "give the same with --accuracy");
   compare("damped_steps", "whose damped steps were ", "give the same with --damped-steps");
   return defects;

@@ -1,5 +1,6 @@
 #include "stress/bench.hpp"
 
+#include "core/number_text.hpp"
 #include "report/solve_page.hpp"
 #include "scene/build/build.hpp"
 #include "scene/terms/term_types.hpp"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -131,13 +131,13 @@ std::optional<StressOutcome> untruth(const Stressed& solved, double tolerance) {
   if (result.status == Status::Converged) {
     const double residual = solved.model.objective->true_residual(result.q);
     if (!(residual <= tolerance))
-      return failure(solved, "called converged at residual " + short_number(residual) + ", wanted " +
-                                 short_number(tolerance));
+      return failure(solved, "called converged at residual " + number_text(residual) + ", wanted " +
+                                 number_text(tolerance));
   }
   if (result.message.empty()) return failure(solved, "gives no reason for its end");
   const double late = solved.wall_s - solved.seconds;
   if (late > kGrace + longest_pause(result))
-    return failure(solved, "ran on for " + short_number(late) + " s after its time limit");
+    return failure(solved, "ran on for " + number_text(late) + " s after its time limit");
   if (solved.promises_contact && solved.intersections > 0)
     return failure(solved, std::to_string(solved.intersections) +
                                " pairs of facets pass through each other in spite of the barrier");
@@ -164,12 +164,6 @@ StressOutcome measured(const Stressed& solved, double figure, double limit, cons
   outcome.figure = figure;
   outcome.limit = limit;
   return outcome;
-}
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 }  // namespace coapt

@@ -81,8 +81,4 @@ double fresh_residual(const StressScene& subject, const Points& x);
 
 // A pass where figure <= limit, else a failure with the message; the figure stands in both.
 StressOutcome measured(const Stressed& solved, double figure, double limit, const std::string& message);
-
-// "1e-06" and the like: as short as it is read.
-std::string short_number(double value);
-
 }  // namespace coapt

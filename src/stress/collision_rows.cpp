@@ -1,5 +1,6 @@
 // S15: collision detection. Pairs whose answer is known without rounding, as they are made backwards from it:
 // all coordinates lie on a grid that numbers of 53 bits hold. And any scene: how far contact lets it go.
+#include "core/number_text.hpp"
 #include "energy/contact/collision_detection.hpp"
 #include "mesh/distance/triangle_distance.hpp"
 #include "stress/draw.hpp"
@@ -142,7 +143,7 @@ StressOutcome collisions_found(QueryMaker make, int first, double most_false) {
   }
   const bool holds = missed == 0 && false_alarms <= most_false * kQueries;
   StressOutcome outcome{holds ? StressVerdict::Pass : StressVerdict::Fail, missed, 0};
-  outcome.message = std::to_string(kQueries) + " moves, " + short_number(microseconds) + " us each; " +
+  outcome.message = std::to_string(kQueries) + " moves, " + number_text(microseconds) + " us each; " +
                     std::to_string(false_alarms) + " false alarms, " + std::to_string(unmoved) +
                     " not moved at all";
   return outcome;

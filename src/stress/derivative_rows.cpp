@@ -4,6 +4,7 @@
 // a solve: at an equilibrium the shape's own change costs nothing, so that what is left is the derivative of
 // the energy at fixed positions (the envelope theorem). That is compared with a central difference of two
 // solves.
+#include "core/number_text.hpp"
 #include "scene/build/build.hpp"
 #include "scene/terms/term_types.hpp"
 #include "stress/subject.hpp"
@@ -91,8 +92,8 @@ StressOutcome derivative_by_chord(StressSubject& subject) {
   if (missed) return *missed;
   StressOutcome outcome = measured(solved, std::abs(found / exact - 1), kLimit,
                                    "the energies of two solves have another derivative");
-  outcome.message += "; chord " + std::to_string(place->number) + ": " + short_number(exact) +
-                     " mJ/mm at fixed positions, " + short_number(found) + " by two solves";
+  outcome.message += "; chord " + std::to_string(place->number) + ": " + number_text(exact) +
+                     " mJ/mm at fixed positions, " + number_text(found) + " by two solves";
   return outcome;
 }
 

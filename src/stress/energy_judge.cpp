@@ -1,5 +1,6 @@
 #include "stress/energy_judge.hpp"
 
+#include "core/number_text.hpp"
 #include "stress/bench.hpp"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ std::string energy_rise(const Result& result, Objective& objective, const Points
     const Iteration &before = result.trace[k - 1], &now = result.trace[k];
     if (now.round != before.round || now.energy <= before.energy + rounding) continue;
     return "in iteration " + std::to_string(now.iteration) + " the energy rises from " +
-           short_number(before.energy) + " by " + short_number(now.energy - before.energy) + ", rounding " +
-           short_number(rounding) + " mJ";
+           number_text(before.energy) + " by " + number_text(now.energy - before.energy) + ", rounding " +
+           number_text(rounding) + " mJ";
   }
   return "";
 }

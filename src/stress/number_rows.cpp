@@ -1,6 +1,7 @@
 // S3, S4, S5, S6, S25: loads, stiffnesses, chords and triangles far from the usual. Nothing is known of the
 // answer but that it must be one: what is called converged is measured again by an objective that was made
 // anew.
+#include "core/number_text.hpp"
 #include "stress/scenes/slivers.hpp"
 #include "stress/subject.hpp"
 
@@ -29,7 +30,7 @@ StressRow row(const SubjectPointer& subject, const char* id, const std::string& 
 
 StressRow scaled_row(const SubjectPointer& subject, const char* id, const std::string& what, double factor,
                      bool is_quick, bool (*is_meant)(const TermSpec&)) {
-  return row(subject, id, what + " times " + short_number(factor), is_quick,
+  return row(subject, id, what + " times " + number_text(factor), is_quick,
              [subject, what, factor, is_meant]() -> StressOutcome {
                const std::vector<TermSpec>& terms = own_scene(*subject).scene.terms;
                if (std::none_of(terms.begin(), terms.end(), is_meant))
@@ -51,7 +52,7 @@ StressRow short_chords_row(const SubjectPointer& subject) {
 }
 
 StressRow sliver_row(const SubjectPointer& subject, double aspect, bool is_quick) {
-  return row(subject, "S6", "slivers of aspect " + short_number(aspect), is_quick,
+  return row(subject, "S6", "slivers of aspect " + number_text(aspect), is_quick,
              [subject, aspect]() -> StressOutcome {
                StressScene changed = copy_of(own_scene(*subject));
                const int count = add_slivers(changed, 1 / aspect, kEvery);

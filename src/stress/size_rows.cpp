@@ -1,4 +1,5 @@
 // S24: memory by triangle, and pairs of contact by facet.
+#include "core/number_text.hpp"
 #include "mesh/shapes.hpp"
 #include "scene/build/build.hpp"
 #include "scene/terms/term_types.hpp"
@@ -27,7 +28,7 @@ StressOutcome bytes_by_triangle(const StressScene& scene) {
   const double bytes = *risen * 1024 * 1024 / model.mesh.triangle_count();
   const bool holds = bytes <= kMostBytes && std::isfinite(energy);
   return {holds ? StressVerdict::Pass : StressVerdict::Fail, bytes, kMostBytes,
-          short_number(*risen) + " MB for " + std::to_string(model.mesh.triangle_count()) + " triangles"};
+          number_text(*risen) + " MB for " + std::to_string(model.mesh.triangle_count()) + " triangles"};
 }
 
 BuiltScene large_disc(int triangles) {
@@ -75,8 +76,8 @@ StressOutcome pairs_by_facet(const StressBench& bench, int triangles) {
   const double growth = many.listed / many.facets / (few.listed / few.facets);
   const bool holds = growth <= kMost && many.active > 0;
   return {holds ? StressVerdict::Pass : StressVerdict::Fail, growth, kMost,
-          short_number(many.facets) + " facets: " + short_number(many.active) + " pairs touch, " +
-              short_number(many.listed) + " are listed, " + short_number(many.listed / many.facets) +
+          number_text(many.facets) + " facets: " + number_text(many.active) + " pairs touch, " +
+              number_text(many.listed) + " are listed, " + number_text(many.listed / many.facets) +
               " for each facet"};
 }
 

@@ -1,4 +1,5 @@
 // S8, S9, S10, S22: nothing to do, other starts, no supports, and the way there and back.
+#include "core/number_text.hpp"
 #include "stress/subject.hpp"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Points admissible(Model& model, const Points& from, const Points& to) {
 StressRow shaken_row(const SubjectPointer& subject, double share, bool is_quick) {
   return {"S9",
           subject->name,
-          "started again from the solution, shaken by " + short_number(share) + " of the extent",
+          "started again from the solution, shaken by " + number_text(share) + " of the extent",
           kDistanceFromOwn,
           "",
           is_quick,

@@ -1,5 +1,7 @@
 #include "stress/subject.hpp"
 
+#include "core/number_text.hpp"
+
 #include <algorithm>
 
 namespace coapt {
@@ -92,18 +94,18 @@ StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, 
     if (residual > kResidualSlack * tolerance)
       return measured(solved, figure, limit,
                       "called converged, but in the scene as it is the residual of that shape is " +
-                          short_number(residual));
+                          number_text(residual));
     const double raw = figure;
     figure = greatest_distance(own, refined(subject, x), refined(subject, own.x)) / extent;
     note =
-        "solved on to a smaller residual, as at the tolerance the shapes are " + short_number(raw) + " apart";
+        "solved on to a smaller residual, as at the tolerance the shapes are " + number_text(raw) + " apart";
   }
   StressOutcome outcome =
       outcome_of(solved, figure <= limit ? StressVerdict::Pass : StressVerdict::OtherBranch, note);
   if (outcome.verdict == StressVerdict::OtherBranch)
     outcome.message = "another equilibrium of the same scene: energy " +
-                      short_number(solved.result.energy / energy_unit) + " mJ, of the scene's own solution " +
-                      short_number(own.result.energy) + " mJ";
+                      number_text(solved.result.energy / energy_unit) + " mJ, of the scene's own solution " +
+                      number_text(own.result.energy) + " mJ";
   outcome.figure = figure;
   outcome.limit = limit;
   return outcome;

@@ -2,6 +2,7 @@
 
 #include "core/components.hpp"
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/json/sealed_json.hpp"
 #include "formats/json/suggestion.hpp"
@@ -50,9 +51,7 @@ Amount amount(const std::string& text, const std::string& sweep) {
 }
 
 std::string text_of(double value, const std::string& unit) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return unit.empty() ? std::string(text) : std::string(text) + " " + unit;
+  return number_text(value, 12) + (unit.empty() ? "" : " " + unit);
 }
 
 std::vector<std::string> range(const std::string& text, size_t dots, const std::string& sweep) {

@@ -1,5 +1,6 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/sealed_json.hpp"
 #include "formats/whole_file.hpp"
 #include "solve/checkpoint.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 namespace coapt {
@@ -17,12 +17,6 @@ namespace {
 
 constexpr const char* kBeginAnew = "; tune without --resume to begin anew";
 constexpr Seal kSeal = {"coapt tuning", "checkpoint of a tuning", "1", kBeginAnew};
-
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 std::vector<double> numbers(const Eigen::Ref<const Vector>& values) { return {values.begin(), values.end()}; }
 
@@ -81,19 +75,19 @@ std::map<std::string, std::string> chord_tuning_identity(const Scene& scene,
   const std::filesystem::path file =
       options.target.empty() ? scene.closed_surface.value_or(std::filesystem::path()) : options.target;
   if (distance_weight_of(options) > 0 && !file.empty())
-    target = fingerprint(formats::read_whole(file)) + " times " + text_of(options.target_scale);
+    target = fingerprint(formats::read_whole(file)) + " times " + number_text(options.target_scale, 17);
   return {{"version", version()},
           {"scene", scene_fingerprint(scene)},
           {"damped steps", std::to_string(run.damped_steps.value_or(scene.solver.continuation.damped_steps))},
-          {"tolerance", text_of(run.tolerance.value_or(scene.solver.tolerance))},
+          {"tolerance", number_text(run.tolerance.value_or(scene.solver.tolerance), 17)},
           {"target", target},
-          {"distance weight", text_of(distance_weight_of(options))},
-          {"orifice weight", text_of(options.orifice_weight)},
-          {"force weight", text_of(options.force_weight)},
-          {"change weight", text_of(change_weight_of(options))},
+          {"distance weight", number_text(distance_weight_of(options), 17)},
+          {"orifice weight", number_text(options.orifice_weight, 17)},
+          {"force weight", number_text(options.force_weight, 17)},
+          {"change weight", number_text(change_weight_of(options), 17)},
           {"sides", std::to_string(static_cast<int>(options.sides))},
           {"groups", std::to_string(static_cast<int>(options.grouping)) + " " + only},
-          {"bounds", text_of(options.lowest) + ".." + text_of(options.highest)}};
+          {"bounds", number_text(options.lowest, 17) + ".." + number_text(options.highest, 17)}};
 }
 
 void write_chord_tuning_checkpoint(const std::filesystem::path& path,

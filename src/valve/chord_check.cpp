@@ -1,8 +1,8 @@
+#include "core/number_text.hpp"
 #include "valve/valve_check.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <queue>
 #include <set>
@@ -21,11 +21,6 @@ std::string named(const std::string& one, const std::string& many, const std::ve
     text.append(k == 0 ? " " : ", ").append(std::to_string(numbers[k]));
   if (numbers.size() > kNamed) text += " and " + std::to_string(numbers.size() - kNamed) + " more";
   return text;
-}
-
-std::string three_digits(double value) {
-  char buffer[40];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
 }
 
 // Tips, then junctions, then leaflet vertices.
@@ -212,9 +207,9 @@ void find_overstretched(const Valve& valve, const ChordGraph& graph, std::vector
                      (list.size() == 1 ? " insertion lies" : " insertions lie") +
                      " farther from the papillary tip than the chords to it are long";
   if (is_moved) text += ", in the open and the closed position";
-  text += "; worst: " + three_digits(most.distance) + " mm apart with " + three_digits(most.length) +
-          " mm of chord, a strain of " + three_digits(100 * most.open) + " %";
-  if (is_moved) text += " (closed: " + three_digits(100 * most.closed) + " %)";
+  text += "; worst: " + number_text(most.distance) + " mm apart with " + number_text(most.length) +
+          " mm of chord, a strain of " + number_text(100 * most.open) + " %";
+  if (is_moved) text += " (closed: " + number_text(100 * most.closed) + " %)";
   doubts.push_back(text + ". Check rest lengths, their unit and the place of the tips.");
 }
 

@@ -1,11 +1,11 @@
 #include "valve/valve_check.hpp"
 
+#include "core/number_text.hpp"
 #include "mesh/mesh_check.hpp"
 
 #include <Eigen/Geometry>
 
 #include <array>
-#include <charconv>
 
 namespace coapt {
 namespace {
@@ -20,17 +20,12 @@ constexpr double kLeastFacing = 0.05;  // projected over whole area below which 
 
 constexpr double kFoldedCosine = -0.99985;  // between the normals of two neighbours: an angle of 1 degree
 
-std::string shown(double value) {
-  char buffer[40];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
-}
-
 bool is_within(double value, const std::array<double, 2>& range) {
   return value >= range[0] && value <= range[1];
 }
 
 std::string range_text(const std::array<double, 2>& range, double factor = 1) {
-  return shown(range[0] * factor) + " to " + shown(range[1] * factor);
+  return number_text(range[0] * factor) + " to " + number_text(range[1] * factor);
 }
 
 // Zero for a sliver, whose normal says nothing.
@@ -77,15 +72,15 @@ std::vector<std::string> size_doubts(const Valve& valve) {
     const Points& x = valve.leaflets.vertices;
     const double size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
     if (!is_within(size, kLeafletSize))
-      doubts.push_back("the leaflets are " + shown(size) + " mm across; valves have " +
+      doubts.push_back("the leaflets are " + number_text(size) + " mm across; valves have " +
                        range_text(kLeafletSize) +
                        " mm. Check the unit of the mesh (`units` of a valve JSON).");
   }
   if (valve.thickness > 0 && !is_within(valve.thickness, kThickness))
-    doubts.push_back("the leaflets are " + shown(valve.thickness) + " mm thick; valves have " +
+    doubts.push_back("the leaflets are " + number_text(valve.thickness) + " mm thick; valves have " +
                      range_text(kThickness) + " mm. Check the unit of the thickness.");
   if (valve.pressure > 0 && !is_within(valve.pressure, kPressure))
-    doubts.push_back("the pressure is " + shown(valve.pressure / kMpaPerMmhg) + " mmHg; hearts have " +
+    doubts.push_back("the pressure is " + number_text(valve.pressure / kMpaPerMmhg) + " mmHg; hearts have " +
                      range_text({0.01, 1000}) + " mmHg. Check the unit of the pressure.");
   std::vector<int> odd;
   for (size_t k = 0; k < valve.chords.chords.size(); ++k)
@@ -94,7 +89,7 @@ std::vector<std::string> size_doubts(const Valve& valve) {
   if (!odd.empty())
     doubts.push_back(
         std::to_string(odd.size()) + " chords, the first of them " + std::to_string(odd.front()) + " with " +
-        shown(valve.chords.chords[static_cast<size_t>(odd.front())].area) +
+        number_text(valve.chords.chords[static_cast<size_t>(odd.front())].area) +
         " mm2, have a cross-section outside " + range_text(kChordArea) + " mm2. Check the unit of `area`.");
   return doubts;
 }
@@ -118,7 +113,7 @@ std::vector<std::string> pressure_side_doubts(const Valve& valve) {
   return {
       "the normals of the leaflets point away from the papillary tips, so the pressure acts on the wrong "
       "side (" +
-      shown(-facing) + " of " + shown(whole) +
+      number_text(-facing) + " of " + number_text(whole) +
       " mm2 face the other way); turn all triangles over, or set the side of the pressure."};
 }
 

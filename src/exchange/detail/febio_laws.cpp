@@ -1,5 +1,6 @@
 #include "exchange/detail/febio_laws.hpp"
 
+#include "core/number_text.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "scene/terms/term_types.hpp"
 
@@ -10,7 +11,7 @@ constexpr const char* kRelaxed =
     "wrinkles instead of being compressed; FEBio's shells buckle instead, on a mesh fine enough to show it.";
 
 std::string tag(const std::string& name, double value) {
-  return "<" + name + ">" + digits(value) + "</" + name + ">";
+  return "<" + name + ">" + exact_text(value) + "</" + name + ">";
 }
 
 }  // namespace
@@ -38,9 +39,9 @@ std::optional<FebioLaw> febio_cable(const TermSpec& term, double distance, doubl
   law.keys +=
       "<measure>strain</measure><force type=\"point\"><interpolate>LINEAR</interpolate>"
       "<extend>EXTRAPOLATE</extend><points><pt>" +
-      digits(onset - 1) + ",0</pt><pt>" + digits(onset) + ",0</pt>";
+      exact_text(onset - 1) + ",0</pt><pt>" + exact_text(onset) + ",0</pt>";
   for (const auto& [elongation, stress] : curve->points)
-    law.keys += "<pt>" + digits(strain(elongation)) + "," + digits(stress) + "</pt>";
+    law.keys += "<pt>" + exact_text(strain(elongation)) + "," + exact_text(stress) + "</pt>";
   law.keys += "</points></force>";
   return law;
 }

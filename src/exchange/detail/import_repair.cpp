@@ -1,6 +1,7 @@
 #include "exchange/detail/import_repair.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/mesh_check.hpp"
@@ -8,18 +9,11 @@
 #include "valve/valve_check.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace coapt::detail {
 namespace {
 
 using DefectKind = MeshDefectKind;
-
-std::string in_short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 std::string first_ten(const std::vector<int>& numbers) {
   constexpr size_t kFew = 10;
@@ -57,11 +51,11 @@ std::string repaired_text(const ValveRepair& repair) {
         .append(")");
   text.append(": ").append(done).append("; no vertex moved");
   if (leaflets.largest_move > 0)
-    text.append(" by more than ").append(in_short(leaflets.largest_move)).append(" mm");
-  text.append(", and the surface by no more than ").append(in_short(leaflets.surface_move)).append(" mm.");
+    text.append(" by more than ").append(number_text(leaflets.largest_move)).append(" mm");
+  text.append(", and the surface by no more than ").append(number_text(leaflets.surface_move)).append(" mm.");
   if (repair.has_reference)
     text.append(" The closed reference took the same steps and moved by no more than ")
-        .append(in_short(repair.reference_move))
+        .append(number_text(repair.reference_move))
         .append(" mm.");
   return text.append(" repairs.csv lists the steps; --no-repair keeps the mesh as it is.");
 }
@@ -93,7 +87,7 @@ MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file,
   if (!leaflets.left.empty())
     throw InputError(
         place + first_ten(leaflets.left) + (leaflets.left.size() == 1 ? ": a sliver" : ": slivers") +
-        " (longest edge above " + in_short(kSliverAspect) +
+        " (longest edge above " + number_text(kSliverAspect) +
         " times the height) on which a solve stalls, and which no step repairs, as their corners "
         "are held or carry chords, or lie on the rim; remesh there, or keep them by --no-repair");
   if (leaflets.is_changed()) warnings.push_back(place + repaired_text(repair));
@@ -119,7 +113,7 @@ void write_repairs(const std::filesystem::path& path, const MeshRepair& repair) 
     text.append(kind).append(",").append(triangles);
     for (const int v : step.edge) text.append(",").append(std::to_string(v));
     text.append(",").append(step.apex < 0 ? "" : std::to_string(step.apex));
-    text.append(",").append(digits(step.moved)).append("\n");
+    text.append(",").append(exact_text(step.moved)).append("\n");
   }
   formats::write_whole(path, text);
 }

@@ -1,9 +1,9 @@
 #include "exchange/detail/law_terms.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 namespace coapt::detail {
@@ -38,8 +38,8 @@ std::string usual_membrane(const Valve& valve, const ImportOptions& options, con
   const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
   return "    { \"type\": " + quoted(linear_membrane_type(options)) + ", \"name\": " + quoted(name) +
          ", \"young\": " + quoted(options.young.empty() ? kUsualYoung : options.young) +
-         (options.membrane == "spring" ? "" : ", \"poisson\": " + digits(options.poisson)) +
-         ",\n      \"thickness\": " + quoted(digits(thickness) + " mm") +
+         (options.membrane == "spring" ? "" : ", \"poisson\": " + exact_text(options.poisson)) +
+         ",\n      \"thickness\": " + quoted(exact_text(thickness) + " mm") +
          (regions.empty() ? "" : ", \"region\": " + list_text(regions)) + " }";
 }
 
@@ -93,12 +93,6 @@ void add_cables(const Valve& valve, const ImportOptions& options, Names& names,
 }
 
 }  // namespace
-
-std::string digits(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, result.ptr};
-}
 
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 

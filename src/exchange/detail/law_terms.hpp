@@ -16,8 +16,7 @@ std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& opti
 // The term type of linear leaflets.
 std::string linear_membrane_type(const ImportOptions& options);
 
-// The shortest digits that read back as the same number, and a text in quotes.
-std::string digits(double value);
+// A text in quotes.
 std::string quoted(const std::string& text);
 
 }  // namespace coapt::detail

@@ -1,5 +1,6 @@
 #include "formats/abaqus/abaqus_materials.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/text.hpp"
 #include "formats/tissue_laws.hpp"
 
@@ -52,9 +53,9 @@ std::optional<Material> linear_shell(const AbaqusMaterial& material, Defects& de
         "material " + formats::quoted(material.name) + ": Poisson's ratio must lie above -1 and up to 0.5");
     return std::nullopt;
   }
-  return Material{"cst_stvk",
-                  {{"young", pressure_text((*values)[0])},
-                   {"poisson", number_text(std::min(poisson, kGreatestPoisson))}}};
+  return Material{
+      "cst_stvk",
+      {{"young", pressure_text((*values)[0])}, {"poisson", exact_text(std::min(poisson, kGreatestPoisson))}}};
 }
 
 std::optional<Material> neo_hookean_shell(const AbaqusMaterial& material, Defects& defects) {

@@ -1,11 +1,11 @@
 #include "formats/febio/febio_materials.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/text.hpp"
 #include "formats/tissue_laws.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt::formats {
 namespace {
@@ -15,10 +15,8 @@ constexpr double kLargestBelowHalf = 0.499999;  // where the bulk modulus is sti
 
 // Twelve digits: what a product and a quotient leave of a number that somebody wrote.
 double rounded(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.12g", value);
   double result = 0;
-  read_number(text, result);
+  read_number(number_text(value, 12), result);
   return result;
 }
 
@@ -81,7 +79,7 @@ std::optional<FebioSpring> nonlinear(const pugi::xml_node& material, double dist
     spring.law = {"cable_bilinear",
                   {{"young_pre", modulus(1)},
                    {"young_post", modulus(2)},
-                   {"transition_strain", number_text(rounded(strain))}}};
+                   {"transition_strain", exact_text(rounded(strain))}}};
   }
   return spring;
 }
@@ -159,14 +157,14 @@ std::optional<Material> febio_shell_law(const pugi::xml_node& material, double t
   const auto poisson_up_to = [&](double greatest) {
     const double number = value("v");
     if (number > -1 && number <= greatest) return number;
-    places.add(material.child("v"), "Poisson's ratio must lie above -1 and up to " + number_text(greatest));
+    places.add(material.child("v"), "Poisson's ratio must lie above -1 and up to " + exact_text(greatest));
     is_sound = false;
     return 0.0;
   };
   Material law;
   if (type == "isotropic elastic") {
     const double young = positive("E"), poisson = std::min(poisson_up_to(0.5), kGreatestPoisson);
-    law = {"cst_stvk", {{"young", pressure_text(young)}, {"poisson", number_text(poisson)}}};
+    law = {"cst_stvk", {{"young", pressure_text(young)}, {"poisson", exact_text(poisson)}}};
   } else if (type == "neo-Hookean") {
     const double young = positive("E"), poisson = poisson_up_to(kLargestBelowHalf);
     law = {"cst_neo_hookean",
@@ -180,7 +178,7 @@ std::optional<Material> febio_shell_law(const pugi::xml_node& material, double t
     law = {"cst_exponential",
            {{"c0", pressure_text(positive("c0"))},
             {"c1", pressure_text(not_negative("c1"))},
-            {"c2", number_text(not_negative("c2"))}}};
+            {"c2", exact_text(not_negative("c2"))}}};
     if (type == "isotropic Lee-Sacks") law.keys.emplace_back("bulk", pressure_text(positive("k")));
   } else {
     places.add(material, "no law of a scene is like " + formats::quoted(type));

@@ -1,21 +1,15 @@
 #include "optim/stability/certificate.hpp"
 
+#include "core/number_text.hpp"
 #include "energy/connected_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
 
 constexpr double kNegligible = 1e-6;  // stiffness, relative to reference force over extent
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
 
 std::string counted(int count, const std::string& thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
@@ -104,8 +98,8 @@ std::string modes(int count, const std::string& kind) {
 }
 
 std::string lowest_text(const StabilityReport& report) {
-  std::string text = number(report.lowest.real());
-  if (report.lowest.imag() != 0) text += " +- " + number(std::abs(report.lowest.imag())) + " i";
+  std::string text = number_text(report.lowest.real(), 2);
+  if (report.lowest.imag() != 0) text += " +- " + number_text(std::abs(report.lowest.imag()), 2) + " i";
   return text;
 }
 
@@ -117,7 +111,7 @@ std::string stability_summary(const StabilityReport& report) {
       return "no free node has any stiffness";
     case Stability::StrictMinimum:
       return report.pivot_ratio > 0
-                 ? "strict minimum (smallest pivot ratio " + number(report.pivot_ratio) + ")"
+                 ? "strict minimum (smallest pivot ratio " + number_text(report.pivot_ratio, 2) + ")"
                  : "strict minimum, just";
     case Stability::Stable:
       return "stable (lowest eigenvalue of the unsymmetric tangent " + lowest_text(report) + ")";
@@ -171,10 +165,10 @@ std::string summary(const Certificate& certificate) {
   if (!certificate.free_nodes.empty())
     text += ", " + counted(static_cast<int>(certificate.free_nodes.size()), "free node");
   if (certificate.is_balance_clear)
-    text +=
-        ", reactions balance to " + number(std::max(certificate.balance.force, certificate.balance.moment));
+    text += ", reactions balance to " +
+            number_text(std::max(certificate.balance.force, certificate.balance.moment), 2);
   if (const auto& worst = certificate.imbalance)
-    text += ", largest out-of-balance force " + number(worst->force) + " at node " +
+    text += ", largest out-of-balance force " + number_text(worst->force, 2) + " at node " +
             std::to_string(worst->node) + " (most of it by " + worst->term + ")";
   return text;
 }

@@ -1,5 +1,6 @@
 #include "optim/stability/equilibrium_watch.hpp"
 
+#include "core/number_text.hpp"
 #include "energy/normal_motion.hpp"
 #include "energy/term_access.hpp"
 #include "optim/stability/film_size.hpp"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -91,9 +91,8 @@ void EquilibriumWatch::find_obstacle(const Objective& objective, const Points& x
     if (other_resultant.norm() > kRoundOff * other_sum) continue;
     for (int c = 0; c < 3; ++c) {
       if (!part.can_shift[static_cast<size_t>(c)] || std::abs(resultant[c]) <= kRoundOff * dead_sum) continue;
-      char force[64];
-      std::snprintf(force, sizeof force, "%.3g along %c", resultant[c], "xyz"[c]);
-      obstacle_ = part.description() + ", and nothing meets the resultant of its loads, " + force;
+      obstacle_ = part.description() + ", and nothing meets the resultant of its loads, " +
+                  number_text(resultant[c]) + " along " + "xyz"[c];
       return;
     }
   }

@@ -1,12 +1,12 @@
 #include "scene/file/scene_parameter.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -42,19 +42,13 @@ SceneParameter parameter_of(const Scene& scene, size_t index, const std::string&
   return {term.name + "." + key, index, key, 1, term.parameters.number(key), find_key(term, key)->dimension};
 }
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 // The rules between the keys of a term that was changed.
 void check_term(const TermSpec& term, const SceneParameter& parameter, double factor) {
   const TermType& type = *find_term_type(term.type);
   if (!type.check) return;
   if (const std::vector<std::string> defects = type.check(term.parameters); !defects.empty())
-    throw InputError(term.parameters.where() + ": with " + parameter.name + " times " + text_of(factor) +
-                     ": " + defects.front());
+    throw InputError(term.parameters.where() + ": with " + parameter.name + " times " +
+                     number_text(factor, 6) + ": " + defects.front());
 }
 
 }  // namespace
@@ -115,9 +109,9 @@ Scene scaled(Scene scene, const SceneParameter& parameter, double factor) {
   const double change = std::pow(factor, parameter.power),
                value = term.parameters.number(parameter.key) * change;
   if (!std::isfinite(value) || value < key.min || value > key.max || (key.excludes_min && value == key.min))
-    throw InputError(term.parameters.where(parameter.key) + ": " + text_of(factor) + " times " +
-                     parameter.name + " is beyond the limits of this key (" + text_of(key.min) + " to " +
-                     text_of(key.max) + "); perturb it by less, or leave it out");
+    throw InputError(term.parameters.where(parameter.key) + ": " + number_text(factor, 6) + " times " +
+                     parameter.name + " is beyond the limits of this key (" + number_text(key.min, 6) +
+                     " to " + number_text(key.max, 6) + "); perturb it by less, or leave it out");
   term.parameters.scale(parameter.key, change);
   check_term(term, parameter, factor);
   return scene;

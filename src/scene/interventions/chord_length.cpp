@@ -1,8 +1,7 @@
 // Chords made shorter or longer.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "scene/interventions/chord_selection.hpp"
-
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -19,9 +18,9 @@ void change_lengths(const InterventionSpec& spec, ValveEdit& valve) {
   std::vector<std::string> defects;
   for (const size_t k : chosen)
     if (!(new_length(p, network.chords[k].rest_length) > 0)) {
-      char text[64];
-      std::snprintf(text, sizeof text, " is only %.4g mm long at rest", network.chords[k].rest_length);
-      defects.push_back(p.where("by") + ": " + chord_text(k) + text + "; nothing would be left of it");
+      defects.push_back(p.where("by") + ": " + chord_text(k) + " is only " +
+                        number_text(network.chords[k].rest_length, 4) +
+                        " mm long at rest; nothing would be left of it");
     }
   if (!defects.empty()) throw InputError(defects);
   for (const size_t k : chosen) network.chords[k].rest_length = new_length(p, network.chords[k].rest_length);

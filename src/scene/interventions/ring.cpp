@@ -1,5 +1,6 @@
 // Ring annuloplasty: where the annulus goes when the valve closes.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/closed_curve.hpp"
 #include "mesh/curve_match.hpp"
 #include "mesh/projected_area.hpp"
@@ -8,17 +9,10 @@
 #include <Eigen/Dense>
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace coapt {
 namespace {
-
-std::string mm(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", length);
-  return text;
-}
 
 // The closed annulus, with its own frame: x between the commissures, z away from the leaflets.
 struct ClosedAnnulus {
@@ -119,8 +113,9 @@ Points given_curve(const Parameters& p, const ClosedAnnulus& annulus, const Vec3
   curve.colwise() -= origin;
   const double away = (curve.rowwise().mean() - annulus.centre).norm();
   if (away > annulus.width)
-    throw InputError(p.where("curve") + ": lies " + mm(away) + " away from the annulus, which is " +
-                     mm(annulus.width) + " wide; is it in mm and in the frame of the mesh?");
+    throw InputError(p.where("curve") + ": lies " + number_text(away) +
+                     " mm away from the annulus, which is " + number_text(annulus.width) +
+                     " mm wide; is it in mm and in the frame of the mesh?");
   return p.has("size") ? scaled_to(p.number("size"), curve, p) : curve;
 }
 
@@ -137,10 +132,10 @@ void refuse_unfit(const Parameters& p, const ClosedAnnulus& annulus, const Point
   if (part >= kLeast && part <= kMost) return;
   const bool has_size = p.has("size");
   const double now = has_size ? p.number("size") : held;
-  throw InputError(p.where(has_size ? "size" : "curve") + ": would make the annulus " + mm(held) +
-                   " around, which is " + mm(own) + " without a ring; take " +
-                   (has_size ? "a size" : "a curve with a length") + " between " + mm(now * kLeast / part) +
-                   " and " + mm(now * kMost / part));
+  throw InputError(p.where(has_size ? "size" : "curve") + ": would make the annulus " + number_text(held) +
+                   " mm around, which is " + number_text(own) + " mm without a ring; take " +
+                   (has_size ? "a size" : "a curve with a length") + " between " +
+                   number_text(now * kLeast / part) + " mm and " + number_text(now * kMost / part) + " mm");
 }
 
 // Where each node of the annulus is held: on a rigid ring, or in its own shape with the length of a flexible

@@ -1,5 +1,6 @@
 // Membranes of springs along the mesh edges.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/spring.hpp"
 #include "scene/build/detail/build_membrane.hpp"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 namespace coapt {
@@ -53,10 +53,8 @@ struct Springs {
 };
 
 std::string too_short(const std::string& where, const Edge& edge, int t, double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", length);
   return where + ": edge " + std::to_string(edge.a) + "-" + std::to_string(edge.b) + " of triangle " +
-         std::to_string(t) + " is " + text +
+         std::to_string(t) + " is " + number_text(length) +
          " mm long, next to nothing beside the triangle's other edges: its spring would be stiff beyond "
          "measure; join its ends in the mesh";
 }

@@ -1,11 +1,11 @@
 #include "stress/scenes/built_in.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "results/results.hpp"
 
-#include <cstdio>
 #include <sstream>
 
 namespace coapt {
@@ -17,12 +17,6 @@ std::string csv_of(const Points& points) {
   text << "x,y,z\n";
   for (const auto& x : points.colwise()) text << x[0] << ',' << x[1] << ',' << x[2] << '\n';
   return text.str();
-}
-
-std::string all_digits(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
 }
 
 }  // namespace
@@ -48,7 +42,7 @@ std::string filled(std::string_view text,
                    std::initializer_list<std::pair<std::string_view, double>> numbers) {
   std::string result(text);
   for (const auto& [name, value] : numbers) {
-    const std::string key = "$" + std::string(name), digits = all_digits(value);
+    const std::string key = "$" + std::string(name), digits = number_text(value, 17);
     for (size_t at = result.find(key); at != std::string::npos; at = result.find(key, at + digits.size()))
       result.replace(at, key.size(), digits);
   }

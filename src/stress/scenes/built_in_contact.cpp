@@ -1,6 +1,7 @@
 // S13, S14, S25, S26: sheets pressed on obstacles that are as awkward as can be. Judged at every accepted
 // state by exact predicates that share nothing with the barrier.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "energy/contact_facet.hpp"
 #include "mesh/shapes.hpp"
 #include "stress/scenes/pressed.hpp"
@@ -90,8 +91,8 @@ std::vector<BuiltRow> tunnelling_rows() {
   std::vector<BuiltRow> rows;
   for (const double share : {0.5, 0.9, 1.1, 10.0})
     rows.push_back(contact_row(
-        "S14", "barrier, " + short_number(share) + " of what a facet repulsion carries", share == 10,
-        pressed_scene("S14_" + short_number(share), 128, 0.03, shifted_mesh(square(1.4, 98), {-0.2, -0.2, 0}),
+        "S14", "barrier, " + number_text(share) + " of what a facet repulsion carries", share == 10,
+        pressed_scene("S14_" + number_text(share), 128, 0.03, shifted_mesh(square(1.4, 98), {-0.2, -0.2, 0}),
                       share * carried, barrier_term(0.02))));
   rows.push_back(contact_row("S14", "a first step far through the floor", false,
                              pressed_scene("S14_step", 128, 0.5, floor_at(0.2), 5, barrier_term(0.02))));

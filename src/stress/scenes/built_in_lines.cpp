@@ -1,4 +1,5 @@
 // S5 and S11: a weight on one chord or tether, with the answer in closed form.
+#include "core/number_text.hpp"
 #include "stress/scenes/built_in.hpp"
 
 #include <cmath>
@@ -58,8 +59,8 @@ BuiltRow tether_row(double strength) {
       R"({ "type": "tether_cubic", "network": "chords.json", "strength": "$STRENGTH mJ", "scale": "$SCALE mm" })",
       {{"STRENGTH", strength}, {"SCALE", kScale}});
   return weight_row(
-      "S5", "cubic tether of " + short_number(strength) + " mJ, stretched by half", strength == 1e9,
-      weight_scene("S5_tether_" + short_number(strength), term, {0.1, -0.05, -1.5}, kLength), exact);
+      "S5", "cubic tether of " + number_text(strength) + " mJ, stretched by half", strength == 1e9,
+      weight_scene("S5_tether_" + number_text(strength), term, {0.1, -0.05, -1.5}, kLength), exact);
 }
 
 BuiltRow coincident_row() {

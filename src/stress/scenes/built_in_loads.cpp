@@ -1,4 +1,5 @@
 // S3 and S25: a clamped disc, inflated from flat, under loads and with numbers far from the usual.
+#include "core/number_text.hpp"
 #include "mesh/shapes.hpp"
 #include "stress/scenes/built_in.hpp"
 
@@ -41,11 +42,11 @@ BuiltRow disc_row(const Load& load) {
   constexpr double kLimit = 1e-3, kYoung = 1, kThickness = 0.1;
   const double pressure = load.q * kYoung * kThickness / kRadius;
   return {"S3",
-          "p a/(E h) = " + short_number(load.q),
+          "p a/(E h) = " + number_text(load.q),
           "error of the centre's deflection",
           "",
           load.q == 1e-6,
-          disc_scene("S3_disc_" + short_number(load.q), 1500, kYoung, kThickness, pressure, 1e-6),
+          disc_scene("S3_disc_" + number_text(load.q), 1500, kYoung, kThickness, pressure, 1e-6),
           [load](const StressScene& scene, const Stressed& solved) {
             return converged_and(solved, scene, std::abs(rise(solved) / kRadius / load.exact - 1), kLimit,
                                  "the deflection is wrong");

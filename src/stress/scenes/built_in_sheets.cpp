@@ -1,5 +1,6 @@
 // S6, S8, S9, S11: sheets of slivers, with nothing to do, on a saddle, and on the border of taut and
 // wrinkled.
+#include "core/number_text.hpp"
 #include "mesh/shapes.hpp"
 #include "stress/scenes/built_in.hpp"
 
@@ -19,11 +20,11 @@ BuiltRow patch_row(double aspect) {
   const Points exact = map * mesh.vertices;
   constexpr double kLimit = 1e-6;
   return {"S6",
-          "patch test, slivers of aspect " + short_number(aspect),
+          "patch test, slivers of aspect " + number_text(aspect),
           "error over the width",
           "",
           aspect == 1e4,
-          {.name = "S6_patch_" + short_number(aspect),
+          {.name = "S6_patch_" + number_text(aspect),
            .text = R"({ // The rim of a plane sheet of slivers is moved by an affine map. Lengths in mm.
   "mesh": { "file": "mesh.obj" },
   "boundary": [{ "nodes": "boundary", "move_to": "rim.csv" }],

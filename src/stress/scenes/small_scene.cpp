@@ -1,9 +1,10 @@
 #include "stress/scenes/small_scene.hpp"
 
+#include "core/number_text.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -15,11 +16,8 @@ class Choices {
   int below(int bound) { return next() % bound; }
   bool one_in(int n) { return below(n) == n - 1; }
   double between(double least, double greatest) { return least + (greatest - least) * next() / 255.0; }
-  std::string decade(int least, int greatest) { return number(std::pow(10, between(least, greatest))); }
-  static std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
+  std::string decade(int least, int greatest) {
+    return number_text(std::pow(10, between(least, greatest)), 6);
   }
 
  private:
@@ -39,9 +37,9 @@ std::string mesh_text(Choices& choose) {
   std::string text;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= columns; ++i)
-      text += "v " + Choices::number(5 * i + choose.between(-shake, shake)) + " " +
-              Choices::number(5 * j + choose.between(-shake, shake)) + " " +
-              Choices::number(choose.between(-rise, rise)) + "\n";
+      text += "v " + number_text(5 * i + choose.between(-shake, shake), 6) + " " +
+              number_text(5 * j + choose.between(-shake, shake), 6) + " " +
+              number_text(choose.between(-rise, rise), 6) + "\n";
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int a = 1 + j * (columns + 1) + i, b = a + 1, d = a + columns + 1, c = d + 1;
@@ -72,7 +70,7 @@ std::string support(Choices& choose) {
 std::string membrane(Choices& choose) {
   const std::string young = "\"young\": \"" + choose.decade(-3, 6) + " MPa\"",
                     thickness = ", \"thickness\": \"" + choose.decade(-4, 1) + " mm\"",
-                    poisson = ", \"poisson\": " + Choices::number(choose.between(-0.5, 0.4999));
+                    poisson = ", \"poisson\": " + number_text(choose.between(-0.5, 0.4999), 6);
   switch (choose.below(8)) {
     case 0:
       return R"({"type": "cst_tension_field", )" + young + thickness + poisson + "}";
@@ -83,14 +81,14 @@ std::string membrane(Choices& choose) {
       return R"({"type": "surface_tension", "tension": ")" + choose.decade(-4, 3) + R"( N/mm"})";
     case 3:
       return R"({"type": "cst_bilinear", "young_post": ")" + choose.decade(0, 4) +
-             R"( MPa", "transition_strain": )" + Choices::number(choose.between(0.001, 0.5)) + thickness +
+             R"( MPa", "transition_strain": )" + number_text(choose.between(0.001, 0.5), 6) + thickness +
              poisson + "}";
     case 4:
       return R"({"type": "cst_neo_hookean", "shear_modulus": ")" + choose.decade(-3, 4) + R"( MPa")" +
              thickness + "}";
     case 5:
       return R"({"type": "cst_exponential", "c0": ")" + choose.decade(-4, 1) + R"( MPa", "c1": ")" +
-             choose.decade(-5, 0) + R"( MPa", "c2": )" + Choices::number(choose.between(0, 50)) + thickness +
+             choose.decade(-5, 0) + R"( MPa", "c2": )" + number_text(choose.between(0, 50), 6) + thickness +
              "}";
     case 6:
       return R"({"type": "spring", )" + young + thickness + "}";

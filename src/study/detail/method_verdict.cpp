@@ -1,16 +1,11 @@
 #include "study/detail/method_verdict.hpp"
 
+#include "core/number_text.hpp"
+
 #include <algorithm>
-#include <cstdio>
 
 namespace coapt {
 namespace {
-
-std::string digits(double value, const char* format = "%.3g") {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 std::string spaced(std::string_view name) {
   std::string text(name);
@@ -35,13 +30,13 @@ std::vector<int> left_out_nodes(const ComparedMethod& reference, const ComparedM
 }
 
 std::string energy_text(const Result& result) {
-  return digits(result.energy, "%.9g") + " mJ (" +
+  return number_text(result.energy, 9) + " mJ (" +
          spaced(stability_name(result.certificate.stability.verdict)) + ")";
 }
 
 std::string not_converged_text(const ComparedMethod& method) {
   const Result& result = result_of(method);
-  return spaced(status_name(result.status)) + " at residual " + digits(result.residual);
+  return spaced(status_name(result.status)) + " at residual " + number_text(result.residual);
 }
 
 double energy_above(const ComparedMethod& reference, const ComparedMethod& method) {
@@ -57,7 +52,7 @@ std::string energies_text(const ComparedMethod& reference, const ComparedMethod&
   std::string both = "energy " + energy_text(result_of(method)) + ", of " + reference.name + " " +
                      energy_text(result_of(reference));
   if (!reference.run->model.objective->has_circulatory_force()) return both;
-  return both + ", each of a potential of its own; " + digits(*method.energy_above) +
+  return both + ", each of a potential of its own; " + number_text(*method.energy_above) +
          " mJ above it on the straight way between them";
 }
 
@@ -98,7 +93,7 @@ void say(ComparedMethod& method, Verdict verdict, const std::string& what) {
 void judge_equilibria(ComparedMethod& reference, ComparedMethod& method, double same_mm,
                       const std::optional<SolveSetup>& refining) {
   const double largest = method.gap->same_vertex.max;
-  const std::string distance = "at most " + digits(largest) + " mm apart";
+  const std::string distance = "at most " + number_text(largest) + " mm apart";
   if (largest <= same_mm) return say(method, Verdict::SameEquilibrium, distance);
   if (refining && may_be_refined(reference) && may_be_refined(method)) {
     method.refined = refined_pair(reference, method, *refining);
@@ -106,24 +101,24 @@ void judge_equilibria(ComparedMethod& reference, ComparedMethod& method, double 
       return say(method, Verdict::NotConverged,
                  distance + "; cancelled before it was clear whether these are two equilibria");
   }
-  const std::string after = method.refined
-                                ? ", " + digits(method.refined->largest_mm) +
-                                      " mm after going on to residuals " + digits(method.refined->residual) +
-                                      " and " + digits(method.refined->reference_residual)
-                                : "";
+  const std::string after = method.refined ? ", " + number_text(method.refined->largest_mm) +
+                                                 " mm after going on to residuals " +
+                                                 number_text(method.refined->residual) + " and " +
+                                                 number_text(method.refined->reference_residual)
+                                           : "";
   if (method.refined && method.refined->largest_mm <= same_mm)
     return say(method, Verdict::SameEquilibrium, "as solved " + distance + after);
   method.energy_above = energy_above(reference, method);
   say(method, Verdict::AnotherBranch,
-      "up to " + digits(largest) + " mm apart" + after + "; " + energies_text(reference, method));
+      "up to " + number_text(largest) + " mm apart" + after + "; " + energies_text(reference, method));
 }
 
 std::string gap_text(const MethodGap& gap) {
   if (!gap.surfaces)
-    return "mean " + digits(gap.same_vertex.mean) + ", max " + digits(gap.same_vertex.max) + " mm";
+    return "mean " + number_text(gap.same_vertex.mean) + ", max " + number_text(gap.same_vertex.max) + " mm";
   const DistanceFigures distance = both_directions(*gap.surfaces);
-  return "mean " + digits(distance.mean) + ", 95 % " + digits(distance.p95) + ", max " +
-         digits(distance.max) + " mm";
+  return "mean " + number_text(distance.mean) + ", 95 % " + number_text(distance.p95) + ", max " +
+         number_text(distance.max) + " mm";
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "valve/generators/mitral_annulus.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -24,12 +24,6 @@ constexpr double kLeastSaddle = 0.02;            // height of the saddle in part
 
 using Point2 = Eigen::Vector2d;
 using Points2 = Eigen::Matrix2Xd;
-
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -151,7 +145,7 @@ class Fit {
     const double least_extent = std::min(high - low, right - left),
                  greatest = std::max(high - low, right - left);
     if (least_extent < kSmallest || greatest > kLargest)
-      refuse("is " + rounded(greatest) + " by " + rounded(least_extent) +
+      refuse("is " + number_text(greatest) + " by " + number_text(least_extent) +
              " mm in its plane; a mitral annulus has 10 to 80 mm (are its positions in mm?)");
   }
 

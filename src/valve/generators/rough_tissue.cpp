@@ -1,5 +1,6 @@
 #include "valve/generators/rough_tissue.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/tissue_laws.hpp"
 
 #include <charconv>
@@ -10,7 +11,6 @@ namespace coapt {
 namespace {
 
 using formats::length_text;
-using formats::number_text;
 using formats::pressure_text;
 
 constexpr double kSphere = 6, kTube = 12;  // tension over pressure [mm]
@@ -30,7 +30,7 @@ double first_derivative(const ExponentialSheet& sheet, double j) {
 Material linear_leaflet(double pressure, double thickness, RandomSource& random) {
   const double poisson = rounded(random.between(0.3, 0.48)), strain = random.log_between(0.02, 0.12);
   const double young = rounded((1 - poisson) * kSphere * pressure / (strain * thickness));
-  return {"cst_tension_field", {{"young", pressure_text(young)}, {"poisson", number_text(poisson)}}};
+  return {"cst_tension_field", {{"young", pressure_text(young)}, {"poisson", exact_text(poisson)}}};
 }
 
 // c0 and c2 as in measured tricuspid leaflets and a little around them (Mathur et al. 2022: 1 kPa, 4.6 to
@@ -54,7 +54,7 @@ Material exponential_leaflet(double pressure, double thickness, RandomSource& ra
     stretch = 1 + 0.9 * (stretch - 1);
   } while (sheet.uniaxial(has_bulk ? 1 + kSofter * (kMostUniaxial - 1) : kMostUniaxial) < kTube * pressure);
   Material law{"cst_exponential",
-               {{"c0", pressure_text(c0)}, {"c1", pressure_text(sheet.c1)}, {"c2", number_text(c2)}}};
+               {{"c0", pressure_text(c0)}, {"c1", pressure_text(sheet.c1)}, {"c2", exact_text(c2)}}};
   if (has_bulk) law.keys.emplace_back("bulk", pressure_text(bulk));
   return law;
 }
@@ -68,10 +68,10 @@ Material orthotropic_leaflet(double pressure, double thickness, RandomSource& ra
   Material law{"cst_orthotropic", {}};
   law.keys.emplace_back("fibre_young_pre", modulus(0.5));
   law.keys.emplace_back("fibre_young_post", modulus(6));
-  law.keys.emplace_back("fibre_transition", number_text(rounded(random.between(0.1, 0.2))));
+  law.keys.emplace_back("fibre_transition", exact_text(rounded(random.between(0.1, 0.2))));
   law.keys.emplace_back("cross_young_pre", modulus(0.2));
   law.keys.emplace_back("cross_young_post", modulus(2));
-  law.keys.emplace_back("cross_transition", number_text(rounded(random.between(0.15, 0.3))));
+  law.keys.emplace_back("cross_transition", exact_text(rounded(random.between(0.15, 0.3))));
   return law;
 }
 
@@ -127,9 +127,9 @@ Material toe_chord(double stress, RandomSource& random) {
   const double intercept = recruited + std::expm1(-exponent * recruited) / exponent;
   return {"cable_toe",
           {{"young", pressure_text(chord_young(stress, random))},
-           {"recruitment_strain", number_text(recruited)},
-           {"intercept", number_text(intercept)},
-           {"exponent", number_text(exponent)}}};
+           {"recruitment_strain", exact_text(recruited)},
+           {"intercept", exact_text(intercept)},
+           {"exponent", exact_text(exponent)}}};
 }
 
 }  // namespace

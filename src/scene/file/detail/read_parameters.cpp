@@ -1,6 +1,7 @@
 #include "scene/file/detail/read_parameters.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/file/detail/read_item.hpp"
@@ -10,27 +11,20 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 namespace coapt {
 namespace {
 
 std::string join(const std::string& where, const std::string& key) { return Parameters(where).where(key); }
 
-std::string in_digits(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 std::string limits_text(const KeySpec& key) {
   const std::string unit =
       key.dimension == kDimensionless ? "" : std::string(" ").append(internal_unit(key.dimension));
   std::string text;
   if (std::isfinite(key.min))
-    text = (key.excludes_min ? "greater than " : "at least ") + in_digits(key.min) + unit;
+    text = (key.excludes_min ? "greater than " : "at least ") + number_text(key.min, 6) + unit;
   if (std::isfinite(key.max))
-    text += (text.empty() ? "at most " : " and at most ") + in_digits(key.max) + unit;
+    text += (text.empty() ? "at most " : " and at most ") + number_text(key.max, 6) + unit;
   return text;
 }
 

@@ -1,0 +1,17 @@
+#include "core/number_text.hpp"
+
+#include <charconv>
+
+namespace coapt {
+
+std::string number_text(double value, int digits) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+
+std::string exact_text(double value) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+}  // namespace coapt
