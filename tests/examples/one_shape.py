@@ -26,7 +26,7 @@ def main() -> int:
         root = pathlib.Path(temporary)
         for kind, seed in (("mitral", 12), ("tricuspid", 11)):
             folder = root / kind
-            subprocess.run([coapt, "generate", kind, "--rough", str(seed), "--triangles", "2500", "-o", str(folder)],
+            subprocess.run([coapt, "generate", kind, "--rough", str(seed), "--triangles", "3200", "-o", str(folder)],
                            capture_output=True, check=True)
             assert '"cascade": true' in (folder / "scene.json").read_text()
             cells, same, total = row(coapt, folder, root / f"work_{kind}", ["dynamic"], False)
