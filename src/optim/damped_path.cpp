@@ -1,10 +1,12 @@
 #include "optim/damped_path.hpp"
 
+#include "optim/linear/factorisation.hpp"
 #include "optim/move_prescribed.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
 
 namespace coapt {
 namespace {
@@ -14,9 +16,10 @@ constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
 constexpr double kNearEnd = 10;          // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
-constexpr int kMostStepsAtRest = 200;    // at the full problem
-constexpr double kLost = 1;              // residual of a loaded start whose first steps lead nowhere
-constexpr int kMostWithoutMotion = 3;    // steps in a row in which the prescribed motion gets no further
+constexpr double kHold = 1e-4;  // of the damping: holds free nodes where a step is asked for its stability
+constexpr int kMostStepsAtRest = 200;  // at the full problem
+constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
+constexpr int kMostWithoutMotion = 3;  // steps in a row in which the prescribed motion gets no further
 
 class DampedPath {
  public:
@@ -86,6 +89,24 @@ class DampedPath {
         settle(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
     objective.damp({}, {});
     is_lost_ = is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost;
+    if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();
+  }
+
+  // Counts the step if its shape is unstable without dampers: the Hessian has a negative eigenvalue.
+  void ask_for_stability() {
+    Objective& objective = problem_.objective;
+    Vector g;
+    objective.damp(Vector::Constant(result_.q.size(), kHold * damping_), result_.q);
+    const double energy = monitor_.hessian(result_.q, g, hessian_, Projection::None);
+    objective.damp({}, {});
+    if (!std::isfinite(energy)) return;
+    PhaseTimer timer(monitor_.phases(), "certificate");
+    if (!factor_) factor_ = problem_.stability.factorisation();
+    if (pattern_version_ != objective.pattern_version()) factor_->analyse(hessian_);
+    pattern_version_ = objective.pattern_version();
+    monitor_.count_factorisation();
+    result_.unstable_steps = std::max(result_.unstable_steps, 0);
+    if (factor_->inertia(hessian_).negative > 0) ++result_.unstable_steps;
   }
 
   // What is pressed together or overstretched gives way in the next steps, up to a limit.
@@ -112,6 +133,9 @@ class DampedPath {
   double residual_ = kInfinity;  // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
   bool is_blocked_ = false, is_lost_ = false;
+  std::unique_ptr<Factorisation> factor_;
+  SparseMatrix hessian_;
+  long pattern_version_ = -1;  // that factor_ has analysed
 };
 
 }  // namespace

@@ -136,6 +136,10 @@ struct Result {
   std::string route;     // how a load without potential was treated, for the user; empty = there was none
   int rounds = 0;        // outer renewals of such a load
   int damped_steps = 0;  // along a damped path, those at the full problem included
+
+  // Of a damped path: steps at the full problem whose shape is unstable without dampers, so that the ways of
+  // neighbours part there; -1 where nobody looked, as where no certificate is asked for.
+  int unstable_steps = -1;
   EvaluationCounts evaluations;
   long factorisations = 0;
   std::vector<TermReport> terms;

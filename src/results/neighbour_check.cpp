@@ -14,7 +14,14 @@ constexpr int kLongWay = 40;
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels) {
   NeighbourCheck check;
-  if (solver != "newton" || result.status != Status::Converged || result.damped_steps > 0) return check;
+  if (result.status != Status::Converged) return check;
+  if (result.damped_steps > 0) {
+    check.is_made = result.unstable_steps >= 0;
+    check.unstable_steps = std::max(result.unstable_steps, 0);
+    check.is_suspected = check.unstable_steps > 0;
+    return check;
+  }
+  if (solver != "newton") return check;
   check.is_made = true;
   check.iterates = result.iterations;
   for (const CascadeLevel& level : levels)
@@ -25,6 +32,11 @@ NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
 
 std::string neighbour_warning(const NeighbourCheck& check) {
   if (!check.is_suspected) return "";
+  if (check.unstable_steps > 0)
+    return "This shape may be one of several: the damped path to it is unstable in " +
+           std::to_string(check.unstable_steps) + (check.unstable_steps == 1 ? " step" : " steps") +
+           " under the full load, where small changes may lead to other equilibria, with other figures. Look "
+           "for them with --branches 5.";
   return "This shape may be one of several: the solve took " + std::to_string(check.iterates) +
          " iterations, and most valves that take so many have other equilibria near by, with other figures. "
          "Look for them with --branches 5.";

@@ -12,12 +12,14 @@ namespace coapt {
 struct NeighbourCheck {
   bool is_made = false;       // false: the method's iterates do not tell
   bool is_suspected = false;  // other equilibria
-  int iterates = 0;           // of the longest way on one mesh
+  int iterates = 0;           // of the longest way on one mesh; 0 along a damped path
+  int unstable_steps = 0;     // Result::unstable_steps; 0 of a solve at once
 };
 
-// From the iterates that newton needed. A long way is one over kinks, snaps and turns: where it ends, small
-// changes decide. The way of a damped path is long by design, and is not judged. A suspicion, no proof either
-// way; docs/decisions/010-branches.md has its hit rate, and why no look around the equilibrium does better.
+// Of a solve at once from the iterates that newton needed: a long way is one over kinks, snaps and turns, and
+// where it ends, small changes decide. Along a damped path, by any method, from the steps at the full problem
+// that are unstable without dampers: there the ways of neighbours part. A suspicion, no proof either way;
+// docs/decisions/010-branches.md and 019-damped-path.md have the hit rates.
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels);
 

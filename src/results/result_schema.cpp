@@ -183,10 +183,13 @@ OrderedJson branch_changes() {
 }
 
 OrderedJson neighbours() {
-  return object({{"judged", flag("the iterates of the method tell; those of newton do")},
-                 {"suspected", flag("there may be other equilibria near by: --branches looks for them")},
-                 {"iterates", count("of the longest way on one mesh, which the suspicion is drawn from")}},
-                "whether the way to the result suggests other equilibria; no proof either way");
+  return object(
+      {{"judged", flag("the iterates of the method tell; those of newton do")},
+       {"suspected", flag("there may be other equilibria near by: --branches looks for them")},
+       {"iterates",
+        count("of the longest way on one mesh, of a solve at once, which its suspicion is drawn from")},
+       {"unstable_steps", count("of a damped path under the full load, which its suspicion is drawn from")}},
+      "whether the way to the result suggests other equilibria; no proof either way");
 }
 
 OrderedJson undetermined_nodes_schema() {

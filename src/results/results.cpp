@@ -312,7 +312,8 @@ std::string result_json(const Model& model, const Report& report) {
   json["warnings"] = report.warnings;
   json["neighbours"] = {{"judged", report.neighbours.is_made},
                         {"suspected", report.neighbours.is_suspected},
-                        {"iterates", report.neighbours.iterates}};
+                        {"iterates", report.neighbours.iterates},
+                        {"unstable_steps", report.neighbours.unstable_steps}};
   json["undetermined_nodes"] = undetermined_json(result.certificate, report.branches);
   if (report.branches) json["branches"] = branches_json(*report.branches);
   // Names come from files and may hold bytes that are not UTF-8: replace those instead of failing.

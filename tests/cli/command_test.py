@@ -104,13 +104,14 @@ class CommandTest(CommandCase):
         self.assertEqual(branches["equilibria"][0]["energy_mj"], result["energy_mj"])
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
-        # The way of a damped path is long by design, that of a solve at once is judged.
-        self.assertEqual(result["neighbours"], {"judged": False, "suspected": False, "iterates": 0})
+        # A damped path is judged by its steps, a solve at once by its iterations.
+        self.assertEqual(result["neighbours"], {"judged": True, "suspected": False, "iterates": 0, "unstable_steps": 0})
         self.assertEqual(coapt("solve", scene, "--no-report", "--damped-steps", 0).returncode, 0)
         direct = self.result()
         self.assertEqual(direct["damped_steps"], 0)
         self.assertGreater(result["damped_steps"], 20)
-        self.assertEqual(direct["neighbours"], {"judged": True, "suspected": False, "iterates": direct["iterations"]})
+        self.assertEqual(direct["neighbours"], {"judged": True, "suspected": False, "iterates": direct["iterations"],
+                                                "unstable_steps": 0})
         nodes = result["undetermined_nodes"]
         self.assertEqual(nodes["free"], len(result["certificate"]["free_nodes"]))
         self.assertEqual(nodes["total"], nodes["free"] + nodes["differing"])

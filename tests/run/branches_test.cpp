@@ -158,6 +158,15 @@ TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {
   EXPECT_NE(neighbour_warning(by_level).find("--branches 5"), std::string::npos);
   result.iterations = 400;
   EXPECT_TRUE(check_neighbours("newton", result, {}).is_suspected);
+  Result damped = result;
+  damped.damped_steps = 24;
+  EXPECT_FALSE(check_neighbours("newton", damped, {}).is_made) << "nobody looked at its steps";
+  damped.unstable_steps = 0;
+  EXPECT_TRUE(check_neighbours("newton", damped, {}).is_made);
+  EXPECT_EQ(neighbour_warning(check_neighbours("newton", damped, {})), "");
+  damped.unstable_steps = 2;
+  EXPECT_NE(neighbour_warning(check_neighbours("dynamic", damped, {})).find("unstable in 2 steps"),
+            std::string::npos);
   EXPECT_FALSE(check_neighbours("lbfgs", result, {}).is_made);  // its iterates are many everywhere
   EXPECT_FALSE(check_neighbours("lbfgs", result, {}).is_suspected);
   result.status = Status::Stalled;
