@@ -41,7 +41,7 @@ void assembly(benchmark::State& state, Law law, Projection projection) {
     terms.push_back(make_follower_pressure("pressure", X, t, -sheet.pressure, sheet.fixed));
   Objective objective(X, sheet.fixed, std::move(terms));
   objective.use_threads(static_cast<int>(state.range(1)));
-  if (objective.has_circulatory_force()) objective.follow_path(objective.unknowns(X));
+  if (objective.has_circulatory_force()) objective.set_path_anchor(objective.unknowns(X));
 
   // Waves along and across, so that all regimes occur side by side.
   Points x = X;

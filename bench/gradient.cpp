@@ -44,7 +44,7 @@ std::unique_ptr<Objective> valve_objective(int triangles, bool bare, Load load) 
   if (load == Load::Follower)
     terms.push_back(make_follower_pressure("pressure", X, t, -sheet.pressure, sheet.fixed));
   auto objective = std::make_unique<Objective>(X, sheet.fixed, std::move(terms));
-  if (objective->has_circulatory_force()) objective->follow_path(objective->unknowns(X));
+  if (objective->has_circulatory_force()) objective->set_path_anchor(objective->unknowns(X));
   return objective;
 }
 

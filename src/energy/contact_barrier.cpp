@@ -202,7 +202,7 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     return limit;
   }
 
-  bool stiffen(const Points& x) override {
+  bool escalate_stiffness(const Points& x) override {
     prepare(x);
     bool is_too_soft = false;
     for (size_t k = 0; k < candidates_.rest.size() && !is_too_soft; ++k)

@@ -139,7 +139,7 @@ class LoadPressureFollower final : public EnergyTerm, public TermAccess {
     set_fans({fans_.data(), fans_.data() + fans_.size()});
   }
 
-  bool renew(const Points& x) override {
+  bool rebuild_potential(const Points& x) override {
     std::vector<int> fan_corners;
     for (const auto& rim : rims_) {
       if (rim.size() < 3) continue;
@@ -192,7 +192,7 @@ class LoadPressureFollower final : public EnergyTerm, public TermAccess {
   std::vector<std::vector<int>> rims_;     // those that move, in the direction of the facets
   std::vector<std::array<int, 2>> edges_;  // of the rims
   FacetVolume::Rest rest_;
-  Triangles fans_;                                  // none until renew()
+  Triangles fans_;                                  // none until rebuild_potential()
   std::optional<ElementTerm<FacetVolume>> closed_;  // surface and fans
   std::unique_ptr<LoadPressureFollower> simplest_;  // without the fans; none where there are none
 };

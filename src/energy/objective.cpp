@@ -145,10 +145,10 @@ double Objective::step_limit(const Points& x, const Points& d, double most) {
   return most;
 }
 
-bool Objective::stiffen(const Vector& q) {
+bool Objective::escalate_stiffness(const Vector& q) {
   prepare(q);
   bool is_stiffer = false;
-  for (const auto& term : terms_) is_stiffer = term->stiffen(x_) || is_stiffer;
+  for (const auto& term : terms_) is_stiffer = term->escalate_stiffness(x_) || is_stiffer;
   if (is_stiffer) pattern_is_current_ = scale_is_current_ = false;
   return is_stiffer;
 }
@@ -309,16 +309,16 @@ void Objective::add_skew_product(const Vector& v, Vector& product) const {
   for (const int unknown : pattern_.masked()) product[unknown] = 0;
 }
 
-void Objective::hold_dead(const Vector& q) {
+void Objective::lag_circulatory_force(const Vector& q) {
   prepare(q);
   for (const auto& term : terms_)
-    if (term->has_circulatory_force() && term->renew(x_)) pattern_is_current_ = false;
+    if (term->has_circulatory_force() && term->rebuild_potential(x_)) pattern_is_current_ = false;
   scale_is_current_ = false;
   circulatory_ = Circulatory::HeldDead;
   circulatory_force(x_, remainder_);
 }
 
-void Objective::follow_path(const Vector& q) {
+void Objective::set_path_anchor(const Vector& q) {
   prepare(q);
   for (const auto& term : terms_)
     if (term->simplify()) pattern_is_current_ = false;

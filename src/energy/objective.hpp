@@ -146,9 +146,9 @@ class Objective {
   double step_limit(const Points& x, const Points& d, double most);
 
   // Whether a term became stiffer, as the state q shows that it was too soft.
-  bool stiffen(const Vector& q);
+  bool escalate_stiffness(const Vector& q);
 
-  // Takes back what stiffen() did, so that a solve does not depend on those before it.
+  // Takes back what escalate_stiffness() did, so that a solve does not depend on those before it.
   void restore_stiffness();
 
   // --- Loads without a potential --------------------------------------------------------------------
@@ -161,8 +161,8 @@ class Objective {
   //   remainder along the way from q (Simpson's rule, exact for pressure along a straight step), so that it
   //   falls along any step that the force drives. It is a merit for a line search from q, not a function of
   //   the position alone. The Hessian is the symmetric part of the exact tangent.
-  void hold_dead(const Vector& q);
-  void follow_path(const Vector& q);
+  void lag_circulatory_force(const Vector& q);
+  void set_path_anchor(const Vector& q);
 
   // Adds the product of v with the skew part of the exact tangent at the last Hessian evaluation, which that
   // Hessian lacks. Nothing to add unless the path is followed.

@@ -30,7 +30,7 @@ std::unique_ptr<Objective> Objective::part(const Vector& q, const std::vector<in
     part->damp(damping, from);
   }
   part->scale_.give(reference_force(q));
-  if (circulatory_ == Circulatory::PathWork) part->follow_path(part->unknowns(part->x_));
+  if (circulatory_ == Circulatory::PathWork) part->set_path_anchor(part->unknowns(part->x_));
   return part;
 }
 

@@ -101,10 +101,10 @@ class EnergyTerm {
   virtual void add_circulatory_tangent(const Points& /*x*/, std::vector<TangentBlock>& /*blocks*/) const {}
 
   // Chooses the potential anew. Both return whether the stencils changed.
-  //   renew: for positions near x, to make the remainder vary as little as possible (for solvers that hold
-  //          the remainder dead)
+  //   rebuild_potential: for positions near x, to make the remainder vary as little as possible (for solvers
+  //          that hold the remainder)
   //   simplify: the one with the fewest elements (for solvers that take the remainder as it is)
-  virtual bool renew(const Points& /*x*/) { return false; }
+  virtual bool rebuild_potential(const Points& /*x*/) { return false; }
   virtual bool simplify() { return false; }
 
   // The same load with the potential that simplify() chooses: for what may not depend on the choice, not even
@@ -122,9 +122,9 @@ class EnergyTerm {
 
   // Makes the term stiffer where the state at x shows that it is too soft to be trusted. Returns whether it
   // did: then the energy is another one.
-  virtual bool stiffen(const Points& /*x*/) { return false; }
+  virtual bool escalate_stiffness(const Points& /*x*/) { return false; }
 
-  // Takes back what stiffen() did. Returns whether it had done anything.
+  // Takes back what escalate_stiffness() did. Returns whether it had done anything.
   virtual bool restore_stiffness() { return false; }
 
   // The elements that touch a node which moves, as a term of its own in the numbers of the part: its

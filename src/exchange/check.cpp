@@ -5,7 +5,7 @@
 #include "formats/mesh_io.hpp"
 #include "mesh/mesh_check.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene.hpp"
 
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ std::optional<Model> load(const std::filesystem::path& scene_file, CheckReport& 
     return std::nullopt;
   }
   try {
-    const Groundwork ground = lay_groundwork(*scene);
+    const SceneGeometry ground = scene_geometry(*scene);
     Model model = build(*scene, ground);
     append(report.warnings, model.warnings);
     append(report.warnings, valve_doubts(*scene, ground, model));

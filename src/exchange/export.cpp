@@ -8,7 +8,7 @@
 #include "formats/lower_extension.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 
 namespace coapt {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kClosed = "_closed";
 
 Markup markup_of(const Scene& scene, const std::string& what) {
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   if (!ground.defects.empty()) throw InputError(ground.defects);
   const Model& model = ground.model;
   const bool is_closed = what.ends_with(kClosed) && !model.sets.contains(what);
@@ -41,7 +41,7 @@ Markup markup_of(const Scene& scene, const std::string& what) {
 std::vector<std::string> export_mesh(const std::filesystem::path& from, const std::filesystem::path& out) {
   MeshFile file;
   if (formats::lower_extension(from) == ".json") {
-    const Groundwork ground = lay_groundwork(load_scene(from));
+    const SceneGeometry ground = scene_geometry(load_scene(from));
     if (!ground.defects.empty()) throw InputError(ground.defects);
     file.mesh = ground.model.mesh;
     if (file.mesh.triangle_count() == 0) throw InputError(from.string() + ": has no mesh to export");

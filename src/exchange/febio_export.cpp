@@ -5,7 +5,7 @@
 #include "exchange/detail/febio_laws.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "formats/xml_escaped.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Domain {
 
 class FebioWriter {
  public:
-  explicit FebioWriter(const Scene& scene) : scene_(scene), ground_(lay_groundwork(scene)) {
+  explicit FebioWriter(const Scene& scene) : scene_(scene), ground_(scene_geometry(scene)) {
     if (!ground_.defects.empty()) throw InputError(ground_.defects);
   }
 
@@ -355,7 +355,7 @@ class FebioWriter {
       "<fric_coeff>0</fric_coeff></contact>\n";
 
   const Scene& scene_;
-  Groundwork ground_;
+  SceneGeometry ground_;
   std::vector<const TermSpec*> membranes_, cables_, pressures_;
   bool has_contact_ = false, has_stations_ = false;
   std::vector<Domain> domains_;

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "formats/json/read_json.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ void copy_window(const Parameters& from, Parameters& to) {
 }
 
 // Modulus and thickness at small strain, of a law that springs do not have.
-void set_small_strain(const TermSpec& membrane, const Scene& scene, const Groundwork& ground,
+void set_small_strain(const TermSpec& membrane, const Scene& scene, const SceneGeometry& ground,
                       Parameters& springs) {
   Scene alone = scene;
   alone.terms = {membrane};
@@ -73,7 +73,7 @@ void set_small_strain(const TermSpec& membrane, const Scene& scene, const Ground
   if (membrane.parameters.has("region")) springs.set("region", membrane.parameters.texts("region"));
 }
 
-TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<Groundwork>& ground) {
+TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<SceneGeometry>& ground) {
   const Parameters& p = membrane.parameters;
   if (p.number_or("prestress", 0) != 0)
     throw InputError(p.where("prestress") + ": springs have none; mass-spring needs a membrane without");
@@ -82,7 +82,7 @@ TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<
   if (copy_law(membrane, springs)) {
     copy_window(p, springs);
   } else {
-    if (!ground) ground = lay_groundwork(scene);
+    if (!ground) ground = scene_geometry(scene);
     set_small_strain(membrane, scene, *ground, springs);
   }
   return {"spring", membrane.name, std::move(springs)};
@@ -94,7 +94,7 @@ Scene mass_spring_scene(const Scene& scene) {
   Scene springs = scene;
   springs.terms.clear();
   springs.solver.type = "dynamic";
-  std::optional<Groundwork> ground;  // read when a law asks for it
+  std::optional<SceneGeometry> ground;  // read when a law asks for it
   std::vector<std::string> defects;
   for (const TermSpec& term : scene.terms) {
     if (is_bending(term)) continue;

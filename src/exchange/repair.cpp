@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/distance/separate.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ RepairReport repair(const std::filesystem::path& scene_file, RepairMethod method
   RepairReport report;
   const auto contact = std::find_if(scene.terms.begin(), scene.terms.end(), is_barrier);
   if (contact == scene.terms.end() || !scene.mesh) return report;
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   const Model& model = ground.model;
   const Triangles facets = all_facets(model);
   SeparationOptions options;

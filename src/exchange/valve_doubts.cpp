@@ -7,13 +7,13 @@
 namespace coapt {
 namespace {
 
-Vec3 end_of_path(int node, const Groundwork& ground) {
+Vec3 end_of_path(int node, const SceneGeometry& ground) {
   const auto path = ground.prescribed.paths.find(node);
   return path == ground.prescribed.paths.end() ? Vec3(ground.model.X.col(node)) : path->second.back();
 }
 
 // All networks as one, at the positions of the model.
-ChordNetwork joined_networks(const Groundwork& ground) {
+ChordNetwork joined_networks(const SceneGeometry& ground) {
   ChordNetwork all;
   std::vector<int> tips, junctions;  // nodes
   for (const auto& [path, placed] : ground.networks) {
@@ -55,7 +55,7 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
   return doubts;
 }
 
-std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model) {
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& ground, const Model& model) {
   const auto annulus = ground.model.sets.find("annulus");
   if (!scene.mesh || annulus == ground.model.sets.end() || annulus->second.empty()) return {};
   Valve valve;

@@ -2,7 +2,7 @@
 // room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 
 #include <string>
 #include <vector>
@@ -14,6 +14,6 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
 
 // Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
 // chords nothing where interventions edit them. Pre: model is built of it.
-std::vector<std::string> valve_doubts(const Scene& scene, const Groundwork& ground, const Model& model);
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& ground, const Model& model);
 
 }  // namespace coapt

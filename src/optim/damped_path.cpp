@@ -38,8 +38,8 @@ class DampedPath {
     while (!has_ended() && !is_at_rest());
     objective.scale(1, 1);
     if (!has_ended()) {
-      outcome_.status =
-          settle(solver_, objective, result_.q, monitor_, stop_.tolerance, result_.rounds, outcome_.note);
+      outcome_.status = solve_rounds(solver_, objective, result_.q, monitor_, stop_.tolerance, result_.rounds,
+                                     outcome_.note);
     } else {
       outcome_.is_on_the_way = true;
       if (outcome_.note.empty())
@@ -86,7 +86,7 @@ class DampedPath {
     if (is_blocked_) return;
     objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
     outcome_.status =
-        settle(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
+        solve_rounds(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
     objective.damp({}, {});
     is_lost_ = is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost;
     if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();

@@ -2,7 +2,7 @@
 // that it comes to.
 #pragma once
 
-#include "optim/path_following.hpp"
+#include "optim/continuation.hpp"
 
 namespace coapt {
 

@@ -1,6 +1,6 @@
 #include "optim/move_prescribed.hpp"
 
-#include "optim/carry_along.hpp"
+#include "optim/harmonic_extension.hpp"
 
 #include <cmath>
 #include <exception>

@@ -1,12 +1,12 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "optim/bfgs.hpp"
+#include "optim/continuation.hpp"
 #include "optim/damped_path.hpp"
 #include "optim/dynamic/dynamic.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/monitor.hpp"
 #include "optim/newton.hpp"
-#include "optim/path_following.hpp"
 #include "optim/solver.hpp"
 #include "optim/stability/film_size.hpp"
 #include "optim/stability/stationary_point.hpp"
@@ -84,7 +84,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
   }
   // The potential around the final state, so that the energy depends on that state alone and not on the
   // way that a solver took to it.
-  if (objective.has_circulatory_force()) objective.hold_dead(result.q);
+  if (objective.has_circulatory_force()) objective.lag_circulatory_force(result.q);
   result.terms = objective.breakdown(result.q);
   result.energy = 0;
   for (const TermReport& term : result.terms) result.energy += term.energy;
@@ -108,7 +108,7 @@ void judge(const Outcome& outcome, const Solver& solver, const Problem& problem,
 bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result& result) {
   const Vector& mode = result.certificate.stability.descent;
   if (result.status != Status::Converged || mode.size() == 0) return false;
-  if (objective.has_circulatory_force()) objective.follow_path(result.q);
+  if (objective.has_circulatory_force()) objective.set_path_anchor(result.q);
   const double energy = monitor.value(result.q), wanted = energy - monitor.energy_noise(energy);
   const double first = (1 + attempt / 2) * kFirstKick * objective.extent(result.q);  // NOLINT: whole pairs
   const double forward = attempt % 2 == 0 ? 1 : -1;
@@ -177,8 +177,8 @@ void settle_down(Solver& solver, const Problem& problem, const StopRule& stop, M
     Result unstable = result;
     if (!leave_unstable(problem.objective, attempt, monitor, result)) break;
     Outcome outcome;
-    outcome.status =
-        settle(solver, problem.objective, result.q, monitor, stop.tolerance, result.rounds, outcome.note);
+    outcome.status = solve_rounds(solver, problem.objective, result.q, monitor, stop.tolerance, result.rounds,
+                                  outcome.note);
     if (outcome.status == Status::NoEquilibrium) {
       ++lost;
       result = std::move(unstable);
@@ -269,7 +269,7 @@ Found run_solver(Solver& solver, const Problem& problem, const StopRule& stop, M
   const Vector start = result.q;
   Outcome& outcome = found.outcome;
   const bool is_damped = problem.continuation.damped_steps > 0 && solver.minimises_objective();
-  outcome = (is_damped ? follow_damped_path : follow_path)(solver, problem, stop, monitor, result);
+  outcome = (is_damped ? follow_damped_path : run_continuation)(solver, problem, stop, monitor, result);
   outcome.status = turn_and_minimize(solver, objective, result.q, monitor, stop, outcome.status);
   if (outcome.status == Status::NoEquilibrium) {
     outcome.note = watch.reason();

@@ -59,7 +59,7 @@ struct PageSeries {
   std::string name = {};
   std::vector<PagePoint> points = {};  // in the order of the line
   bool is_joined = true;               // by a line
-  int kin = -1;  // series of one number share a colour, and differ by mark and dashes; below 0: none is kin
+  int group = -1;  // series of one group share a colour, and differ by mark and dashes; below 0: in none
 };
 
 enum class Scale { Linear, Logarithmic };

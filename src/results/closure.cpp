@@ -19,7 +19,7 @@ double cell_size(double extent, double mean_edge, double contact_distance) {
 }
 
 // All that is looked at while the figures are taken.
-struct Scenery {
+struct ClosedShape {
   const Model& model;
   const Fields& fields;
   Points surface, annulus;  // of the closed state
@@ -40,7 +40,7 @@ struct Scenery {
   bool is_contact(int vertex) const { return fields.is_contact[static_cast<size_t>(vertex)] != 0; }
 };
 
-Scenery look(const Model& model, const Fields& fields) {
+ClosedShape closed_shape(const Model& model, const Fields& fields) {
   const std::vector<int>& loop = *annulus_of(model);
   const ViewFrame frame = annulus_frame(model, fields, loop);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
@@ -69,15 +69,15 @@ std::vector<int> open_place(const TopView& view, int node, std::vector<char>& se
   return place;
 }
 
-void find_orifices(const Scenery& scenery, Closure& closure) {
-  const TopView& view = scenery.view;
+void find_orifices(const ClosedShape& shape, Closure& closure) {
+  const TopView& view = shape.view;
   const double cell_area = view.cell * view.cell;
   std::vector<char> seen(static_cast<size_t>(view.node_count()), 0);
   for (Outline& outline : open_outlines(view)) {
     Orifice orifice{std::move(outline), 0};
     if (orifice.outline.area > 0)
       for (const int node : open_place(view, orifice.outline.open_node, seen))
-        if (!std::isfinite(scenery.closed.height[static_cast<size_t>(node)]))
+        if (!std::isfinite(shape.closed.height[static_cast<size_t>(node)]))
           orifice.regurgitant_area_mm2 += cell_area;
     closure.regurgitant_area_mm2 += orifice.regurgitant_area_mm2;
     if (std::abs(orifice.outline.area) >= kSmallestOutline * cell_area)
@@ -95,22 +95,22 @@ double rim_height(const Closure& closure) {
   return length > 0 ? weighted / length : 0;
 }
 
-void measure_tenting_volume(const Scenery& scenery, Closure& closure) {
-  const TopView& view = scenery.view;
+void measure_tenting_volume(const ClosedShape& shape, Closure& closure) {
+  const TopView& view = shape.view;
   const double rim = rim_height(closure), cell_area = view.cell * view.cell;
   for (int node = 0; node < view.node_count(); ++node) {
     const auto n = static_cast<size_t>(node);
     if (!view.is_inside[n]) continue;
-    const bool is_hole = !std::isfinite(scenery.closed.height[n]);
-    const double height = is_hole ? rim : scenery.closed.height[n];
+    const bool is_hole = !std::isfinite(shape.closed.height[n]);
+    const double height = is_hole ? rim : shape.closed.height[n];
     const int column = node % view.columns, row = node / view.columns;
     const double x = view.x0 + column * view.cell, y = view.y0 + row * view.cell;
-    const double volume = std::max(0.0, scenery.spanned.height(x, y) - height) * cell_area;
+    const double volume = std::max(0.0, shape.spanned.height(x, y) - height) * cell_area;
     closure.tenting_volume_mm3 += volume;
     if (is_hole) continue;
-    const int top = scenery.top(n);
+    const int top = shape.top(n);
     if (top < 0) continue;
-    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(scenery.region(top))];
+    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(shape.region(top))];
     leaflet.tenting_volume_mm3 += volume;
   }
 }
@@ -124,19 +124,19 @@ Points thinned(const Points& polygon, Eigen::Index count) {
 }
 
 // By vertex, so that nothing depends on the view but which of them lie within the annulus.
-void measure_prolapse(const Scenery& scenery, Closure& closure) {
-  const TopView& view = scenery.view;
-  const Points plan = in_frame(scenery.surface, view.frame);
-  const Points annulus = thinned(in_frame(scenery.annulus, view.frame), 128);
-  for (int t = 0; t < scenery.model.mesh.triangle_count(); ++t) {
-    double& highest = closure.leaflets[static_cast<size_t>(scenery.region(t))].prolapse_height_mm;
-    for (const int v : scenery.model.mesh.triangles.col(t)) {
+void measure_prolapse(const ClosedShape& shape, Closure& closure) {
+  const TopView& view = shape.view;
+  const Points plan = in_frame(shape.surface, view.frame);
+  const Points annulus = thinned(in_frame(shape.annulus, view.frame), 128);
+  for (int t = 0; t < shape.model.mesh.triangle_count(); ++t) {
+    double& highest = closure.leaflets[static_cast<size_t>(shape.region(t))].prolapse_height_mm;
+    for (const int v : shape.model.mesh.triangles.col(t)) {
       const Vec3 p = plan.col(v);
       const double i = std::round((p[0] - view.x0) / view.cell), j = std::round((p[1] - view.y0) / view.cell);
       if (i < 0 || j < 0 || i >= view.columns || j >= view.rows) continue;
       if (!view.is_inside[static_cast<size_t>(j * view.columns + i)]) continue;
       // The highest chord is nowhere below the spanned surface, which is quick to ask.
-      if (p[2] - scenery.spanned.height(p[0], p[1]) <= highest) continue;
+      if (p[2] - shape.spanned.height(p[0], p[1]) <= highest) continue;
       const double chord = highest_chord(annulus, p[0], p[1]);
       if (std::isfinite(chord)) highest = std::max(highest, p[2] - chord);
     }
@@ -145,24 +145,24 @@ void measure_prolapse(const Scenery& scenery, Closure& closure) {
 }
 
 // Nodes near which, seen from above, a vertex is in contact: a bulge may hide where contact begins.
-std::vector<char> near_contact(const Scenery& scenery) {
-  const TopView& view = scenery.view;
-  const Points plan = in_frame(scenery.surface, view.frame);
+std::vector<char> near_contact(const ClosedShape& shape) {
+  const TopView& view = shape.view;
+  const Points plan = in_frame(shape.surface, view.frame);
   std::vector<char> marked(static_cast<size_t>(view.node_count()), 0);
   for (Eigen::Index v = 0; v < plan.cols(); ++v) {
-    if (!scenery.is_contact(static_cast<int>(v))) continue;
+    if (!shape.is_contact(static_cast<int>(v))) continue;
     const double i = std::round((plan(0, v) - view.x0) / view.cell),
                  j = std::round((plan(1, v) - view.y0) / view.cell);
     if (i >= 0 && j >= 0 && i < view.columns && j < view.rows)
       marked[static_cast<size_t>(j * view.columns + i)] = 1;
   }
   const double extent = view.cell * std::max(view.columns, view.rows);
-  const double reach = std::max(extent / 20, mean_edge_length(scenery.surface, scenery.model.mesh.triangles));
+  const double reach = std::max(extent / 20, mean_edge_length(shape.surface, shape.model.mesh.triangles));
   return near_marked(view, marked, static_cast<int>(std::ceil(reach / view.cell)));
 }
 
-double depth_of(const Scenery& scenery, const Vec3& point) {
-  return std::max(0.0, -(point - scenery.view.frame.centre).dot(scenery.view.frame.up));
+double depth_of(const ClosedShape& shape, const Vec3& point) {
+  return std::max(0.0, -(point - shape.view.frame.centre).dot(shape.view.frame.up));
 }
 
 using WeightedDepth = std::pair<double, double>;  // depth and length of a stretch
@@ -178,29 +178,29 @@ double ninth_decile_depth(std::vector<WeightedDepth> depths) {
 }
 
 // Without a line: the greatest depth of what is seen.
-void measure_seen_depth(const Scenery& scenery, Closure& closure) {
+void measure_seen_depth(const ClosedShape& shape, Closure& closure) {
   const auto deepen = [](double& depth, double candidate) { depth = std::max(depth, candidate); };
-  for (size_t n = 0; n < scenery.closed.height.size(); ++n) {
-    const int top = scenery.top(n);
-    if (!scenery.view.is_inside[n] || top < 0) continue;
-    deepen(closure.tenting_height_mm, -scenery.closed.height[n]);
-    deepen(closure.leaflets[static_cast<size_t>(scenery.region(top))].tenting_height_mm,
-           -scenery.closed.height[n]);
+  for (size_t n = 0; n < shape.closed.height.size(); ++n) {
+    const int top = shape.top(n);
+    if (!shape.view.is_inside[n] || top < 0) continue;
+    deepen(closure.tenting_height_mm, -shape.closed.height[n]);
+    deepen(closure.leaflets[static_cast<size_t>(shape.region(top))].tenting_height_mm,
+           -shape.closed.height[n]);
   }
 }
 
 // Depth of the coaptation line below the annulus plane. Its ends dive where they reach an orifice: not the
 // deepest place counts, but the ninth decile of the length.
-void measure_tenting_height(const Scenery& scenery, Closure& closure) {
-  if (closure.line.empty()) return measure_seen_depth(scenery, closure);
+void measure_tenting_height(const ClosedShape& shape, Closure& closure) {
+  if (closure.line.empty()) return measure_seen_depth(shape, closure);
   std::vector<WeightedDepth> all;
   std::vector<std::vector<WeightedDepth>> of_leaflet(closure.leaflets.size());
   for (const Seam& seam : closure.line)
     for (size_t k = 0; k < seam.triangles.size(); ++k) {
       const Vec3 a = seam.points.col(static_cast<Eigen::Index>(k)),
                  b = seam.points.col(static_cast<Eigen::Index>(k) + 1);
-      const WeightedDepth stretch = {depth_of(scenery, 0.5 * (a + b)), (b - a).norm()};
-      const int one = scenery.region(seam.triangles[k][0]), other = scenery.region(seam.triangles[k][1]);
+      const WeightedDepth stretch = {depth_of(shape, 0.5 * (a + b)), (b - a).norm()};
+      const int one = shape.region(seam.triangles[k][0]), other = shape.region(seam.triangles[k][1]);
       all.push_back(stretch);
       of_leaflet[static_cast<size_t>(one)].push_back(stretch);
       if (other != one) of_leaflet[static_cast<size_t>(other)].push_back(stretch);
@@ -211,58 +211,58 @@ void measure_tenting_height(const Scenery& scenery, Closure& closure) {
 }
 
 // Vertices in contact of one leaflet, or of all (-1), each once.
-std::vector<Vec3> contact_of(const Scenery& scenery, int region) {
-  const TriangleMesh& mesh = scenery.model.mesh;
+std::vector<Vec3> contact_of(const ClosedShape& shape, int region) {
+  const TriangleMesh& mesh = shape.model.mesh;
   std::vector<char> taken(static_cast<size_t>(mesh.vertex_count()), 0);
   std::vector<Vec3> points;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
-    if (region >= 0 && scenery.region(t) != region) continue;
+    if (region >= 0 && shape.region(t) != region) continue;
     for (const int v : mesh.triangles.col(t)) {
-      if (!scenery.is_contact(v) || taken[static_cast<size_t>(v)]) continue;
+      if (!shape.is_contact(v) || taken[static_cast<size_t>(v)]) continue;
       taken[static_cast<size_t>(v)] = 1;
-      points.push_back(scenery.surface.col(v));
+      points.push_back(shape.surface.col(v));
     }
   }
   return points;
 }
 
-void measure_line(const Scenery& scenery, Closure& closure) {
-  const double mean_edge = mean_edge_length(scenery.surface, scenery.model.mesh.triangles);
-  const double shortest = std::max(2 * scenery.fields.contact_distance, 2 * mean_edge);
-  closure.line = seams(scenery.view, scenery.closed, scenery.surface, scenery.model.mesh.triangles,
-                       {near_contact(scenery), scenery.radius, shortest});
+void measure_line(const ClosedShape& shape, Closure& closure) {
+  const double mean_edge = mean_edge_length(shape.surface, shape.model.mesh.triangles);
+  const double shortest = std::max(2 * shape.fields.contact_distance, 2 * mean_edge);
+  closure.line = seams(shape.view, shape.closed, shape.surface, shape.model.mesh.triangles,
+                       {near_contact(shape), shape.radius, shortest});
   for (const Seam& seam : closure.line) {
     closure.coaptation_length_mm += length_of(seam);
     for (size_t k = 0; k < seam.triangles.size(); ++k) {
       const auto c = static_cast<Eigen::Index>(k);
       const double length = (seam.points.col(c + 1) - seam.points.col(c)).norm();
-      const int a = scenery.region(seam.triangles[k][0]), b = scenery.region(seam.triangles[k][1]);
+      const int a = shape.region(seam.triangles[k][0]), b = shape.region(seam.triangles[k][1]);
       closure.leaflets[static_cast<size_t>(a)].coaptation_length_mm += length;
       if (b != a) closure.leaflets[static_cast<size_t>(b)].coaptation_length_mm += length;
     }
   }
   const double spacing = std::max(2 * mean_edge, closure.coaptation_length_mm / 400);
   const std::vector<Station> places = stations(closure.line, spacing);
-  const std::vector<double> heights = heights_at(places, contact_of(scenery, -1), spacing);
+  const std::vector<double> heights = heights_at(places, contact_of(shape, -1), spacing);
   closure.local_height = heights_along(closure.line, places, heights);
   closure.coaptation_height_mm = ninth_decile(heights);
   for (size_t r = 0; r < closure.leaflets.size(); ++r)
     closure.leaflets[r].coaptation_height_mm =
-        ninth_decile(heights_at(places, contact_of(scenery, static_cast<int>(r)), spacing));
+        ninth_decile(heights_at(places, contact_of(shape, static_cast<int>(r)), spacing));
 }
 
-void measure_areas(const Scenery& scenery, Closure& closure) {
-  const TriangleMesh& mesh = scenery.model.mesh;
-  const Vector contact = contact_areas(scenery.model, scenery.fields);
+void measure_areas(const ClosedShape& shape, Closure& closure) {
+  const TriangleMesh& mesh = shape.model.mesh;
+  const Vector contact = contact_areas(shape.model, shape.fields);
   for (int t = 0; t < mesh.triangle_count(); ++t) {
-    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(scenery.region(t))];
-    leaflet.area_open_mm2 += area_vector(scenery.model.X, mesh.triangles.col(t)).norm();
-    leaflet.area_closed_mm2 += area_vector(scenery.surface, mesh.triangles.col(t)).norm();
+    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(shape.region(t))];
+    leaflet.area_open_mm2 += area_vector(shape.model.X, mesh.triangles.col(t)).norm();
+    leaflet.area_closed_mm2 += area_vector(shape.surface, mesh.triangles.col(t)).norm();
     leaflet.contact_area_mm2 += contact[t];
-    leaflet.contact_facets += scenery.fields.is_contact_facet[static_cast<size_t>(t)];
+    leaflet.contact_facets += shape.fields.is_contact_facet[static_cast<size_t>(t)];
   }
   for (size_t r = 0; r < closure.leaflets.size(); ++r)
-    closure.leaflets[r].contact_vertices = static_cast<long>(contact_of(scenery, static_cast<int>(r)).size());
+    closure.leaflets[r].contact_vertices = static_cast<long>(contact_of(shape, static_cast<int>(r)).size());
 }
 
 }  // namespace
@@ -275,18 +275,18 @@ ViewFrame annulus_frame(const Model& model, const Fields& fields, const std::vec
 }
 
 Closure closure_of(const Model& model, const Fields& fields) {
-  const Scenery scenery = look(model, fields);
+  const ClosedShape shape = closed_shape(model, fields);
   Closure closure;
-  closure.cell = scenery.view.cell;
-  closure.leaflets.resize(scenery.region_count());
+  closure.cell = shape.view.cell;
+  closure.leaflets.resize(shape.region_count());
   for (size_t r = 0; r < model.mesh.region_names.size(); ++r)
     closure.leaflets[r].name = model.mesh.region_names[r];
-  find_orifices(scenery, closure);
-  measure_tenting_volume(scenery, closure);
-  measure_prolapse(scenery, closure);
-  measure_line(scenery, closure);
-  measure_tenting_height(scenery, closure);
-  measure_areas(scenery, closure);
+  find_orifices(shape, closure);
+  measure_tenting_volume(shape, closure);
+  measure_prolapse(shape, closure);
+  measure_line(shape, closure);
+  measure_tenting_height(shape, closure);
+  measure_areas(shape, closure);
   if (model.mesh.regions.empty()) closure.leaflets.clear();
   return closure;
 }

@@ -23,7 +23,7 @@ void write_study(const std::filesystem::path& folder, const std::string& name, c
   formats::write_whole(folder / (name + ".csv"), csv);
 }
 
-std::ostringstream csv_begun(const std::string& header) {
+std::ostringstream csv_with_header(const std::string& header) {
   std::ostringstream out;
   out.precision(12);
   out << header << '\n';

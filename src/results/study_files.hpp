@@ -22,6 +22,6 @@ OrderedJson number_json(const std::optional<double>& value);
 OrderedJson distances_json(const DistanceFigures& distance);
 
 // A table with its first line, of 12 digits.
-std::ostringstream csv_begun(const std::string& header);
+std::ostringstream csv_with_header(const std::string& header);
 
 }  // namespace coapt

@@ -7,7 +7,7 @@
 #include "results/frames.hpp"
 #include "run/run_parts.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 
 #include <iterator>
@@ -22,7 +22,7 @@ bool wants_page(const Scene& scene, const RunOptions& options) {
   return options.writes && options.writes_page.value_or(scene.writes_page);
 }
 
-SolvedRun solve_run(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+SolvedRun solve_run(const Scene& scene, const SceneGeometry& ground, Model& model, SolveSetup setup,
                     bool keeps_way, const Points* start) {
   std::optional<ShapeRecord> record;
   if (keeps_way && has_shape_view()) {
@@ -90,7 +90,7 @@ void write_run(const RunReport& run) {
     std::filesystem::remove(page, ignored);  // of an earlier solve
 }
 
-void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,
+void run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
                RunReport& run, const Points* start) {
   Model& model = run.model;
   // Only now: a scene that is refused leaves no folder behind.
@@ -121,7 +121,7 @@ void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, c
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   RunReport run;
   SolveSetup setup = solve_setup(scene, solvers, options);
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   run.model = build(scene, ground);
   run_built(scene, ground, std::move(setup), options, run);
   return run;

@@ -24,13 +24,13 @@ SolveSetup given_setup(const Scene& scene, const Given& given, const SolverTable
   return setup;
 }
 
-Groundwork given_ground(const Scene& scene, Given& given) {
-  return given.mesh ? lay_groundwork(scene, std::move(*given.mesh)) : lay_groundwork(scene);
+SceneGeometry given_ground(const Scene& scene, Given& given) {
+  return given.mesh ? scene_geometry(scene, std::move(*given.mesh)) : scene_geometry(scene);
 }
 
 RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options) {
   SolveSetup setup = given_setup(scene, given, solvers, options);
-  const Groundwork ground = given_ground(scene, given);
+  const SceneGeometry ground = given_ground(scene, given);
   RunReport run;
   run.model = build(scene, ground, given.terms);
   if (given.observer) setup.observer = given.observer(run.model);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "run/run.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 
 namespace coapt {
@@ -16,7 +16,7 @@ struct SolvedRun {
 };
 
 // Solves as solve_scene() does, or from `start` as solve_again(). keeps_way: a page will show it.
-SolvedRun solve_run(const Scene& scene, const Groundwork& ground, Model& model, SolveSetup setup,
+SolvedRun solve_run(const Scene& scene, const SceneGeometry& ground, Model& model, SolveSetup setup,
                     bool keeps_way, const Points* start = nullptr);
 
 // What a report says beside what is measured.
@@ -42,7 +42,7 @@ SolveSetup given_setup(const Scene& scene, const Given& given, const SolverTable
                        const RunOptions& options);
 
 // Of the mesh that is given, which is taken out of it, or of the scene's own.
-Groundwork given_ground(const Scene& scene, Given& given);
+SceneGeometry given_ground(const Scene& scene, Given& given);
 
 // A given start, 3 x node_count, relative to the model's origin. Throws InputError for another number of
 // nodes and for coordinates that are not finite.
@@ -50,7 +50,7 @@ Points relative_start(const Eigen::Map<const Points>& start, const Model& model)
 
 // All that run() does with run.model once it is built; start: 3 x node_count, relative to the model's origin,
 // or null for the scene's own.
-void run_built(const Scene& scene, const Groundwork& ground, SolveSetup setup, const RunOptions& options,
+void run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
                RunReport& run, const Points* start = nullptr);
 
 }  // namespace coapt

@@ -36,7 +36,7 @@ double TargetAttraction::evaluate(const Points& x, Sink& sink) const {
   double energy = 0;
   for (int e = 0; e < stencils_.count(); ++e) {
     const int node = stencils_.nodes[static_cast<size_t>(e)];
-    const Foot foot = target_->surface.closest(x.col(node), directions_.col(e));
+    const ClosestPoint foot = target_->surface.closest(x.col(node), directions_.col(e));
     const Vec3 way = x.col(node) - foot.point;
     const double stiffness = stiffness_ * areas_[e];
     energy += 0.5 * stiffness * way.squaredNorm();

@@ -93,13 +93,13 @@ Points TrackedEquilibrium::prescribed() const {
 }
 
 double TrackedEquilibrium::residual_at(const Vector& q) {
-  if (objective_.has_circulatory_force()) objective_.follow_path(q);
+  if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
   return objective_.true_residual(q);
 }
 
 void TrackedEquilibrium::ready_tangent() {
   if (is_tangent_ready_) return;
-  if (objective_.has_circulatory_force()) objective_.follow_path(q_);
+  if (objective_.has_circulatory_force()) objective_.set_path_anchor(q_);
   if (!system_.assemble(objective_, q_, g_) || (!system_.has_factor() && !system_.factorise(objective_, q_)))
     throw InputError("equilibrium: the tangent is singular or not finite, derivatives are not defined here");
   is_tangent_ready_ = true;
@@ -197,7 +197,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report)
   if (objective_.step_limit(x, predicted, 1) < 1) return false;
   objective_.prescribe(x + predicted);
   q_ = objective_.unknowns(x + predicted);
-  if (objective_.has_circulatory_force()) objective_.follow_path(q_);
+  if (objective_.has_circulatory_force()) objective_.set_path_anchor(q_);
   if (!std::isfinite(objective_.gradient(q_, g_)) || !g_.allFinite()) return false;
   Vector direction, next_q, next_g;
   for (report.iterations = 0;; ++report.iterations) {

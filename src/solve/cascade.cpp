@@ -4,8 +4,8 @@
 #include "mesh/distance/separate.hpp"
 #include "mesh/remesh/prolong.hpp"
 #include "scene/build/build.hpp"
+#include "scene/build/coarsen_scene.hpp"
 #include "scene/build/contact_pairs.hpp"
-#include "scene/build/thinning.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -46,7 +46,7 @@ CoarsenOptions narrowed(const CoarsenOptions& finest, const Step& last) {
 }
 
 // From fine to coarse.
-std::vector<Step> coarser_meshes(const Scene& scene, const Groundwork& ground) {
+std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& ground) {
   std::vector<Step> steps;
   steps.reserve(kMostCoarseMeshes);
   const TriangleMesh* mesh = &ground.model.mesh;
@@ -170,7 +170,7 @@ struct Start {
   Points x;
   Status status = Status::Converged;
 };
-std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground,
+std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& ground,
                                   const Continuation& continuation, Cascade& cascade) {
   const std::vector<Step> steps = coarser_meshes(scene, ground);
   if (steps.empty()) {
@@ -184,7 +184,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground,
         "The mesh of " + std::to_string(mesh.triangle_count()) + " triangles of the cascade ";
     std::string failure;
     try {
-      Model model = build(scene, thinned(ground, mesh, steps[k].kept));
+      Model model = build(scene, coarsened(ground, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
       if (!is_coarsest && !make_startable(start.x, model))
         throw InputError("the shape found on a coarser one passes through itself there");
@@ -213,7 +213,7 @@ std::optional<Start> coarse_start(const Scene& scene, const Groundwork& ground,
 
 }  // namespace
 
-CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
+CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& ground, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer,
                              const StabilityOptions& stability) {

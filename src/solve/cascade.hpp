@@ -2,7 +2,7 @@
 #pragma once
 
 #include "results/cascade_level.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 
 #include <functional>
 #include <memory>
@@ -19,7 +19,7 @@ using SolverMaker = std::function<std::unique_ptr<Solver>(const Model& model)>;
 // its iterations for each level. The observer sees the iterates of every level, whose unknowns are those of
 // that level. ground, model: of the scene's own mesh, whose result gets the certificate that `stability` asks
 // for.
-CascadeOutcome solve_cascade(const Scene& scene, const Groundwork& ground, Model& model,
+CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& ground, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer = {},
                              const StabilityOptions& stability = {});

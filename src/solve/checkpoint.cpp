@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/number_text.hpp"
-#include "formats/json/sealed_json.hpp"
+#include "formats/json/checksummed_cbor.hpp"
 #include "formats/whole_file.hpp"
 
 #include <algorithm>

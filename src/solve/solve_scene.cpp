@@ -99,7 +99,7 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   return setup;
 }
 
-CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
+CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& ground, Model& model,
                            const SolveSetup& setup) {
   if (scene.solver.cascade)
     return solve_cascade(scene, ground, model, setup.make_solver, setup.stop, setup.continuation,

@@ -26,7 +26,7 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
 
 // From the scene's own start, by the cascade where the scene wants one; levels are empty where it does not.
 // ground, model: of the scene's own mesh.
-CascadeOutcome solve_scene(const Scene& scene, const Groundwork& ground, Model& model,
+CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& ground, Model& model,
                            const SolveSetup& setup);
 
 // Along the model's own motion and the continuation of the setup on this mesh alone, from the free

@@ -30,19 +30,19 @@ double longest_pause(const Result& result) {
   return std::max(longest, result.wall_s - last);
 }
 
-StressOutcome failure(const Stressed& solved, const std::string& message) {
+StressOutcome failure(const StressRun& solved, const std::string& message) {
   return outcome_of(solved, StressVerdict::Fail, message);
 }
 
 }  // namespace
 
-StressScene stress_scene(const Scene& scene) { return {scene, lay_groundwork(scene)}; }
+StressScene stress_scene(const Scene& scene) { return {scene, scene_geometry(scene)}; }
 
 StressScene copy_of(const StressScene& subject) {
   StressScene copy;
   copy.scene = subject.scene;
-  const Groundwork& from = subject.ground;
-  Groundwork& to = copy.ground;
+  const SceneGeometry& from = subject.ground;
+  SceneGeometry& to = copy.ground;
   to.model.origin = from.model.origin;
   to.model.X = from.model.X;
   to.model.mesh = from.model.mesh;
@@ -58,15 +58,15 @@ StressScene copy_of(const StressScene& subject) {
   return copy;
 }
 
-void StressBench::check(const StressScene& subject) const {
+void StressRunner::check(const StressScene& subject) const {
   RunOptions run;
   run.factorisations = options_.factorisations;
   solve_setup(subject.scene, options_.solvers, run);
   build(subject.scene, subject.ground);
 }
 
-Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) const {
-  Stressed solved;
+StressRun StressRunner::solve(const StressScene& subject, const StressSolve& how) const {
+  StressRun solved;
   solved.seconds = how.seconds.value_or(options_.row_seconds);
   solved.promises_contact = promises_contact(subject.scene);
   RunOptions run;
@@ -106,7 +106,7 @@ Stressed StressBench::solve(const StressScene& subject, const StressSolve& how) 
   return solved;
 }
 
-StressOutcome outcome_of(const Stressed& solved, StressVerdict verdict, std::string message) {
+StressOutcome outcome_of(const StressRun& solved, StressVerdict verdict, std::string message) {
   StressOutcome outcome{verdict, {}, {}, std::move(message)};
   outcome.status = status_name(solved.result.status);
   outcome.residual = solved.result.residual;
@@ -123,7 +123,7 @@ long intersection_count(const Model& model, const Points& x, const IntersectionJ
                        [&](const std::array<int, 2>& pair) { return std::min(pair[0], pair[1]) < own; });
 }
 
-std::optional<StressOutcome> untruth(const Stressed& solved, double tolerance) {
+std::optional<StressOutcome> untruth(const StressRun& solved, double tolerance) {
   const Result& result = solved.result;
   if (!solved.x.allFinite()) return failure(solved, "positions are not finite");
   if (!std::isfinite(result.energy) || !std::isfinite(result.residual))
@@ -144,7 +144,7 @@ std::optional<StressOutcome> untruth(const Stressed& solved, double tolerance) {
   return std::nullopt;
 }
 
-std::optional<StressOutcome> not_converged(const Stressed& solved, double tolerance) {
+std::optional<StressOutcome> not_converged(const StressRun& solved, double tolerance) {
   if (auto wrong = untruth(solved, tolerance)) return wrong;
   if (solved.result.status == Status::Converged) return std::nullopt;
   return outcome_of(solved, StressVerdict::Stall, solved.result.message);
@@ -157,7 +157,7 @@ double fresh_residual(const StressScene& subject, const Points& x) {
   return model.objective->true_residual(problem.q0);
 }
 
-StressOutcome measured(const Stressed& solved, double figure, double limit, const std::string& message) {
+StressOutcome measured(const StressRun& solved, double figure, double limit, const std::string& message) {
   const bool holds = figure <= limit;  // false for what is not a number
   StressOutcome outcome = outcome_of(solved, holds ? StressVerdict::Pass : StressVerdict::Fail,
                                      holds ? solved.result.message : message);

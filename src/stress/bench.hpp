@@ -3,7 +3,7 @@
 #pragma once
 
 #include "optim/run_record.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "stress/stress.hpp"
 
 #include <string>
@@ -13,7 +13,7 @@ namespace coapt {
 // A scene and its nodes, before it has terms. What is done to either is not seen by the file.
 struct StressScene {
   Scene scene;
-  Groundwork ground;
+  SceneGeometry ground;
 };
 
 // Throws InputError.
@@ -34,7 +34,7 @@ struct StressSolve {
   std::function<void(Model&)> edit = {};  // changes the model before the solve; may be empty
 };
 
-struct Stressed {
+struct StressRun {
   Model model;
   Result result;
   Points x;                             // the last state, relative to the model's origin [mm]
@@ -46,16 +46,16 @@ struct Stressed {
   bool promises_contact = false;
 };
 
-class StressBench {
+class StressRunner {
  public:
-  explicit StressBench(StressOptions options = {}) : options_(std::move(options)) {}
+  explicit StressRunner(StressOptions options = {}) : options_(std::move(options)) {}
 
   const StressOptions& options() const { return options_; }
   bool has_solver(const std::string& name) const { return options_.solvers.contains(name); }
 
   // Throws InputError where the scene cannot be built, or asks for what this build has not.
   void check(const StressScene& subject) const;
-  Stressed solve(const StressScene& subject, const StressSolve& how = {}) const;
+  StressRun solve(const StressScene& subject, const StressSolve& how = {}) const;
 
  private:
   StressOptions options_;
@@ -65,20 +65,20 @@ class StressBench {
 long intersection_count(const Model& model, const Points& x, const IntersectionJudge& judge);
 
 // The outcome with status, residual and iterations of the solve.
-StressOutcome outcome_of(const Stressed& solved, StressVerdict verdict, std::string message);
+StressOutcome outcome_of(const StressRun& solved, StressVerdict verdict, std::string message);
 
 // A failure where something that is said or promised is not true: numbers that are not finite, a residual
 // above the tolerance that is called converged, no reason given, a time limit that was not kept,
 // intersections in spite of a barrier. Else nothing.
-std::optional<StressOutcome> untruth(const Stressed& solved, double tolerance);
+std::optional<StressOutcome> untruth(const StressRun& solved, double tolerance);
 
 // The same, and the stall of what did not converge. Nothing: it did.
-std::optional<StressOutcome> not_converged(const Stressed& solved, double tolerance);
+std::optional<StressOutcome> not_converged(const StressRun& solved, double tolerance);
 
 // The relative residual of x in the scene as it is, terms made anew; not a number where terms change with
 // what they have seen (a barrier that was stiffened), as theirs is then another energy.
 double fresh_residual(const StressScene& subject, const Points& x);
 
 // A pass where figure <= limit, else a failure with the message; the figure stands in both.
-StressOutcome measured(const Stressed& solved, double figure, double limit, const std::string& message);
+StressOutcome measured(const StressRun& solved, double figure, double limit, const std::string& message);
 }  // namespace coapt

@@ -164,7 +164,7 @@ Points random_move(Draw& draw, const FixedMask& fixed, double extent) {
 StressOutcome moved_as_far_as_contact_lets(StressSubject& subject) {
   constexpr int kMoves = 100, kLooks = 4;
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  Stressed& own = own_solution(subject);
+  StressRun& own = own_solution(subject);
   Objective& objective = *own.model.objective;
   if (objective.step_limiting_term() == nullptr)
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no barrier that promises anything"};

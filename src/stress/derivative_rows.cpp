@@ -74,7 +74,7 @@ StressOutcome derivative_by_chord(StressSubject& subject) {
   const StressScene scene = with_a_potential(own_scene(subject));
   if (scene.ground.networks.empty())
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
-  const Stressed solved = subject.bench.solve(scene);
+  const StressRun solved = subject.bench.solve(scene);
   if (auto outcome = not_converged(solved, tolerance_of(scene))) return *outcome;
   if (solved.model.objective->step_limiting_term() != nullptr)
     return {StressVerdict::NotApplicable, {}, {}, "where contact changes there is no such derivative"};
@@ -85,7 +85,7 @@ StressOutcome derivative_by_chord(StressSubject& subject) {
   });
   std::optional<StressOutcome> missed;
   const double found = central_difference(kStepSolved * place->elongation, [&](double by) {
-    const Stressed near = subject.bench.solve(with_longer_chord(scene, *place, by), {.start = &solved.x});
+    const StressRun near = subject.bench.solve(with_longer_chord(scene, *place, by), {.start = &solved.x});
     if (auto outcome = not_converged(near, tolerance_of(scene))) missed = outcome;
     return near.result.energy;
   });

@@ -4,7 +4,7 @@
 #include "formats/whole_file.hpp"
 #include "results/results.hpp"
 #include "stress/draw.hpp"
-#include "stress/energy_judge.hpp"
+#include "stress/energy_checker.hpp"
 #include "stress/scenes/built_in.hpp"
 #include "stress/scenes/small_scene.hpp"
 #include "stress/subject.hpp"
@@ -25,7 +25,7 @@ SmallScene random_scene(int number) {
 }
 
 // What is wrong with the solve of a scene; empty: nothing.
-std::string defect_of(const Stressed& solved, const StressScene& scene, bool has_one_potential) {
+std::string defect_of(const StressRun& solved, const StressScene& scene, bool has_one_potential) {
   const Result& result = solved.result;
   // Loads and stiffnesses of any size may overflow at the start: then that is what is said.
   if (result.status == Status::NonFinite && solved.x.allFinite() && !result.message.empty()) return "";
@@ -38,7 +38,7 @@ struct SmallScenes {
   std::string first;  // what is wrong with the first that is broken
 };
 
-void solve_one(const StressBench& bench, const std::filesystem::path& folder, int number,
+void solve_one(const StressRunner& bench, const std::filesystem::path& folder, int number,
                SmallScenes& tally) {
   const SmallScene small = random_scene(number);
   std::filesystem::path place = folder / "any";
@@ -51,7 +51,7 @@ void solve_one(const StressBench& bench, const std::filesystem::path& folder, in
   std::string defect;
   try {
     const StressScene scene = stress_scene(load_scene(place / "scene.json"));
-    const Stressed solved = bench.solve(scene);
+    const StressRun solved = bench.solve(scene);
     ++tally.solved;
     tally.converged += solved.result.status == Status::Converged ? 1 : 0;
     tally.judged += small.has_one_potential ? 1 : 0;
@@ -68,7 +68,7 @@ void solve_one(const StressBench& bench, const std::filesystem::path& folder, in
   if (tally.first.empty()) tally.first = "scenes/S21/" + std::to_string(number) + ": " + defect;
 }
 
-StressOutcome random_scenes(const StressBench& bench, int count) {
+StressOutcome random_scenes(const StressRunner& bench, int count) {
   const StressOptions& options = bench.options();
   SmallScenes tally;
   for (int k = 0; k < count && !(options.is_cancelled && options.is_cancelled()); ++k)
@@ -82,7 +82,7 @@ StressOutcome random_scenes(const StressBench& bench, int count) {
   return outcome;
 }
 
-StressRow random_row(const StressBench& bench, int count, bool is_quick) {
+StressRow random_row(const StressRunner& bench, int count, bool is_quick) {
   return {"S21",
           "random scenes",
           std::to_string(count) + " of at most 18 triangles",
@@ -93,7 +93,7 @@ StressRow random_row(const StressBench& bench, int count, bool is_quick) {
 }
 
 // Why the energies of the trace are not all of one potential; empty: they are.
-std::string other_potential(const Stressed& own, const Scene& scene) {
+std::string other_potential(const StressRun& own, const Scene& scene) {
   Objective& objective = *own.model.objective;
   if (objective.has_circulatory_force()) return "a pressure on a free edge has no potential";
   if (objective.step_limiting_term() != nullptr) return "the barrier may be stiffened on the way";
@@ -103,7 +103,7 @@ std::string other_potential(const Stressed& own, const Scene& scene) {
 }
 
 StressOutcome own_descent(StressSubject& subject) {
-  const Stressed& own = own_solution(subject);
+  const StressRun& own = own_solution(subject);
   const StressScene& scene = own_scene(subject);
   if (auto wrong = untruth(own, tolerance_of(scene))) return *wrong;
   const std::string other = other_potential(own, scene.scene);
@@ -114,7 +114,7 @@ StressOutcome own_descent(StressSubject& subject) {
 
 }  // namespace
 
-std::vector<StressRow> random_scene_rows(const StressBench& bench) {
+std::vector<StressRow> random_scene_rows(const StressRunner& bench) {
   return {random_row(bench, 100, true), random_row(bench, 2000, false)};
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBarredSeconds = 2;  // for a run that creeps up to where it cannot go on
 
 // The greatest way of a node that no support carries along [mm].
-double way_gone(const Stressed& solved, const Points& x, const Points& rest) {
+double way_gone(const StressRun& solved, const Points& x, const Points& rest) {
   const FixedMask& fixed = solved.model.objective->fixed();
   double farthest = 0;
   for (Eigen::Index node = 0; node < x.cols(); ++node)
@@ -23,13 +23,13 @@ double way_gone(const Stressed& solved, const Points& x, const Points& rest) {
 StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const std::string& solver) {
   if (auto outcome = no_yardstick(subject)) return *outcome;
   const Points& rest = own_scene(subject).ground.model.X;
-  const Stressed& own = own_solution(subject);
+  const StressRun& own = own_solution(subject);
   const double farthest = (own.x - rest).colwise().norm().maxCoeff();
   if (way_gone(own, own.x, rest) == 0)
     return {
         StressVerdict::NotApplicable, {}, {}, "nothing moves in the solution but what supports carry along"};
   const std::optional<double> seconds = part < 1 ? std::optional(kBarredSeconds) : std::nullopt;
-  const Stressed solved = subject.bench.solve(
+  const StressRun solved = subject.bench.solve(
       own_scene(subject), {.solver = solver, .seconds = seconds, .edit = [&](Model& model) {
                              make_faulty(model, fault, part * farthest);
                            }});

@@ -12,12 +12,12 @@ namespace {
 
 // What is solved in other units goes the same way but for round-off. That may leave a residual on either side
 // of the tolerance; and a run out of time says nothing.
-bool ends_otherwise(const Stressed& solved, const Stressed& own, double tolerance) {
+bool ends_otherwise(const StressRun& solved, const StressRun& own, double tolerance) {
   return own.result.status == Status::Converged && solved.result.status != Status::Converged &&
          solved.result.status != Status::TimeLimit && solved.result.residual > kResidualSlack * tolerance;
 }
 
-bool is_as_long(const Stressed& solved, const Stressed& own) {
+bool is_as_long(const StressRun& solved, const StressRun& own) {
   constexpr double kShare = 0.2, kFew = 2;
   return std::abs(solved.result.iterations - own.result.iterations) <=
          std::max(kFew, kShare * own.result.iterations);
@@ -26,8 +26,8 @@ bool is_as_long(const Stressed& solved, const Stressed& own) {
 StressOutcome in_another_frame(StressSubject& subject, const StressFrame& frame) {
   if (const std::string obstacle = frame_obstacle(own_scene(subject), frame); !obstacle.empty())
     return {StressVerdict::NotApplicable, {}, {}, obstacle};
-  const Stressed solved = subject.bench.solve(in_frame(own_scene(subject), frame));
-  const Stressed& own = own_solution(subject);
+  const StressRun solved = subject.bench.solve(in_frame(own_scene(subject), frame));
+  const StressRun& own = own_solution(subject);
   const bool judges_way = subject.same_way && (frame.length != 1 || frame.stress != 1);
   if (judges_way && ends_otherwise(solved, own, tolerance_of(own_scene(subject))))
     return outcome_of(solved, StressVerdict::Fail,
@@ -52,7 +52,7 @@ StressRow row(const SubjectPointer& subject, const char* id, const std::string& 
 }
 
 StressOutcome with_triangles_turned_over(StressSubject& subject) {
-  const Stressed solved = subject.bench.solve(turned_over(own_scene(subject)));
+  const StressRun solved = subject.bench.solve(turned_over(own_scene(subject)));
   return same_shape_as_own(subject, solved, solved.x);
 }
 
@@ -60,7 +60,7 @@ StressOutcome in_another_order(StressSubject& subject) {
   if (const std::string obstacle = numbering_obstacle(own_scene(subject)); !obstacle.empty())
     return {StressVerdict::NotApplicable, {}, {}, obstacle};
   const Renumbered other = renumbered(own_scene(subject));
-  const Stressed solved = subject.bench.solve(other.scene);
+  const StressRun solved = subject.bench.solve(other.scene);
   return same_shape_as_own(subject, solved, other.back(solved.x));
 }
 

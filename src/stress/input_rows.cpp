@@ -52,7 +52,7 @@ size_t file_count(const fs::path& folder) {
 }
 
 // Solves the scene, as `coapt solve` does; what is wrong with its refusal.
-std::string refusal_defect(const StressBench& bench, const fs::path& folder,
+std::string refusal_defect(const StressRunner& bench, const fs::path& folder,
                            const std::vector<std::string>& said) {
   const size_t before = file_count(folder);
   RunOptions options;
@@ -97,13 +97,13 @@ std::string scene_for(const BadMesh& mesh) {
   return text;
 }
 
-fs::path new_folder(const StressBench& bench, const std::string& name) {
+fs::path new_folder(const StressRunner& bench, const std::string& name) {
   fs::path folder = bench.options().folder / "scenes" / name;
   prepare_result_folder(folder);
   return folder;
 }
 
-StressOutcome shown_meshes(const StressBench& bench) {
+StressOutcome shown_meshes(const StressRunner& bench) {
   const fs::path folder = new_folder(bench, "S20_meshes");
   Tally tally;
   for (const BadMesh& mesh : bad_meshes()) {
@@ -120,7 +120,7 @@ StressOutcome shown_meshes(const StressBench& bench) {
   return tally.outcome("meshes, refused, warned of or taken as they must be");
 }
 
-StressOutcome shown_scenes(const StressBench& bench) {
+StressOutcome shown_scenes(const StressRunner& bench) {
   const fs::path folder = new_folder(bench, "S20_scenes");
   formats::write_whole(folder / "mesh.obj", kSoundMesh);
   formats::write_whole(folder / "far.json", R"({"units": "mm", "papillary": [[0, 0, -1]], "junctions": [],
@@ -219,7 +219,7 @@ StressOutcome with_nulls(StressSubject& subject) {
 
 }  // namespace
 
-std::vector<StressRow> bad_input_rows(const StressBench& bench) {
+std::vector<StressRow> bad_input_rows(const StressRunner& bench) {
   return {
       {"S20", "bad input", "meshes", "wrong verdicts", "", true, [bench] { return shown_meshes(bench); }},
       {"S20", "bad input", "scenes", "wrong verdicts", "", true, [bench] { return shown_scenes(bench); }}};

@@ -11,11 +11,11 @@ namespace {
 // it, as by `coapt solve --resume`: also where the supports were still on their way.
 StressOutcome cancelled_and_resumed(StressSubject& subject, double part) {
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  const Stressed& own = own_solution(subject);
+  const StressRun& own = own_solution(subject);
   const int most = std::max(1, static_cast<int>(part * own.result.iterations));
   int seen = 0;
   RunRecorder first({}, kInfinity, {});
-  const Stressed stopped = subject.bench.solve(
+  const StressRun stopped = subject.bench.solve(
       own_scene(subject),
       {.observer = [&](const Iteration&, const Vector&) { return ++seen < most; }, .recorder = &first});
   if (auto wrong = untruth(stopped, tolerance_of(own_scene(subject)))) return *wrong;
@@ -26,7 +26,7 @@ StressOutcome cancelled_and_resumed(StressSubject& subject, double part) {
     return outcome_of(stopped, StressVerdict::Fail,
                       "went on for " + std::to_string(seen - most) + " states after it was cancelled");
   RunRecorder second(first.record(), kInfinity, {});
-  const Stressed resumed = subject.bench.solve(own_scene(subject), {.recorder = &second});
+  const StressRun resumed = subject.bench.solve(own_scene(subject), {.recorder = &second});
   return same_shape_as_own(subject, resumed, resumed.x);
 }
 
@@ -34,7 +34,7 @@ StressOutcome cancelled_and_resumed(StressSubject& subject, double part) {
 StressOutcome out_of_time(StressSubject& subject, double part) {
   constexpr double kLate = 1;  // [s]
   const double seconds = std::max(1e-6, part * own_solution(subject).wall_s);
-  const Stressed solved = subject.bench.solve(own_scene(subject), {.seconds = seconds});
+  const StressRun solved = subject.bench.solve(own_scene(subject), {.seconds = seconds});
   if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) return *wrong;
   const Status status = solved.result.status;
   if (status != Status::TimeLimit && status != Status::Converged)

@@ -15,7 +15,7 @@ constexpr int kEvery = 10;  // vertices for one that is moved
 
 StressOutcome solved_anew(StressSubject& subject, const StressScene& changed) {
   const double tolerance = tolerance_of(own_scene(subject));
-  const Stressed solved = subject.bench.solve(changed);
+  const StressRun solved = subject.bench.solve(changed);
   if (auto outcome = not_converged(solved, tolerance)) return *outcome;
   double residual = fresh_residual(changed, solved.x);
   if (std::isnan(residual)) residual = solved.result.residual;  // of a barrier that was stiffened on the way

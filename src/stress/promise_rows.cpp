@@ -11,7 +11,7 @@ StressOutcome intersections_on_the_way(StressSubject& subject, double load) {
       load == 1 ? copy_of(own_scene(subject)) : with_energy_scaled(own_scene(subject), load, is_load);
   if (pressed.ground.model.mesh.triangle_count() == 0)
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no facets"};
-  const Stressed solved = subject.bench.solve(pressed, {.judges_every_state = true});
+  const StressRun solved = subject.bench.solve(pressed, {.judges_every_state = true});
   if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) {
     wrong->figure = static_cast<double>(solved.intersections);
     wrong->limit = 0;
@@ -45,7 +45,7 @@ StressRow intersection_row(const SubjectPointer& subject, const char* id, const 
 StressOutcome balance(StressSubject& subject) {
   constexpr double kLimit = 1e-10;
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  const Stressed& own = own_solution(subject);
+  const StressRun& own = own_solution(subject);
   const Certificate& certificate = own.result.certificate;
   if (!certificate.is_balance_clear)
     return {StressVerdict::NotApplicable,

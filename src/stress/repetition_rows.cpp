@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDiffering = "numbers that differ";
 
-double differing_numbers(const Stressed& a, const Stressed& b) {
+double differing_numbers(const StressRun& a, const StressRun& b) {
   double different = (a.x.array() != b.x.array()).cast<double>().sum();
   if (a.result.energy != b.result.energy) ++different;
   if (a.result.residual != b.result.residual) ++different;
@@ -23,11 +23,11 @@ double differing_numbers(const Stressed& a, const Stressed& b) {
 }
 
 // What is stopped by the clock is not stopped at the same state.
-bool is_out_of_time(const Stressed& solved) { return solved.result.status == Status::TimeLimit; }
+bool is_out_of_time(const StressRun& solved) { return solved.result.status == Status::TimeLimit; }
 
 StressOutcome same_bits(StressSubject& subject) {
-  const Stressed& own = own_solution(subject);
-  const Stressed solved = subject.bench.solve(own_scene(subject));
+  const StressRun& own = own_solution(subject);
+  const StressRun solved = subject.bench.solve(own_scene(subject));
   if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) return *wrong;
   if (is_out_of_time(own) || is_out_of_time(solved))
     return outcome_of(solved, StressVerdict::Stall, solved.result.message);
@@ -105,11 +105,11 @@ StressOutcome same_bits_on_threads(StressSubject& subject) {
         "no term has more than one batch of " + std::to_string(kBatch) + " elements: threads get no work"};
   scene.scene.solver.cascade = false;
   scene.scene.solver.max_iterations = std::min(scene.scene.solver.max_iterations, kIterations);
-  std::optional<Stressed> one;
+  std::optional<StressRun> one;
   double different = 0;
   for (const int threads : {1, 2, 4, 8}) {
     scene.scene.solver.threads = threads;
-    Stressed solved = subject.bench.solve(scene, {.solver = "newton"});
+    StressRun solved = subject.bench.solve(scene, {.solver = "newton"});
     if (auto wrong = untruth(solved, tolerance_of(scene))) return *wrong;
     if (is_out_of_time(solved)) return outcome_of(solved, StressVerdict::Stall, solved.result.message);
     if (one)
@@ -136,7 +136,7 @@ std::vector<StressRow> repetition_rows(const SubjectPointer& subject) {
                     [subject, solver]() -> StressOutcome {
                       if (own_scene(*subject).scene.solver.type == solver)
                         return {StressVerdict::NotApplicable, {}, {}, "it is the scene's own solver"};
-                      const Stressed solved = subject->bench.solve(own_scene(*subject), {.solver = solver});
+                      const StressRun solved = subject->bench.solve(own_scene(*subject), {.solver = solver});
                       return same_shape_as_own(*subject, solved, solved.x);
                     }});
   }

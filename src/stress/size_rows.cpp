@@ -51,7 +51,7 @@ struct Pairs {
 };
 
 // A sheet laid on the same sheet, all of it within the range of contact.
-Pairs pairs_of(const StressBench& bench, int triangles) {
+Pairs pairs_of(const StressRunner& bench, int triangles) {
   const TriangleMesh sheet = square(1, triangles);
   const double gap = 0.3 / std::sqrt(sheet.triangle_count() / 2.0), height = 3 * gap;
   const StressScene scene = written(bench.options().folder / "scenes",
@@ -69,7 +69,7 @@ Pairs pairs_of(const StressBench& bench, int triangles) {
   return {};
 }
 
-StressOutcome pairs_by_facet(const StressBench& bench, int triangles) {
+StressOutcome pairs_by_facet(const StressRunner& bench, int triangles) {
   constexpr int kFewer = 16;
   constexpr double kMost = 1.5;  // a list of all pairs would have sixteen times as many for each facet
   const Pairs few = pairs_of(bench, triangles / kFewer), many = pairs_of(bench, triangles);
@@ -83,7 +83,7 @@ StressOutcome pairs_by_facet(const StressBench& bench, int triangles) {
 
 }  // namespace
 
-std::vector<StressRow> large_scene_rows(const StressBench& bench) {
+std::vector<StressRow> large_scene_rows(const StressRunner& bench) {
   const auto memory = [&](int triangles) -> StressRow {
     return {"S24",
             "disc",

@@ -34,10 +34,10 @@ StressRow shaken_row(const SubjectPointer& subject, double share, bool is_quick)
           is_quick,
           [subject, share]() -> StressOutcome {
             if (auto outcome = no_yardstick(*subject)) return *outcome;
-            Stressed& own = own_solution(*subject);
+            StressRun& own = own_solution(*subject);
             const Points start = admissible(
                 own.model, own.x, shaken(own.x, own.model.objective->fixed(), share * extent_of(*subject)));
-            const Stressed solved = subject->bench.solve(own_scene(*subject), {.start = &start});
+            const StressRun solved = subject->bench.solve(own_scene(*subject), {.start = &start});
             return same_shape_as_own(*subject, solved, solved.x);
           }};
 }
@@ -63,7 +63,7 @@ StressOutcome without_supports(StressSubject& subject) {
     if (!is_used[static_cast<size_t>(node)]) prescribed.fixed.col(node).setConstant(true);
 
   const double tolerance = tolerance_of(own_scene(subject));
-  const Stressed solved = subject.bench.solve(loose);
+  const StressRun solved = subject.bench.solve(loose);
   if (auto wrong = untruth(solved, tolerance)) return *wrong;
   if (solved.result.status == Status::Converged) {
     const double residual = fresh_residual(loose, solved.x);
@@ -78,16 +78,16 @@ StressOutcome with_every_node_held(StressSubject& subject) {
   StressScene held = copy_of(own_scene(subject));
   held.ground.prescribed.fixed.setConstant(true);
   held.ground.prescribed.paths.clear();
-  const Stressed solved = subject.bench.solve(held);
+  const StressRun solved = subject.bench.solve(held);
   if (auto outcome = not_converged(solved, tolerance_of(held))) return *outcome;
   return measured(solved, solved.result.iterations, 0, "looked for what was there already");
 }
 
 // Solved on from the own solution in the changed scene, and from there in the scene as it is.
 StressOutcome there_and_back(StressSubject& subject, const StressScene& changed) {
-  const Stressed there = subject.bench.solve(changed, {.start = &own_solution(subject).x});
+  const StressRun there = subject.bench.solve(changed, {.start = &own_solution(subject).x});
   if (auto outcome = not_converged(there, tolerance_of(own_scene(subject)))) return *outcome;
-  const Stressed back = subject.bench.solve(own_scene(subject), {.start = &there.x});
+  const StressRun back = subject.bench.solve(own_scene(subject), {.start = &there.x});
   return same_shape_as_own(subject, back, back.x);
 }
 

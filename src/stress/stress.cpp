@@ -139,7 +139,7 @@ int StressMatrix::count(StressVerdict verdict) const {
 std::vector<StressRow> stress_rows(const Scene& scene, const StressOptions& options) {
   const auto subject = std::make_shared<StressSubject>();
   subject->name = scene.file.filename().string();
-  subject->bench = StressBench(options);
+  subject->bench = StressRunner(options);
   subject->scene = stress_scene(scene);
   subject->bench.check(*subject->scene);
   return chosen(subject_rows(subject), options);
@@ -147,10 +147,10 @@ std::vector<StressRow> stress_rows(const Scene& scene, const StressOptions& opti
 
 std::vector<StressRow> stress_rows(const StressOptions& options) {
   constexpr double kSameShape = 1e-8;  // over the extent, at the tolerance of the built-in valve
-  const StressBench bench(options);
+  const StressRunner bench(options);
   std::vector<StressRow> rows;
   for (const auto& family :
-       {load_rows, line_rows, sheet_rows, lost_rows, degenerate_rows, folded_rows, tunnelling_rows})
+       {load_rows, line_rows, sheet_rows, no_equilibrium_rows, degenerate_rows, folded_rows, tunnelling_rows})
     for (const BuiltRow& row : family()) rows.push_back(row_of(bench, row));
   append(rows, collision_query_rows());
   for (const auto& family : {bad_input_rows, random_scene_rows, large_scene_rows, coincident_rows})

@@ -108,7 +108,7 @@ PageSection reading_section() {
 std::string stress_json(const StressMatrix& matrix) { return json_text(matrix_json(matrix), 2) + "\n"; }
 
 std::string stress_csv(const StressMatrix& matrix) {
-  std::ostringstream csv = csv_begun(
+  std::ostringstream csv = csv_with_header(
       "id,scene,name,verdict,figure,limit,unit,status,residual,iterations,wall_s,cpu_s,measure,message");
   const auto cell = [&](const std::optional<double>& value) {
     csv << ',';

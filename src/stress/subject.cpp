@@ -15,7 +15,7 @@ Points refined(StressSubject& subject, const Points& x) {
   StressScene finer = copy_of(own_scene(subject));
   const double tolerance = tolerance_of(own_scene(subject));
   finer.scene.solver.tolerance = std::min(tolerance, std::max(kFiner * tolerance, kLeastTolerance));
-  const Stressed solved =
+  const StressRun solved =
       subject.bench.solve(finer, {.solver = subject.bench.has_solver("newton") ? "newton" : "", .start = &x});
   return solved.result.residual <= tolerance && solved.x.allFinite() ? solved.x : x;
 }
@@ -35,7 +35,7 @@ std::vector<int> decided_nodes(const Model& model, const Points& x) {
   return nodes;
 }
 
-double greatest_distance(const Stressed& own, const Points& a, const Points& b) {
+double greatest_distance(const StressRun& own, const Points& a, const Points& b) {
   const std::vector<int> nodes = decided_nodes(own.model, own.x);
   return nodes.empty() ? 0 : (a - b)(Eigen::all, nodes).colwise().norm().maxCoeff();
 }
@@ -47,7 +47,7 @@ const StressScene& own_scene(StressSubject& subject) {
   return *subject.scene;
 }
 
-Stressed& own_solution(StressSubject& subject) {
+StressRun& own_solution(StressSubject& subject) {
   if (!subject.solution) subject.solution = subject.bench.solve(own_scene(subject), {.keeps_way = true});
   return *subject.solution;
 }
@@ -62,7 +62,7 @@ std::optional<StressOutcome> no_yardstick(StressSubject& subject) {
 
 std::optional<ShownSolve> own_solve(const StressSubject& subject) {
   if (!subject.solution || !subject.solution->x.allFinite()) return std::nullopt;
-  const Stressed& own = *subject.solution;
+  const StressRun& own = *subject.solution;
   const Scene& scene = subject.scene->scene;
   Report report;
   report.scene_file = subject.name;
@@ -80,12 +80,12 @@ std::optional<ShownSolve> own_solve(const StressSubject& subject) {
   return shown;
 }
 
-StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x,
+StressOutcome same_shape_as_own(StressSubject& subject, const StressRun& solved, const Points& x,
                                 double energy_unit) {
   const double tolerance = tolerance_of(own_scene(subject));
   if (auto outcome = not_converged(solved, tolerance)) return *outcome;
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  const Stressed& own = own_solution(subject);
+  const StressRun& own = own_solution(subject);
   const double extent = extent_of(subject), limit = subject.same_shape;
   double figure = greatest_distance(own, x, own.x) / extent;
   std::string note = solved.result.message;

@@ -9,12 +9,12 @@ namespace coapt {
 
 struct StressSubject {
   std::string name;  // in the table
-  StressBench bench;
+  StressRunner bench;
   std::function<StressScene()> make;  // called once
   double same_shape = 1e-6;           // distance that counts as none, over the extent
   bool same_way = false;              // judges status and number of iterations in other units too
   std::optional<StressScene> scene = {};
-  std::optional<Stressed> solution = {};
+  std::optional<StressRun> solution = {};
 };
 using SubjectPointer = std::shared_ptr<StressSubject>;
 
@@ -24,7 +24,7 @@ inline constexpr double kResidualSlack =
 
 // The scene as it is and its solution, each made when it is first asked for. The former throws InputError.
 const StressScene& own_scene(StressSubject& subject);
-Stressed& own_solution(StressSubject& subject);
+StressRun& own_solution(StressSubject& subject);
 
 double extent_of(StressSubject& subject);  // diagonal of the box around all nodes at rest [mm]
 
@@ -35,7 +35,7 @@ std::optional<ShownSolve> own_solve(const StressSubject& subject);
 // the origin there [mm]; energy_unit: what an energy there is in the solve. Figure: the largest distance of a
 // node from where it is in the own solution, over the extent. Where that is above the limit both are solved
 // on to a smaller residual first, so that a loose tolerance is not taken for another answer.
-StressOutcome same_shape_as_own(StressSubject& subject, const Stressed& solved, const Points& x,
+StressOutcome same_shape_as_own(StressSubject& subject, const StressRun& solved, const Points& x,
                                 double energy_unit = 1);
 
 // The outcome where the scene itself is no yardstick, as it does not converge.

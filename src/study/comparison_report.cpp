@@ -153,7 +153,7 @@ std::string comparison_json(const Comparison& comparison) {
 }
 
 std::string comparison_csv(const Comparison& comparison) {
-  std::ostringstream csv = csv_begun(kHeader);
+  std::ostringstream csv = csv_with_header(kHeader);
   constexpr int kFigures = 26;  // columns between the verdict and the message
   for (const ComparedMethod& method : comparison.methods) {
     Row row(csv);

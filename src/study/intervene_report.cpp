@@ -27,7 +27,7 @@ OrderedJson state_json(const std::optional<RunReport>& run) {
 }
 
 std::string csv_of(const BeforeAfter& found) {
-  std::ostringstream csv = csv_begun("figure,unit,before,after,change");
+  std::ostringstream csv = csv_with_header("figure,unit,before,after,change");
   for (const ChangedFigure& figure : changed_figures(found)) {
     Row row(csv);
     row.text(figure.before.name);

@@ -4,8 +4,8 @@
 #include "formats/mesh_io.hpp"
 #include "results/study_files.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
-#include "scene/build/refining.hpp"
+#include "scene/build/refine_scene.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace coapt {
 namespace {
 
-MeshLevel solved_level(const Scene& scene, const Groundwork& ground, const SolveSetup& setup,
+MeshLevel solved_level(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup,
                        const IntersectionJudge& judge) {
   Model model = build(scene, ground);
   const Result result = solve_scene(scene, ground, model, setup).result;
@@ -68,15 +68,15 @@ MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels,
                      const std::function<void(const MeshLevel&)>& report) {
   if (levels < 1) throw InputError("--levels: the mesh must be cut at least once");
   const SolveSetup setup = solve_setup(scene, solvers, options);
-  std::list<Groundwork> grounds;  // which refer to the first
-  grounds.push_back(lay_groundwork(scene));
+  std::list<SceneGeometry> grounds;  // which refer to the first
+  grounds.push_back(scene_geometry(scene));
   if (grounds.front().model.mesh.triangle_count() == 0)
     throw InputError(scene.file.string() + ": mesh: missing; there is nothing to refine");
   MeshStudy study{
       scene.file.filename().string(), setup.solver, setup.stop.tolerance, grounds.front().model.origin, {}};
   for (int k = 0; k < levels; ++k) grounds.push_back(refined(grounds.back()));
   build(scene, *std::next(grounds.begin()));  // what a finer mesh cannot have is said before the first solve
-  for (const Groundwork& ground : grounds) {
+  for (const SceneGeometry& ground : grounds) {
     MeshLevel level = solved_level(scene, ground, setup, options.judge);
     if (!study.levels.empty()) compare(level, study.levels.back());
     study.levels.push_back(std::move(level));
@@ -92,7 +92,7 @@ void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& stud
                       {"tolerance", study.tolerance},
                       {"converged", study.has_converged()},
                       {"levels", OrderedJson::array()}};
-  std::ostringstream csv = csv_begun(
+  std::ostringstream csv = csv_with_header(
       "triangles,vertices,status,residual,iterations,wall_s,cpu_s,intersections,mean_to_previous_mm,"
       "p95_to_previous_mm,max_to_previous_mm,order,orifice_area_mm2,max_chord_force_n,mean_to_reference_mm");
   const auto cell = [&](const std::optional<double>& value) {

@@ -54,7 +54,7 @@ std::string csv_of(const ParameterStudy& study) {
   header += ",status,residual,iterations,wall_s";
   const std::vector<MetricRow> metrics = metric_rows(Metrics());
   for (const MetricRow& row : metrics) header += "," + row.name;
-  std::ostringstream csv = csv_begun(header);
+  std::ostringstream csv = csv_with_header(header);
   long rank = 0;
   for (const size_t place : ranked(study)) {
     const PointResult& result = study.results[place];

@@ -98,7 +98,8 @@ void move_paths(Json& json, const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-std::vector<TunableChord> tunable_chords(const Scene& scene, const Groundwork& ground, const Model& model) {
+std::vector<TunableChord> tunable_chords(const Scene& scene, const SceneGeometry& ground,
+                                         const Model& model) {
   std::vector<TunableChord> all;
   for (const auto& [path, placed] : ground.networks) {
     const std::vector<int> tips = tips_of(placed.network);
@@ -174,7 +175,7 @@ std::vector<ChordGroup> chord_groups(const std::vector<TunableChord>& chords, co
   return groups;
 }
 
-NamedChords named_chords(const Scene& scene, const Groundwork& ground, const Model& model) {
+NamedChords named_chords(const Scene& scene, const SceneGeometry& ground, const Model& model) {
   NamedChords named{tunable_chords(scene, ground, model), {}};
   for (const ChordGrouping grouping : {ChordGrouping::Tip, ChordGrouping::Material})
     for (ChordGroup& group : chord_groups(named.chords, model, grouping, {}))

@@ -174,7 +174,7 @@ void solve_tuned(const std::string& text, const std::filesystem::path& scene, co
   formats::write_whole(
       file, tuned_scene_text(text, scene, found.folder, ready.chords, ready.groups, found.tuning.best.value));
   const Scene tuned = load_scene(file);
-  const Groundwork ground = lay_groundwork(tuned);
+  const SceneGeometry ground = scene_geometry(tuned);
   RunReport& after = found.after.emplace();
   after.model = build(tuned, ground);
   options.folder = found.folder / "after";

@@ -1,7 +1,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
-#include "formats/json/sealed_json.hpp"
+#include "formats/json/checksummed_cbor.hpp"
 #include "formats/whole_file.hpp"
 #include "solve/checkpoint.hpp"
 #include "tuning/chord_tuning.hpp"

@@ -56,7 +56,7 @@ PreparedTuning prepare_tuning(const std::string& text, const std::filesystem::pa
   collect(defects, [&] {
     ready.scene = parse_scene(text, file);
     ready.setup = solve_setup(ready.scene, solvers, run_options);
-    ready.ground = lay_groundwork(ready.scene);
+    ready.ground = scene_geometry(ready.scene);
     model = build(ready.scene, ready.ground);
     is_built = true;
   });

@@ -2,7 +2,7 @@
 // room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 #include "tuning/chord_groups.hpp"
 
@@ -11,7 +11,7 @@ namespace coapt {
 struct PreparedTuning {
   Scene scene;
   SolveSetup setup;
-  Groundwork ground;
+  SceneGeometry ground;
   std::vector<TunableChord> chords;
   std::vector<ChordGroup> groups;
   std::vector<size_t> lines;  // of the chords that are tuned

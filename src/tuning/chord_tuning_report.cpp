@@ -102,7 +102,7 @@ OrderedJson state_json(const RunReport& run) {
 }
 
 std::string csv_of(const ChordTuning& found) {
-  std::ostringstream csv = csv_begun(
+  std::ostringstream csv = csv_with_header(
       "name,chords,before_mm,after_mm,factor,low_mm,high_mm,bound,slack,extension_mm,standard_deviation_mm,"
       "determined");
   for (const TunedLength& length : found.lengths) {

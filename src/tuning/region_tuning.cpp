@@ -4,7 +4,7 @@
 #include "core/timing.hpp"
 #include "results/orifice_area.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 #include "tuning/detail/region_factors.hpp"
 #include "tuning/detail/yield_excess.hpp"
@@ -125,7 +125,7 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   const double start = wall_seconds();
   check(options);
   const SolveSetup setup = solve_setup(scene, solvers, run);
-  Groundwork ground = lay_groundwork(scene);
+  SceneGeometry ground = scene_geometry(scene);
   const Model own = build(scene, ground);  // for its defects, in the scene's own words
   if (options.orifice_limit_mm2 && annulus_of(own) == nullptr)
     throw InputError("--orifice: " + scene.file.string() +

@@ -25,8 +25,8 @@ void write_region_tuning(const std::filesystem::path& folder, const RegionTuning
                       {"wall_s", tuning.wall_s},
                       {"regions", OrderedJson::array()},
                       {"chords", OrderedJson::array()}};
-  std::ostringstream csv = csv_begun("name,triangles,factor"),
-                     triangles = csv_begun("triangle,region,factor");
+  std::ostringstream csv = csv_with_header("name,triangles,factor"),
+                     triangles = csv_with_header("triangle,region,factor");
   for (const TunedFactor& region : tuning.regions) {
     json["regions"].push_back({{"name", region.name},
                                {"triangles", region.triangles},

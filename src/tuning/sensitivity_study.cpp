@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 #include "solve/solve_scene.hpp"
@@ -27,7 +27,7 @@ struct Variation {
 };
 
 // Both scenes are built once, for the defects that show only there. Throws InputError.
-Variation variation(const Scene& scene, const Groundwork& ground, const SceneParameter& parameter,
+Variation variation(const Scene& scene, const SceneGeometry& ground, const SceneParameter& parameter,
                     double perturbation) {
   Variation varied{parameter, scaled(scene, parameter, 1 - perturbation),
                    scaled(scene, parameter, 1 + perturbation)};
@@ -37,7 +37,7 @@ Variation variation(const Scene& scene, const Groundwork& ground, const ScenePar
 }
 
 // All defects together. Parameters that nobody named and that cannot be varied go to `left_out`.
-std::vector<Variation> variations(const Scene& scene, const Groundwork& ground, const Objective& objective,
+std::vector<Variation> variations(const Scene& scene, const SceneGeometry& ground, const Objective& objective,
                                   const SensitivityOptions& options, double share,
                                   std::vector<std::string>& left_out) {
   const bool is_share = share > 0 && share < 1;
@@ -66,7 +66,7 @@ std::vector<Variation> variations(const Scene& scene, const Groundwork& ground, 
 // The first solution, and what is compared with it.
 class Study {
  public:
-  Study(const Groundwork& ground, const SolveSetup& setup, Model model)
+  Study(const SceneGeometry& ground, const SolveSetup& setup, Model model)
       : ground_(ground), setup_(setup), model_(std::move(model)) {}
 
   SensitivityRun solve_first(const Scene& scene) {
@@ -138,7 +138,7 @@ class Study {
     return run;
   }
 
-  const Groundwork& ground_;
+  const SceneGeometry& ground_;
   const SolveSetup& setup_;
   Model model_;
   Vector q_;  // of the first solution
@@ -163,7 +163,7 @@ bool solve_both(const Study& study, const Variation& varied, double share, bool 
 }
 
 // The derivative, or where it is not defined both solves; false: cancelled.
-bool derive_or_solve(const Scene& scene, const Groundwork& ground, const Variation& varied,
+bool derive_or_solve(const Scene& scene, const SceneGeometry& ground, const Variation& varied,
                      Eigen::Index which, Study& study, ParameterSensitivity& found) {
   if (study.is_cancelled()) return false;
   if (found.message.empty()) try {
@@ -207,7 +207,7 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
                                    const SensitivityOptions& options, const RunOptions& run) {
   const double start = wall_seconds();
   const SolveSetup setup = solve_setup(scene, solvers, run);
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   Model model = build(scene, ground);
   if (model.mesh.triangle_count() == 0)
     throw InputError(scene.file.string() + ": mesh: missing; the study compares surfaces");

@@ -58,7 +58,7 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                       {"wall_s", number_json(study.wall_s)},
                       {"first", run_json(study.base)},
                       {"parameters", OrderedJson::array()}};
-  std::ostringstream csv = csv_begun(
+  std::ostringstream csv = csv_with_header(
       "parameter,factor,status,residual,iterations,wall_s,mean_to_base_mm,p95_to_base_mm,max_to_base_mm,"
       "mean_to_reference_mm,movement_mm_per_100_percent,error_change_mm_per_100_percent");
   add_run(csv, "", study.base);

@@ -179,7 +179,7 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
     throw InputError(scene.file.string() +
                      ": a term that is given has no Hessian, which an equilibrium that is followed needs");
   SolveSetup setup = given_setup(scene, given, solvers, options);
-  Groundwork ground = given_ground(scene, given);
+  SceneGeometry ground = given_ground(scene, given);
   TrackedScene tracked{build(scene, ground, given.terms), {}, nullptr, nullptr, nullptr};
   if (given.observer) setup.observer = given.observer(tracked.model);
   tracked.first = given.start ? solve_again(relative_start(*given.start, tracked.model), tracked.model, setup)

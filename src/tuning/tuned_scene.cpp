@@ -60,7 +60,7 @@ std::set<int> regions_of(const std::vector<int>& triangles, const TriangleMesh& 
 
 }  // namespace
 
-TunedScene::TunedScene(const Scene& scene, Groundwork own, const RegionTuningOptions& options)
+TunedScene::TunedScene(const Scene& scene, SceneGeometry own, const RegionTuningOptions& options)
     : ground(std::move(own)), split_(scene) {
   const TriangleMesh own_mesh = ground.model.mesh;
   TriangleMesh& mesh = ground.model.mesh;

@@ -1,7 +1,7 @@
 // A scene whose membrane is split into regions, each with a factor on its moduli. Private to this room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "tuning/region_tuning.hpp"
 
 namespace coapt {
@@ -9,7 +9,7 @@ namespace coapt {
 class TunedScene {
  public:
   // Throws InputError where there is nothing to tune: no chords, no annulus, no moduli.
-  TunedScene(const Scene& scene, Groundwork own, const RegionTuningOptions& options);
+  TunedScene(const Scene& scene, SceneGeometry own, const RegionTuningOptions& options);
 
   Eigen::Index factor_count() const { return static_cast<Eigen::Index>(region_count_ + cables_.size()); }
 
@@ -21,7 +21,7 @@ class TunedScene {
   void name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                     std::vector<TunedFactor>& chords) const;
 
-  Groundwork ground;  // the mesh's regions are those that are tuned
+  SceneGeometry ground;  // the mesh's regions are those that are tuned
 
  private:
   struct Part {

@@ -193,10 +193,10 @@ TEST(ContactBarrier, BecomesStifferOnlyWhereItIsPressedTooHard) {
   triangles << sheet.triangles, sheet.triangles.array() + n;
   const auto term = barrier_of(rest, triangles, 0.1);
   const double before = evaluate_term(*term, near).energy;
-  EXPECT_FALSE(term->stiffen(rest));
-  EXPECT_FALSE(term->stiffen(near));
+  EXPECT_FALSE(term->escalate_stiffness(rest));
+  EXPECT_FALSE(term->escalate_stiffness(near));
   EXPECT_EQ(evaluate_term(*term, near).energy, before);
-  EXPECT_TRUE(term->stiffen(pressed));
+  EXPECT_TRUE(term->escalate_stiffness(pressed));
   EXPECT_GT(evaluate_term(*term, near).energy, 2 * before);
 }
 

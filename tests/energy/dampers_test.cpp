@@ -18,7 +18,7 @@ struct DampedValve {
 TEST(Dampers, AddAForceAndAStiffnessToEveryEvaluation) {
   DampedValve valve;
   Objective& objective = valve.objective;
-  objective.follow_path(valve.from);
+  objective.set_path_anchor(valve.from);
   Vector g, damped_g, unused;
   Eigen::SparseMatrix<double> h, damped_h;
   const double energy = objective.gradient(valve.q, g), value = objective.value(valve.q);
@@ -41,7 +41,7 @@ TEST(Dampers, AddAForceAndAStiffnessToEveryEvaluation) {
 TEST(Dampers, LeaveTheForceScaleAloneAndGoWithoutATrace) {
   DampedValve valve;
   Objective& objective = valve.objective;
-  objective.follow_path(valve.from);
+  objective.set_path_anchor(valve.from);
   const double scale = objective.reference_force(valve.q), residual = objective.true_residual(valve.q);
   objective.damp(1e3 * valve.coefficients, valve.from);
   EXPECT_EQ(objective.reference_force(valve.q), scale);
@@ -68,7 +68,7 @@ TEST(Dampers, HoldNoPrescribedCoordinate) {
 TEST(Dampers, ActInAPartAsInTheWhole) {
   DampedValve valve;
   Objective& objective = valve.objective;
-  objective.follow_path(valve.q);
+  objective.set_path_anchor(valve.q);
   objective.damp(valve.coefficients, valve.from);
   Vector g, of_part;
   objective.gradient(valve.q, g);

@@ -97,11 +97,13 @@ const std::map<std::string, History>& histories() {
          objective.hessian(sheet.state(0.5, 1), g, h);
        }},
       {"held_dead_elsewhere",
-       [](Objective& objective, const Sheet& sheet) { objective.hold_dead(sheet.state(0.3, 2)); }},
+       [](Objective& objective, const Sheet& sheet) {
+         objective.lag_circulatory_force(sheet.state(0.3, 2));
+       }},
       {"on_a_path",
        [](Objective& objective, const Sheet& sheet) {
-         objective.hold_dead(sheet.state(0.3, 2));
-         objective.follow_path(sheet.state(0.4, 3));
+         objective.lag_circulatory_force(sheet.state(0.3, 2));
+         objective.set_path_anchor(sheet.state(0.4, 3));
          objective.advance(sheet.state(0.2, 3));
        }},
       {"lbfgs", run_of("lbfgs")},

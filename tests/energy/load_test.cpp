@@ -189,7 +189,7 @@ TEST(LoadPressure, PotentialAndRemainderAddUpToTheExactForceOnAnOpenSurface) {
   ASSERT_TRUE(term->has_circulatory_force());
   const Points exact = direct_pressure_forces(open.x, open.mesh.triangles, kPressure);
   for (const bool is_renewed : {false, true}) {
-    if (is_renewed) term->renew(open.x);
+    if (is_renewed) term->rebuild_potential(open.x);
     Points force = -evaluate_term(*term, open.x).gradient;
     EXPECT_GT((force - exact).norm(), 1e-3 * exact.norm());  // the potential alone is wrong on the rim
     term->add_circulatory_force(open.x, force);
@@ -212,10 +212,10 @@ TEST(LoadPressure, TrueResidualIsThatOfTheExactForce) {
   for (int v = 1; v < exact.cols(); ++v) largest = std::max(largest, exact.col(v).norm());
   reference = std::max(reference, largest);
   for (const double moved : {0.0, 0.3}) {
-    objective.hold_dead(q + Vector::Constant(q.size(), moved));
+    objective.lag_circulatory_force(q + Vector::Constant(q.size(), moved));
     EXPECT_NEAR(objective.true_residual(q), largest / reference, 1e-12);
   }
-  objective.hold_dead(q);
+  objective.lag_circulatory_force(q);
   Vector g;
   objective.gradient(q, g);  // at the point of renewal the potential's force is the exact one
   EXPECT_LT((g + objective.unknowns(exact)).norm(), 1e-13 * g.norm());
@@ -226,7 +226,7 @@ TEST(LoadPressure, PathWorkGivesTheExactForceAndItsWorkAlongAStep) {
   const OpenSurface open;
   Objective objective(open.mesh.vertices, nothing_fixed(open.mesh.vertices), terms_of(open.term()));
   const Vector q0 = objective.unknowns(open.mesh.vertices), q1 = objective.unknowns(open.x);
-  objective.follow_path(q0);
+  objective.set_path_anchor(q0);
   const auto exact = [&](const Vector& q) {
     return objective.unknowns(direct_pressure_forces(objective.positions(q), open.mesh.triangles, kPressure));
   };

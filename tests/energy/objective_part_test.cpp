@@ -27,7 +27,7 @@ struct WholeValve {
 
 TEST(ObjectivePart, HasTheDerivativesOfTheWholeInItsUnknowns) {
   WholeValve valve;
-  valve.objective.follow_path(valve.q);
+  valve.objective.set_path_anchor(valve.q);
   valve.objective.scale(0.7, 1.3);
   valve.objective.gradient(valve.q, valve.g);
   const double reach = 0.2;
@@ -55,7 +55,7 @@ TEST(ObjectivePart, HasTheDerivativesOfTheWholeInItsUnknowns) {
 
 TEST(ObjectivePart, IsMeasuredByTheWholesForce) {
   WholeValve valve;
-  valve.objective.follow_path(valve.q);
+  valve.objective.set_path_anchor(valve.q);
   valve.objective.gradient(valve.q, valve.g);
   const auto part = valve.objective.part(valve.q, valve.blocks(), 0.1);
   Vector g;
@@ -65,7 +65,7 @@ TEST(ObjectivePart, IsMeasuredByTheWholesForce) {
 
 TEST(ObjectivePart, KeepsItsNodesWithinReach) {
   WholeValve valve;
-  valve.objective.follow_path(valve.q);
+  valve.objective.set_path_anchor(valve.q);
   valve.objective.gradient(valve.q, valve.g);
   const auto part = valve.objective.part(valve.q, {3, 4}, 0.01);
   Vector along = Vector::Zero(6);
@@ -77,7 +77,7 @@ TEST(ObjectivePart, KeepsItsNodesWithinReach) {
 
 TEST(ObjectivePart, IsNotToBeHadWhereTheRemainderIsHeldDead) {
   WholeValve valve;
-  valve.objective.hold_dead(valve.q);
+  valve.objective.lag_circulatory_force(valve.q);
   valve.objective.gradient(valve.q, valve.g);
   EXPECT_EQ(valve.objective.part(valve.q, {3, 4}, 0.1), nullptr);
 }

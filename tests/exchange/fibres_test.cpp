@@ -8,7 +8,7 @@
 #include "results/result_surfaces.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/thinning.hpp"
+#include "scene/build/coarsen_scene.hpp"
 #include "solve/cascade.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
@@ -63,7 +63,7 @@ class FibresTest : public testing::Test {
 
 TEST_F(FibresTest, CostNothingWhereNothingAsks) {
   const Scene plain = scene("");
-  const Groundwork ground = lay_groundwork(plain);
+  const SceneGeometry ground = scene_geometry(plain);
   const Model model = build(plain, ground);
   EXPECT_EQ(model.fibres.cols(), 0);
   EXPECT_FALSE(ground.fibres->has_value());
@@ -201,10 +201,10 @@ TEST_F(MitralFibresTest, RunAroundTheLeafletsAndRadiallyAtTheTrigones) {
 // file as well.
 TEST_F(MitralFibresTest, PassToTheCoarserMeshesOfACascade) {
   Scene fine = scene(2500, R"("fibres": {}, )");
-  const Groundwork ground = lay_groundwork(fine);
+  const SceneGeometry ground = scene_geometry(fine);
   const Model model = build(fine, ground);
   const Coarsening step = coarsen(ground.model.mesh, coarsen_options(fine, ground));
-  const Model coarse = build(fine, thinned(ground, step.mesh, step.kept));
+  const Model coarse = build(fine, coarsened(ground, step.mesh, step.kept));
   ASSERT_EQ(coarse.fibres.cols(), step.mesh.triangle_count());
   ASSERT_LT(step.mesh.triangle_count(), model.mesh.triangle_count() / 2);
   std::ostringstream csv;
@@ -212,8 +212,8 @@ TEST_F(MitralFibresTest, PassToTheCoarserMeshesOfACascade) {
   folder_.write("fibres.csv", csv.str());
   Scene from_file = fine;
   from_file.fibres->file = folder_.path() / "fibres.csv";
-  const Groundwork file_ground = lay_groundwork(from_file);
-  const Model coarse_from_file = build(from_file, thinned(file_ground, step.mesh, step.kept));
+  const SceneGeometry file_ground = scene_geometry(from_file);
+  const Model coarse_from_file = build(from_file, coarsened(file_ground, step.mesh, step.kept));
   int compared = 0, far = 0;
   for (int t = 0; t < step.mesh.triangle_count(); ++t) {
     const Vec3 normal = area_vector(coarse.X, step.mesh.triangles.col(t)).normalized();

@@ -1,7 +1,7 @@
 // What a run leaves for a later one: checkpoints of solves and of tunings, points of a study. Every input is
 // read as each of them: as a whole file, and for checkpoints also as what stands behind a good checksum.
 #include "core/error.hpp"
-#include "formats/json/sealed_json.hpp"
+#include "formats/json/checksummed_cbor.hpp"
 #include "fuzz/fuzz_target.hpp"
 #include "solve/checkpoint.hpp"
 #include "study/parameter_study.hpp"

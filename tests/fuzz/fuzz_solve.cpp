@@ -3,7 +3,7 @@
 #include "fuzz/fuzz_target.hpp"
 #include "run/run.hpp"
 #include "solve/solve_scene.hpp"
-#include "stress/energy_judge.hpp"
+#include "stress/energy_checker.hpp"
 #include "stress/scenes/small_scene.hpp"
 
 #include <cmath>

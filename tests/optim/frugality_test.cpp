@@ -86,7 +86,7 @@ TEST_F(Frugality, AnEvaluationAllocatesNothing) {
   for (const auto& types : {std::set<std::string_view>{"cst_tension_field"}, all}) {
     Objective objective(scene.X, scene.fixed, only(scene, types));
     const Vector q = objective.unknowns(scene.X);
-    if (objective.has_circulatory_force()) objective.follow_path(q);
+    if (objective.has_circulatory_force()) objective.set_path_anchor(q);
     Vector g;
     SparseMatrix h;
     const auto evaluate = [&] {

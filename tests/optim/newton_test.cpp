@@ -2,7 +2,7 @@
 #include "optim/newton.hpp"
 
 #include "energy/load_dead.hpp"
-#include "optim/carry_along.hpp"
+#include "optim/harmonic_extension.hpp"
 #include "optim/lbfgs.hpp"
 #include "optim/linear/gmres.hpp"
 #include "support/equilibrium.hpp"
@@ -35,7 +35,7 @@ Vector shaken_direction(Eigen::Index size) {
 
 TEST(FollowerTangent, IsTheDerivativeOfTheExactForce) {
   ShakenValve valve;
-  valve.objective.follow_path(valve.q);
+  valve.objective.set_path_anchor(valve.q);
   Vector g, ahead, behind;
   SparseMatrix h;
   valve.objective.hessian(valve.q, g, h);
@@ -60,7 +60,7 @@ TEST(FollowerTangent, IsTheDerivativeOfTheRemainderWithFansToo) {
   for (const auto& term : scene.terms()) {
     if (!term->has_circulatory_force()) continue;
     for (const bool has_fans : {false, true}) {
-      if (has_fans) term->renew(x);
+      if (has_fans) term->rebuild_potential(x);
       std::vector<TangentBlock> blocks;
       term->add_circulatory_tangent(x, blocks);
       const Points v = shaken_direction(x.size()).reshaped(3, x.cols());
@@ -79,7 +79,7 @@ TEST(FollowerTangent, IsTheDerivativeOfTheRemainderWithFansToo) {
 // Simpson's rule is exact for pressure along a straight step: the merit's slope is the exact force's.
 TEST(FollowerTangent, WorkAlongAStraightPathIsExact) {
   ShakenValve valve;
-  valve.objective.follow_path(valve.q);
+  valve.objective.set_path_anchor(valve.q);
   const Vector d = 3 * shaken_direction(valve.q.size());
   Vector g;
   const auto slope_error = [&](double s, double h) {
@@ -250,7 +250,7 @@ class Hardening final : public EnergyTerm {
       sink.add_gradient(k, stiffness_ * (x.col(k) - start_.col(k)));
     return 0.5 * stiffness_ * (x - start_).squaredNorm();
   }
-  bool stiffen(const Points& x) override {
+  bool escalate_stiffness(const Points& x) override {
     const bool is_too_soft = (x - start_).cwiseAbs().maxCoeff() > 0.05;
     if (is_too_soft) stiffness_ *= 10;
     return is_too_soft;

@@ -36,7 +36,7 @@ JudgedScene solve_judged(const Scene& scene) {
     judged.intersections = std::max(judged.intersections, seen);
     return true;
   };
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   judged.model = build(scene, ground);
   judged.outcome = solve_scene(scene, ground, judged.model, setup);
   judged.metrics =

@@ -85,7 +85,7 @@ TEST_F(XpbdValve, TheAnnulusGoesWithThePhasesAndTheOrificeOpensAgain) {
   options.motion_time = 0.01;  // 100 steps
   options.phase = HeartPhase::Diastole;
   const Scene scene = xpbd_scene(folder_, options);
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   Model model = build(scene, ground);
   SolveSetup setup = solve_setup(scene, scene_solvers(), {});
   std::vector<Points> states;

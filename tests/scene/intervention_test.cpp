@@ -19,7 +19,7 @@ const EnergyTerm* term_named(const Model& model, const std::string& name) {
 }
 
 TEST_F(RepairedValve, ShortensAndLengthensTheChordsThatAreMeant) {
-  const Groundwork before = ground(scene());
+  const SceneGeometry before = ground(scene());
   const auto lengths = [&](const std::string& what) {
     return network(ground(scene(R"({"type": "chord_length", "chords": [2, 5], )" + what + "}"))).chords;
   };
@@ -34,9 +34,9 @@ TEST_F(RepairedValve, ShortensAndLengthensTheChordsThatAreMeant) {
 }
 
 TEST_F(RepairedValve, CutsChordsWithWhatHangsOnThemAlone) {
-  const Groundwork before = ground(scene());
+  const SceneGeometry before = ground(scene());
   const ChordNetwork& old = network(before);
-  const Groundwork after = ground(scene(R"({"type": "chord_cut", "tips": 0})"));
+  const SceneGeometry after = ground(scene(R"({"type": "chord_cut", "tips": 0})"));
   const ChordNetwork& cut = network(after);
   EXPECT_LT(cut.chords.size(), old.chords.size());
   std::vector<int> held(static_cast<size_t>(cut.junctions.cols()), 0);
@@ -49,7 +49,7 @@ TEST_F(RepairedValve, CutsChordsWithWhatHangsOnThemAlone) {
 }
 
 TEST_F(RepairedValve, ANeochordIsACableOfItsOwnFromTheNearestTip) {
-  const Groundwork before = ground(scene());
+  const SceneGeometry before = ground(scene());
   const int vertex = before.model.sets.at("free_edge")[4];
   const Scene repaired = scene(R"({"type": "neochord", "at": [)" + std::to_string(vertex) +
                                R"(], "length": "17 mm", "young": "500 MPa", "area": "0.07 mm2"})");

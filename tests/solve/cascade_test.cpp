@@ -6,7 +6,7 @@
 #include "optim/lbfgs.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/thinning.hpp"
+#include "scene/build/coarsen_scene.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/sanitized.hpp"
 #include "support/temporary_folder.hpp"
@@ -34,7 +34,7 @@ class CascadeTest : public testing::Test {
   }
 
   CascadeOutcome solve(const Scene& scene, const SolverMaker& maker, const Observer& observer = {}) {
-    ground_ = lay_groundwork(scene);
+    ground_ = scene_geometry(scene);
     model_ = build(scene, ground_);
     StopRule stop;
     stop.tolerance = scene.solver.tolerance;
@@ -44,7 +44,7 @@ class CascadeTest : public testing::Test {
   static std::unique_ptr<Solver> lbfgs(const Model&) { return make_lbfgs(); }
 
   TemporaryFolder folder_;
-  Groundwork ground_;
+  SceneGeometry ground_;
   Model model_;
 };
 
@@ -90,12 +90,12 @@ TEST_F(CascadeTest, ItsMotionEndsWhereTheDirectOneEnds) {
 TEST_F(CascadeTest, KeepsTheWholeOfForcesThatAreGivenByNode) {
   const Scene scene = this->scene(R"({"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})",
                                   R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])");
-  const Groundwork ground = lay_groundwork(scene);
+  const SceneGeometry ground = scene_geometry(scene);
   const Coarsening coarsening = coarsen(ground.model.mesh, coarsen_options(scene, ground));
-  const Groundwork thin = thinned(ground, coarsening.mesh, coarsening.kept);
+  const SceneGeometry thin = coarsened(ground, coarsening.mesh, coarsening.kept);
   double total[2];
   int k = 0;
-  for (const Groundwork* level : {&ground, &thin}) {
+  for (const SceneGeometry* level : {&ground, &thin}) {
     Model model = build(scene, *level);
     Points forces = Points::Zero(3, model.X.cols());
     Sink sink(forces.data());
@@ -146,10 +146,10 @@ TEST(Thinning, CarriesChordsSetsAndMotionOfAValveOver) {
   const Valve valve = mitral_valve({2500, 0, 3});
   write_valve_scene(valve, folder.path(), {});
   const Scene scene = load_scene(folder.path() / "scene.json");
-  const Groundwork fine = lay_groundwork(scene);
+  const SceneGeometry fine = scene_geometry(scene);
   const Coarsening coarsening = coarsen(fine.model.mesh, coarsen_options(scene, fine));
   EXPECT_NEAR(coarsening.mesh.triangle_count(), 625, 20);
-  const Groundwork thin = thinned(fine, coarsening.mesh, coarsening.kept);
+  const SceneGeometry thin = coarsened(fine, coarsening.mesh, coarsening.kept);
   const Model a = build(scene, fine), b = build(scene, thin);
   ASSERT_EQ(a.lines.size(), b.lines.size());
   for (size_t k = 0; k < a.lines.size(); ++k) {

@@ -1,7 +1,7 @@
 #include "solve/checkpoint.hpp"
 
 #include "core/error.hpp"
-#include "formats/json/sealed_json.hpp"
+#include "formats/json/checksummed_cbor.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

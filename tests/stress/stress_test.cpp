@@ -6,7 +6,7 @@
 #include "optim/newton.hpp"
 #include "report/shown_way.hpp"
 #include "scene/build/build.hpp"
-#include "stress/energy_judge.hpp"
+#include "stress/energy_checker.hpp"
 #include "stress/scenes/slivers.hpp"
 #include "stress/stress_report.hpp"
 #include "support/temporary_folder.hpp"

@@ -8,8 +8,8 @@
 #include "mesh/shapes.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/refining.hpp"
-#include "scene/build/thinning.hpp"
+#include "scene/build/coarsen_scene.hpp"
+#include "scene/build/refine_scene.hpp"
 #include "scene/file/scene_parameter.hpp"
 #include "solve/cascade.hpp"
 #include "solve/solve_scene.hpp"
@@ -80,10 +80,10 @@ class CarriedValues : public testing::Test {
 
 TEST_F(CarriedValues, AreThoseOfTheParentOnFinerMeshes) {
   const Scene scene = this->scene(200);
-  const Groundwork own = lay_groundwork(scene), fine = refined(own), finer = refined(fine);
+  const SceneGeometry own = scene_geometry(scene), fine = refined(own), finer = refined(fine);
   const Model first = build(scene, own);
   int parts = 1;
-  for (const Groundwork* level : {&fine, &finer}) {
+  for (const SceneGeometry* level : {&fine, &finer}) {
     parts *= 4;
     const Model model = build(scene, *level);
     ASSERT_EQ(model.fibres.cols(), parts * first.fibres.cols());
@@ -129,10 +129,10 @@ TEST_F(CarriedValues, LetAMeshStudyConvergeHoweverTheFibresAreKnown) {
 
 TEST_F(CarriedValues, AreMeansNearbyOnTheCoarserMeshesOfACascade) {
   const Scene scene = this->scene(2500);
-  const Groundwork own = lay_groundwork(scene), fine = refined(own);
-  for (const Groundwork* level : {&own, &fine}) {
+  const SceneGeometry own = scene_geometry(scene), fine = refined(own);
+  for (const SceneGeometry* level : {&own, &fine}) {
     const Coarsening coarsening = coarsen(level->model.mesh, coarsen_options(scene, *level));
-    const Model model = build(scene, thinned(*level, coarsening.mesh, coarsening.kept));
+    const Model model = build(scene, coarsened(*level, coarsening.mesh, coarsening.kept));
     ASSERT_LT(model.mesh.triangle_count(), level->model.mesh.triangle_count() / 2);
     for (int t = 0; t < model.mesh.triangle_count(); ++t) {
       const auto& rest = elements(model)[static_cast<size_t>(t)];
@@ -164,7 +164,7 @@ TEST_F(CarriedValues, GiveTheSameAnswerWithACascade) {
 // The finer level of a mesh study may itself start from coarser meshes.
 TEST_F(CarriedValues, GoThroughACascadeOnARefinedMesh) {
   const Scene scene = this->scene(600, R"({})", true);
-  const Groundwork own = lay_groundwork(scene), fine = refined(own);
+  const SceneGeometry own = scene_geometry(scene), fine = refined(own);
   Model model = build(scene, fine);
   const CascadeOutcome cascade = solve_scene(scene, fine, model, setup(scene));
   EXPECT_EQ(cascade.result.status, Status::Converged) << cascade.result.message;
@@ -225,7 +225,7 @@ TEST(TunedTissue, HasTheFactorsOfItsRegions) {
   const Scene scene = load_scene(folder.write("tissue.json", tissue));
   RegionTuningOptions options;
   options.regions = 6;
-  const TunedScene tuned(scene, lay_groundwork(scene), options);
+  const TunedScene tuned(scene, scene_geometry(scene), options);
   ASSERT_EQ(tuned.factor_count(), 6);
   const Vector factors = Vector::LinSpaced(6, 0.5, 3);
   const Model model = build(tuned.scene(factors), tuned.ground);

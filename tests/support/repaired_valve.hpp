@@ -5,7 +5,7 @@
 #include "exchange/import.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_text.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
@@ -27,9 +27,9 @@ class RepairedValve : public testing::Test {
     return parse_scene(with_interventions(text_, {interventions}, file_.string()), file_);
   }
 
-  static Groundwork ground(const Scene& scene) { return lay_groundwork(scene); }
+  static SceneGeometry ground(const Scene& scene) { return scene_geometry(scene); }
 
-  static const ChordNetwork& network(const Groundwork& ground) {
+  static const ChordNetwork& network(const SceneGeometry& ground) {
     return ground.networks.begin()->second.network;
   }
 

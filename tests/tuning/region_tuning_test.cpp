@@ -50,7 +50,7 @@ class RegionTuningTest : public testing::Test {
     ASSERT_TRUE(found.after.orifice_area_mm2 && found.orifice_limit_mm2);
     EXPECT_LE(*found.after.orifice_area_mm2, *found.orifice_limit_mm2);
 
-    const TunedScene tuned(scene, lay_groundwork(scene), options_);
+    const TunedScene tuned(scene, scene_geometry(scene), options_);
     Vector factors(tuned.factor_count());
     for (size_t k = 0; k < found.regions.size(); ++k)
       factors[static_cast<Eigen::Index>(k)] = found.regions[k].factor;
@@ -75,7 +75,7 @@ class RegionTuningTest : public testing::Test {
 TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
   options_.tunes_chords = true;
   const Scene valve = scene("none");
-  const TunedScene tuned(valve, lay_groundwork(valve), options_);
+  const TunedScene tuned(valve, scene_geometry(valve), options_);
   const Scene split = tuned.scene(Vector::Ones(tuned.factor_count()));
   Model model = build(split, tuned.ground);
   const Result first =

@@ -1,6 +1,6 @@
 #include "optim/ceres/ceres_solver.hpp"
 
-#include "optim/hosted_run.hpp"
+#include "optim/external_solver_run.hpp"
 
 #include <ceres/ceres.h>
 
@@ -14,7 +14,7 @@ using ConstVectorMap = Eigen::Map<const Vector>;
 
 class HostedFunction final : public ceres::FirstOrderFunction {
  public:
-  HostedFunction(HostedRun& run, int size) : run_(run), size_(size) {}
+  HostedFunction(ExternalSolverRun& run, int size) : run_(run), size_(size) {}
   int NumParameters() const override { return size_; }
 
   // False = "cannot be evaluated here": the line search then shortens its step.
@@ -26,20 +26,20 @@ class HostedFunction final : public ceres::FirstOrderFunction {
   }
 
  private:
-  HostedRun& run_;
+  ExternalSolverRun& run_;
   int size_;
   mutable Vector g_;
 };
 
 class IterateReport final : public ceres::IterationCallback {
  public:
-  IterateReport(HostedRun& run, const Vector& z) : run_(run), z_(z) {}
+  IterateReport(ExternalSolverRun& run, const Vector& z) : run_(run), z_(z) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
     return run_.accept(z_) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
   }
 
  private:
-  HostedRun& run_;
+  ExternalSolverRun& run_;
   const Vector& z_;  // Ceres writes every accepted iterate here
 };
 
@@ -49,7 +49,7 @@ class SolverCeres final : public Solver {
   bool honours_step_limits() const override { return false; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
-    HostedRun run(monitor, q);
+    ExternalSolverRun run(monitor, q);
     while (run.begin_attempt()) {
       Vector z = Vector::Zero(q.size());
       IterateReport report(run, z);

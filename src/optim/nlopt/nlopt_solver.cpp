@@ -1,6 +1,6 @@
 #include "optim/nlopt/nlopt_solver.hpp"
 
-#include "optim/hosted_run.hpp"
+#include "optim/external_solver_run.hpp"
 
 #include <nlopt.hpp>
 
@@ -16,7 +16,7 @@ class SolverNlopt final : public Solver {
   bool honours_step_limits() const override { return false; }
 
   Status minimize(Objective&, Vector& q, Monitor& monitor) override {
-    HostedRun run(monitor, q);
+    ExternalSolverRun run(monitor, q);
     bool is_lead = true;
     while (run.begin_attempt()) {
       attempt(is_lead ? nlopt::LD_TNEWTON_PRECOND_RESTART : nlopt::LD_LBFGS, run);
@@ -27,7 +27,7 @@ class SolverNlopt final : public Solver {
   }
 
  private:
-  static void attempt(nlopt::algorithm algorithm, HostedRun& run) {
+  static void attempt(nlopt::algorithm algorithm, ExternalSolverRun& run) {
     std::vector<double> z(static_cast<size_t>(run.q().size()), 0.0);
     nlopt::opt optimiser(algorithm, static_cast<unsigned>(z.size()));
     optimiser.set_min_objective(&evaluate, &run);
@@ -41,7 +41,7 @@ class SolverNlopt final : public Solver {
   }
 
   static double evaluate(const std::vector<double>& z, std::vector<double>& gradient, void* context) {
-    HostedRun& run = *static_cast<HostedRun*>(context);
+    ExternalSolverRun& run = *static_cast<ExternalSolverRun*>(context);
     const auto size = static_cast<Eigen::Index>(z.size());
     Vector g;
     const double energy = run.evaluate(Eigen::Map<const Vector>(z.data(), size), g);

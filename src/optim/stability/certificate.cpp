@@ -81,7 +81,7 @@ StabilityReport stability_at(Objective& objective, const Vector& q, double toler
     report.verdict = Stability::NothingToJudge;
     return report;
   }
-  if (objective.has_circulatory_force()) objective.follow_path(q);
+  if (objective.has_circulatory_force()) objective.set_path_anchor(q);
   Vector g;
   SparseMatrix h;
   objective.hessian(q, g, h, Projection::None);

@@ -29,21 +29,21 @@ std::string px(double value) {
   return text;
 }
 
-// What tells a series from the others: colour and mark, among kin mark and dashes.
+// What tells a series from the others: colour and mark, in a group mark and dashes.
 struct Look {
   std::string classes;
   size_t shape = 0;
 };
 
 Look look_of(const PagePlot& plot, size_t series) {
-  const int kin = plot.series[series].kin;
-  const size_t colour = (kin < 0 ? series : static_cast<size_t>(kin)) % kColours;
-  size_t elder = 0;  // kin before it
-  for (size_t s = 0; kin >= 0 && s < series; ++s)
-    if (plot.series[s].kin == kin) ++elder;
+  const int group = plot.series[series].group;
+  const size_t colour = (group < 0 ? series : static_cast<size_t>(group)) % kColours;
+  size_t index_in_group = 0;  // series of the group before it
+  for (size_t s = 0; group >= 0 && s < series; ++s)
+    if (plot.series[s].group == group) ++index_in_group;
   return {"series s" + std::to_string(colour) +
-              (elder > 0 ? " d" + std::to_string(std::min<size_t>(elder, 3)) : ""),
-          kin < 0 ? series : elder};
+              (index_in_group > 0 ? " d" + std::to_string(std::min<size_t>(index_in_group, 3)) : ""),
+          group < 0 ? series : index_in_group};
 }
 
 // A shape for each series, so that colour is not all that tells them apart.

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "scene/build/build_parts.hpp"
 #include "scene/build/fibres.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/build/supports.hpp"
 #include "scene/terms/term_types.hpp"
 
@@ -12,8 +12,8 @@
 namespace coapt {
 namespace {
 
-// What the groundwork knows of the model.
-Model begun(const Groundwork& ground) {
+// What the geometry knows of the model.
+Model begun(const SceneGeometry& ground) {
   Model model;
   model.origin = ground.model.origin;
   model.X = ground.model.X;
@@ -41,7 +41,7 @@ void add_given(const GivenTerms& given, const Model& model, std::vector<TermPoin
   }
 }
 
-std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground, Model& model,
+std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ground, Model& model,
                                      std::vector<std::string>& defects) {
   BuildContext context{model,
                        ground.prescribed.fixed,
@@ -82,7 +82,7 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
 
 }  // namespace
 
-std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& ground) {
+std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ground) {
   Model model = begun(ground);
   std::vector<std::string> defects;
   std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
@@ -90,11 +90,11 @@ std::vector<TermPointer> build_terms(const Scene& scene, const Groundwork& groun
   return terms;
 }
 
-Model build(const Scene& scene) { return build(scene, lay_groundwork(scene)); }
+Model build(const Scene& scene) { return build(scene, scene_geometry(scene)); }
 
-Model build(const Scene& scene, const Groundwork& ground) { return build(scene, ground, GivenTerms()); }
+Model build(const Scene& scene, const SceneGeometry& ground) { return build(scene, ground, GivenTerms()); }
 
-Model build(const Scene& scene, const Groundwork& ground, const GivenTerms& given) {
+Model build(const Scene& scene, const SceneGeometry& ground, const GivenTerms& given) {
   Model model = begun(ground);
   const Prescribed& prescribed = ground.prescribed;
   std::vector<std::string> defects = ground.defects;

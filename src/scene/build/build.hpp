@@ -6,7 +6,7 @@
 
 namespace coapt {
 
-struct Groundwork;
+struct SceneGeometry;
 
 // Reads the scene's files, checks the mesh, numbers the nodes, and builds motion, terms and objective.
 // What is doubtful but usable is said in Model::warnings: slack rest data, isolated vertices (prescribed, so
@@ -15,7 +15,7 @@ struct Groundwork;
 Model build(const Scene& scene);
 
 // The same on nodes, sets and supports that are known already, those of a coarser mesh for instance.
-Model build(const Scene& scene, const Groundwork& ground);
+Model build(const Scene& scene, const SceneGeometry& ground);
 
 // The problem that starts at x (3 x node_count, relative to the model's origin), with the supports where
 // their motion ends.

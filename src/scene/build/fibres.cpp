@@ -23,7 +23,7 @@ std::vector<int> trigones_of(const Model& model, const std::vector<int>& annulus
 }
 
 // How the chords of all networks pull at the leaflets.
-std::vector<FibrePull> pulls_of(const Groundwork& ground) {
+std::vector<FibrePull> pulls_of(const SceneGeometry& ground) {
   const Points& X = ground.model.X;
   std::vector<FibrePull> pulls;
   for (const auto& [path, placed] : ground.networks)
@@ -35,7 +35,7 @@ std::vector<FibrePull> pulls_of(const Groundwork& ground) {
   return pulls;
 }
 
-std::vector<FibreGuide> default_guides(const SceneFibres& fibres, const Groundwork& ground) {
+std::vector<FibreGuide> default_guides(const SceneFibres& fibres, const SceneGeometry& ground) {
   const Model& model = ground.model;
   const std::vector<int> annulus = set_of(model, "annulus");
   if (fibres.defaults == "none") return {};
@@ -83,7 +83,7 @@ void add_entry(const FibreEntry& entry, const Model& model, std::vector<FibreGui
   guides.insert(guides.end(), more.begin(), more.end());
 }
 
-FibreField field_of_scene(const SceneFibres& fibres, const Groundwork& ground) {
+FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& ground) {
   const Model& model = ground.model;
   if (fibres.file) return in_surface(read_csv(fibres.file->string()), model.mesh, fibres.file->string());
   std::vector<FibreGuide> guides = default_guides(fibres, ground);
@@ -113,7 +113,7 @@ FibreField cut_in_four(const FibreField& coarse) {
 
 // Solved for on the scene's own mesh alone, so that all meshes are of one material; kept where it was asked
 // for.
-const FibreField& field_here(const SceneFibres& fibres, const Groundwork& ground) {
+const FibreField& field_here(const SceneFibres& fibres, const SceneGeometry& ground) {
   std::optional<FibreField>& here = *ground.fibres;
   if (here) return *here;
   if (ground.finest == nullptr)
@@ -138,7 +138,7 @@ void warn_of_isotropic(const FibreField& field, const SceneFibres& fibres, Model
 
 }  // namespace
 
-void find_fibres(const Scene& scene, const Groundwork& ground, Model& model) {
+void find_fibres(const Scene& scene, const SceneGeometry& ground, Model& model) {
   if (model.fibres.cols() > 0) return;
   SceneFibres fibres = scene.fibres.value_or(SceneFibres());
   if (!scene.fibres) fibres.where = scene.file.string() + ": fibres";

@@ -35,7 +35,7 @@ double FacingSurface::orientation_of(const Points& x, const Points& normals, con
   return agreement < 0 ? -1 : 1;
 }
 
-Foot FacingSurface::closest(const Vec3& p, const Vec3& direction) const {
+ClosestPoint FacingSurface::closest(const Vec3& p, const Vec3& direction) const {
   const ClosestOnSurface nearest = tree_.closest(p);
   if (facet_normal(nearest.triangle).dot(direction) >= 0) return foot(nearest);
   double reach = std::max(least_reach_, kWidening * std::sqrt(nearest.distance_squared));
@@ -53,8 +53,8 @@ Foot FacingSurface::closest(const Vec3& p, const Vec3& direction) const {
   return foot(nearest);
 }
 
-Foot FacingSurface::foot(const ClosestOnSurface& at) const {
-  Foot foot{{}, at.point, at.weights, Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero()};
+ClosestPoint FacingSurface::foot(const ClosestOnSurface& at) const {
+  ClosestPoint foot{{}, at.point, at.weights, Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero()};
   int on = 0, opposite = 0;
   for (int k = 0; k < 3; ++k) {
     foot.corners[static_cast<size_t>(k)] = triangles_(k, at.triangle);

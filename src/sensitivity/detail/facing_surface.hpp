@@ -8,7 +8,7 @@
 namespace coapt {
 
 // Where the closest point lies, and what it follows of a motion of its facet and of the point that seeks it.
-struct Foot {
+struct ClosestPoint {
   std::array<int, 3> corners;  // of the facet
   Vec3 point, weights;         // and its barycentric coordinates
   Eigen::Matrix3d away;        // projection on what it does not follow: the normal of the facet; on an edge
@@ -23,7 +23,7 @@ class FacingSurface {
   // Both must outlive this object and stay as they are.
   FacingSurface(const Points& x, const Triangles& triangles);
 
-  Foot closest(const Vec3& p, const Vec3& direction) const;
+  ClosestPoint closest(const Vec3& p, const Vec3& direction) const;
 
   // -1 where most of the surface with this area at its vertices faces against its nearest facets, else 1.
   double orientation_of(const Points& x, const Points& normals, const Vector& areas) const;
@@ -31,7 +31,7 @@ class FacingSurface {
  private:
   Vec3 corner(int triangle, int k) const { return x_.col(triangles_(k % 3, triangle)); }
   Vec3 facet_normal(int triangle) const;
-  Foot foot(const ClosestOnSurface& at) const;
+  ClosestPoint foot(const ClosestOnSurface& at) const;
 
   const Points& x_;
   const Triangles& triangles_;

@@ -31,9 +31,9 @@ void carry_lengths(EnergyTerm& from, EnergyTerm& to) {
   if ((lengths.array() > 0).all()) lines->set_rest_lengths(lengths);
 }
 
-class MadeNumber final : public Parameter {
+class FiniteDifferenceParameter final : public Parameter {
  public:
-  MadeNumber(std::string name, TermNumber number)
+  FiniteDifferenceParameter(std::string name, TermNumber number)
       : Parameter(std::move(name)), number_(std::move(number)), value_(number_.value) {}
 
   Vector value() const override { return Vector::Constant(1, value_); }
@@ -154,7 +154,7 @@ std::unique_ptr<Parameter> make_term_number(std::string name, TermNumber number)
       defects.push_back(where + "term \"" + term->name() + "\" (" + std::string(term->type()) +
                         ") is not one of elastic elements");
   if (!defects.empty()) throw InputError(defects);
-  return std::make_unique<MadeNumber>(std::move(name), std::move(number));
+  return std::make_unique<FiniteDifferenceParameter>(std::move(name), std::move(number));
 }
 
 }  // namespace coapt

@@ -55,15 +55,15 @@ Points boundary_points(const Points& x, const Triangles& triangles) {
   return x(Eigen::all, nodes);
 }
 
-StressRow row_of(const StressBench& bench, const BuiltRow& row) {
+StressRow row_of(const StressRunner& bench, const BuiltRow& row) {
   return {row.id, row.scene.name, row.name, row.measure, row.unit, row.is_quick, [bench, row] {
             const StressScene scene = written(bench.options().folder / "scenes", row.scene);
-            const Stressed solved = bench.solve(scene, {.judges_every_state = row.judges_every_state});
+            const StressRun solved = bench.solve(scene, {.judges_every_state = row.judges_every_state});
             return row.judge(scene, solved);
           }};
 }
 
-StressOutcome converged_and(const Stressed& solved, const StressScene& scene, double figure, double limit,
+StressOutcome converged_and(const StressRun& solved, const StressScene& scene, double figure, double limit,
                             const std::string& message) {
   if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
   return measured(solved, figure, limit, message);

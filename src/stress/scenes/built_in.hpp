@@ -37,30 +37,30 @@ struct BuiltRow {
   std::string id, name, measure, unit;
   bool is_quick = false;
   BuiltScene scene;
-  std::function<StressOutcome(const StressScene&, const Stressed&)> judge;
+  std::function<StressOutcome(const StressScene&, const StressRun&)> judge;
   bool judges_every_state = false;
 };
-StressRow row_of(const StressBench& bench, const BuiltRow& row);
+StressRow row_of(const StressRunner& bench, const BuiltRow& row);
 
 // A pass or failure of something that did converge, else the stall.
-StressOutcome converged_and(const Stressed& solved, const StressScene& scene, double figure, double limit,
+StressOutcome converged_and(const StressRun& solved, const StressScene& scene, double figure, double limit,
                             const std::string& message);
 
 // The rows by family.
-std::vector<BuiltRow> load_rows();        // S3, S25: a disc under any load
-std::vector<BuiltRow> line_rows();        // S5, S11: chords and tethers
-std::vector<BuiltRow> sheet_rows();       // S6, S8, S9, S11: sheets
-std::vector<BuiltRow> lost_rows();        // S10, S12: no equilibrium, or another branch
-std::vector<BuiltRow> degenerate_rows();  // S13, S26: contact
-std::vector<BuiltRow> folded_rows();      // S13, S26: sheets that meet themselves or have holes
-std::vector<BuiltRow> tunnelling_rows();  // S14, S25: contact under load
+std::vector<BuiltRow> load_rows();            // S3, S25: a disc under any load
+std::vector<BuiltRow> line_rows();            // S5, S11: chords and tethers
+std::vector<BuiltRow> sheet_rows();           // S6, S8, S9, S11: sheets
+std::vector<BuiltRow> no_equilibrium_rows();  // S10, S12: no equilibrium, or another branch
+std::vector<BuiltRow> degenerate_rows();      // S13, S26: contact
+std::vector<BuiltRow> folded_rows();          // S13, S26: sheets that meet themselves or have holes
+std::vector<BuiltRow> tunnelling_rows();      // S14, S25: contact under load
 
 // Rows that are no solve of one scene.
-std::vector<StressRow> collision_query_rows();                       // S15
-std::vector<StressRow> bad_input_rows(const StressBench& bench);     // S20
-std::vector<StressRow> random_scene_rows(const StressBench& bench);  // S21
-std::vector<StressRow> large_scene_rows(const StressBench& bench);   // S24
-std::vector<StressRow> coincident_rows(const StressBench& bench);    // S13
+std::vector<StressRow> collision_query_rows();                        // S15
+std::vector<StressRow> bad_input_rows(const StressRunner& bench);     // S20
+std::vector<StressRow> random_scene_rows(const StressRunner& bench);  // S21
+std::vector<StressRow> large_scene_rows(const StressRunner& bench);   // S24
+std::vector<StressRow> coincident_rows(const StressRunner& bench);    // S13
 
 // The generated valve, 300 triangles, for the rows that are done to any scene. Written into the folder.
 StressScene built_in_valve(const std::filesystem::path& folder, bool has_contact);

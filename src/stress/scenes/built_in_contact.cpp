@@ -28,7 +28,7 @@ BuiltRow facet_row() {
               "S14_facet", 128, 0.03, shifted_mesh(square(1.4, 98), {-0.2, -0.2, 0}), kPressure,
               filled(R"({ "type": "contact_facet", "range": "$RANGE mm", "strength": "$STRENGTH N/mm^3" })",
                      {{"RANGE", kRange}, {"STRENGTH", strength}})),
-          [](const StressScene& scene, const Stressed& solved) {
+          [](const StressScene& scene, const StressRun& solved) {
             if (auto wrong = untruth(solved, scene.scene.solver.tolerance)) return *wrong;
             const bool is_said = !solved.model.warnings.empty();
             StressOutcome outcome = measured(solved, is_said ? 0 : static_cast<double>(solved.intersections),
@@ -67,7 +67,7 @@ std::vector<BuiltRow> degenerate_rows() {
                       pressed_scene("S26_needles", 450, height, needles, 0.3, barrier_term(0.01)))};
 }
 
-std::vector<StressRow> coincident_rows(const StressBench& bench) {
+std::vector<StressRow> coincident_rows(const StressRunner& bench) {
   const auto refused = [bench]() -> StressOutcome {
     StressOutcome outcome{StressVerdict::Fail, 1, 0, "was not refused: no barrier is finite there"};
     try {

@@ -45,7 +45,7 @@ BuiltRow weight_row(const char* id, const std::string& name, bool is_quick, Buil
           "",
           is_quick,
           std::move(scene),
-          [exact](const StressScene& built, const Stressed& solved) {
+          [exact](const StressScene& built, const StressRun& solved) {
             const double length = (solved.x.col(1) - solved.x.col(0)).norm();
             return converged_and(solved, built, std::abs(length / exact - 1), kLimit, "the length is wrong");
           }};

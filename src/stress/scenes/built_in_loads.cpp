@@ -30,7 +30,7 @@ BuiltScene disc_scene(const std::string& name, int triangles, double young, doub
           .mesh = disc(kRadius, triangles)};
 }
 
-double rise(const Stressed& solved) { return solved.x.row(2).maxCoeff(); }
+double rise(const StressRun& solved) { return solved.x.row(2).maxCoeff(); }
 
 // q = p a / (E h), and the deflection of the centre over the radius: Hencky's asymptote for small q (1915, as
 // corrected by Campbell 1956), beyond it the axisymmetric equations of exact geometry, solved by shooting.
@@ -47,7 +47,7 @@ BuiltRow disc_row(const Load& load) {
           "",
           load.q == 1e-6,
           disc_scene("S3_disc_" + number_text(load.q), 1500, kYoung, kThickness, pressure, 1e-6),
-          [load](const StressScene& scene, const Stressed& solved) {
+          [load](const StressScene& scene, const StressRun& solved) {
             return converged_and(solved, scene, std::abs(rise(solved) / kRadius / load.exact - 1), kLimit,
                                  "the deflection is wrong");
           }};
@@ -63,7 +63,7 @@ BuiltRow bubble_row() {
           "",
           true,
           disc_scene("S25_thin", 250, 1, 1e-9, kQ * 1e-9 / kRadius, 1e-8),
-          [](const StressScene& scene, const Stressed& solved) {
+          [](const StressScene& scene, const StressRun& solved) {
             return converged_and(solved, scene, kQ * kRadius / rise(solved), 10, "the bubble is too small");
           }};
 }
@@ -77,7 +77,7 @@ BuiltRow stiff_row() {
           "",
           true,
           disc_scene("S25_stiff", 250, 1e15, 1, 1e-15, 1e-8),
-          [q](const StressScene& scene, const Stressed& solved) {
+          [q](const StressScene& scene, const StressRun& solved) {
             if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
             return measured(solved, std::abs(rise(solved)) / (kRadius * std::cbrt(q)), 1,
                             "moves farther than it can");

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostIterations = 1000;
 
 // Whatever has no equilibrium must be named so, in time.
-StressOutcome named_as_lost(const StressScene& scene, const Stressed& solved) {
+StressOutcome named_as_lost(const StressScene& scene, const StressRun& solved) {
   if (auto wrong = untruth(solved, scene.scene.solver.tolerance)) return *wrong;
   if (solved.result.status == Status::Converged)
     return outcome_of(solved, StressVerdict::Fail, "found an equilibrium where there is none");
@@ -60,7 +60,7 @@ BuiltRow balloon_row() {
           "",
           false,
           balloon_scene("S10_balloon", balloon_pressure(kStretch)),
-          [](const StressScene& scene, const Stressed& solved) {
+          [](const StressScene& scene, const StressRun& solved) {
             const double width = solved.x.row(0).maxCoeff() - solved.x.row(0).minCoeff();
             const Points& rest = scene.ground.model.X;
             const double before = rest.row(0).maxCoeff() - rest.row(0).minCoeff();
@@ -173,7 +173,7 @@ BuiltRow arch_row() {
                       {{"SPAN", kSpan}, {"BENDING", kBending}}),
        .mesh = mesh,
        .points = {{"load", forces}}},
-      [](const StressScene& scene, const Stressed& solved) {
+      [](const StressScene& scene, const StressRun& solved) {
         if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
         const bool has_snapped = solved.x.row(2).mean() + solved.model.origin[2] < 0,
                    is_told = !solved.result.branch_changes.empty();
@@ -184,7 +184,7 @@ BuiltRow arch_row() {
 
 }  // namespace
 
-std::vector<BuiltRow> lost_rows() {
+std::vector<BuiltRow> no_equilibrium_rows() {
   return {balloon_row(),
           lost_row("neo-Hookean balloon, 1.1 times its greatest pressure", true,
                    balloon_scene("S10_burst", 1.1 * greatest_pressure())),

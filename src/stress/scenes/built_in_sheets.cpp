@@ -34,7 +34,7 @@ BuiltRow patch_row(double aspect) {
 )",
            .mesh = mesh,
            .points = {{"rim", boundary_points(exact, mesh.triangles)}}},
-          [exact](const StressScene& scene, const Stressed& solved) {
+          [exact](const StressScene& scene, const StressRun& solved) {
             const Points x = solved.x.colwise() + solved.model.origin;
             return converged_and(solved, scene, (x - exact).cwiseAbs().maxCoeff() / kSide, kLimit,
                                  "the inside does not follow the rim");
@@ -60,7 +60,7 @@ BuiltRow idle_row(const std::string& name, const std::string& folder, const std:
 }
 )",
            .mesh = square(kSide, 200)},
-          [](const StressScene& scene, const Stressed& solved) {
+          [](const StressScene& scene, const StressRun& solved) {
             return converged_and(solved, scene, solved.result.iterations, 0,
                                  "looked for what was there already");
           }};
@@ -91,7 +91,7 @@ BuiltRow saddle_row() {
 )",
                           {{"SIDE", kSide}, {"PUSH", kPush}}),
            .mesh = rectangle(kSide, 10, 128)},
-          [](const StressScene& scene, const Stressed& solved) {
+          [](const StressScene& scene, const StressRun& solved) {
             if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
             const Stability verdict = solved.result.certificate.stability.verdict;
             const bool is_told = solved.result.message.find("saddle") != std::string::npos;
@@ -129,7 +129,7 @@ BuiltRow border_row() {
 )",
                {{"SIDE", kSide}, {"PULL", (kStretch - 1) * kSide}, {"POISSON", kPoisson}}),
            .mesh = square(kSide, 200)},
-          [exact](const StressScene& scene, const Stressed& solved) {
+          [exact](const StressScene& scene, const StressRun& solved) {
             const double width = solved.x.row(1).maxCoeff() - solved.x.row(1).minCoeff();
             return converged_and(solved, scene, std::abs(width / kSide / exact - 1), kLimit,
                                  "the width is wrong");

@@ -60,7 +60,7 @@ void move_term(TermSpec& term, const StressScene& subject, const StressFrame& fr
   }
 }
 
-void move_networks(Groundwork& ground, double length) {
+void move_networks(SceneGeometry& ground, double length) {
   for (auto& [path, placed] : ground.networks)
     for (Chord& chord : placed.network.chords) {
       chord.rest_length *= length;
@@ -140,7 +140,7 @@ void renumber_term(TermSpec& term, const StressScene& subject, const std::vector
   }
 }
 
-void renumber_mesh(Groundwork& ground, const std::vector<int>& number) {
+void renumber_mesh(SceneGeometry& ground, const std::vector<int>& number) {
   TriangleMesh& mesh = ground.model.mesh;
   const std::vector<int> order = shuffled(mesh.triangles.cols());
   for (int& corner : mesh.triangles.reshaped()) corner = number[static_cast<size_t>(corner)];
@@ -188,7 +188,7 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
     for (FibreEntry& entry : moved.scene.fibres->entries)
       entry.nodes = by_number(entry.nodes, subject, entry.where);
 
-  Groundwork& ground = moved.ground;
+  SceneGeometry& ground = moved.ground;
   Model& model = ground.model;
   const Vec3 origin = model.origin;
   const Points absolute = model.X.colwise() + origin, turned = frame.length * frame.turn * absolute;
@@ -227,7 +227,7 @@ std::string numbering_obstacle(const StressScene& subject) {
 
 Renumbered renumbered(const StressScene& subject) {
   Renumbered found{copy_of(subject), shuffled(subject.ground.model.mesh.vertex_count())};
-  Groundwork& ground = found.scene.ground;
+  SceneGeometry& ground = found.scene.ground;
   Model& model = ground.model;
   std::vector<int>& number = found.number;
   while (std::ssize(number) < model.X.cols()) number.push_back(static_cast<int>(number.size()));

@@ -42,13 +42,13 @@ class PassingTerm final : public EnergyTerm {
   void add_circulatory_tangent(const Points& x, std::vector<TangentBlock>& blocks) const override {
     inner_.add_circulatory_tangent(x, blocks);
   }
-  bool renew(const Points& x) override { return inner_.renew(x); }
+  bool rebuild_potential(const Points& x) override { return inner_.rebuild_potential(x); }
   bool simplify() override { return inner_.simplify(); }
   bool limits_steps() const override { return inner_.limits_steps(); }
   double step_limit(const Points& x, const Points& d, double most) const override {
     return inner_.step_limit(x, d, most);
   }
-  bool stiffen(const Points& x) override { return inner_.stiffen(x); }
+  bool escalate_stiffness(const Points& x) override { return inner_.escalate_stiffness(x); }
   TermCounters counters() const override { return inner_.counters(); }
 
  private:

@@ -7,7 +7,7 @@ namespace coapt {
 namespace {
 
 // Held, and nothing ever through anything. A barrier that is not reached proves nothing.
-StressOutcome nothing_through(const StressScene& scene, const Stressed& solved, bool must_touch) {
+StressOutcome nothing_through(const StressScene& scene, const StressRun& solved, bool must_touch) {
   if (auto outcome = not_converged(solved, scene.scene.solver.tolerance)) return *outcome;
   long touching = 0;
   for (const TermReport& term : solved.result.terms)
@@ -93,7 +93,7 @@ BuiltRow contact_row(const char* id, const std::string& name, bool is_quick, Bui
           "",
           is_quick,
           std::move(scene),
-          [must_touch](const StressScene& built, const Stressed& solved) {
+          [must_touch](const StressScene& built, const StressRun& solved) {
             return nothing_through(built, solved, must_touch);
           },
           true};

@@ -6,7 +6,7 @@ namespace coapt {
 namespace {
 
 // Vertices that lines end at, supports hold, or the boundary runs through.
-std::vector<bool> bound_vertices(const Groundwork& ground) {
+std::vector<bool> bound_vertices(const SceneGeometry& ground) {
   const TriangleMesh& mesh = ground.model.mesh;
   std::vector<bool> kept(static_cast<size_t>(mesh.vertex_count()), false);
   const auto keep = [&](int node) {

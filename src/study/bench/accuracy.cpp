@@ -5,7 +5,7 @@
 #include "results/frames.hpp"
 #include "run/run_parts.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/refining.hpp"
+#include "scene/build/refine_scene.hpp"
 #include "study/bench/discretisation.hpp"
 #include "study/detail/method_list.hpp"
 
@@ -51,7 +51,7 @@ class Search {
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
     estimate.wanted_mm = wanted_mm;
     estimate.tolerance = kFirstTolerance;
-    grounds_.push_back(lay_groundwork(scene));
+    grounds_.push_back(scene_geometry(scene));
     build(scene, grounds_.back());
     build(scene, ground(1));  // what a finer mesh cannot have is said before the first solve
   }
@@ -98,7 +98,7 @@ class Search {
     return options;
   }
 
-  const Groundwork& ground(size_t cuts) {
+  const SceneGeometry& ground(size_t cuts) {
     while (grounds_.size() <= cuts) grounds_.push_back(refined(grounds_.back()));
     return *std::next(grounds_.begin(), static_cast<std::ptrdiff_t>(cuts));
   }
@@ -152,7 +152,7 @@ class Search {
   const RunOptions& options_;
   int most_triangles_;
   double most_seconds_, start_ = wall_seconds();
-  std::list<Groundwork> grounds_;  // the scene's own first; the others refer to it
+  std::list<SceneGeometry> grounds_;  // the scene's own first; the others refer to it
 };
 
 void check(const Scene& scene, double wanted_mm, const RunOptions& options) {

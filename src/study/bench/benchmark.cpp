@@ -2,7 +2,7 @@
 
 #include "mesh/triangle_mesh.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/refining.hpp"
+#include "scene/build/refine_scene.hpp"
 #include "study/bench/detail/bench_shown.hpp"
 #include "study/bench/detail/unit_cost.hpp"
 #include "study/detail/method_list.hpp"
@@ -38,9 +38,9 @@ void check_options(const Scene& scene, const SolverTable& solvers, const BenchOp
 }
 
 // The scene's own nodes first, then every mesh that is asked for and one more. Each refers to the first.
-std::list<Groundwork> laid_grounds(const Scene& scene, int levels) {
-  std::list<Groundwork> grounds;
-  grounds.push_back(lay_groundwork(scene));
+std::list<SceneGeometry> laid_grounds(const Scene& scene, int levels) {
+  std::list<SceneGeometry> grounds;
+  grounds.push_back(scene_geometry(scene));
   if (grounds.front().model.mesh.triangle_count() > 0)
     for (int k = 0; k <= levels; ++k) grounds.push_back(refined(grounds.back()));
   build(scene, grounds.front());  // what is refused is refused before the first solve
@@ -48,7 +48,7 @@ std::list<Groundwork> laid_grounds(const Scene& scene, int levels) {
   return grounds;
 }
 
-BenchMesh described(const Groundwork& ground, bool is_benchmarked) {
+BenchMesh described(const SceneGeometry& ground, bool is_benchmarked) {
   const Model& model = ground.model;
   BenchMesh mesh;
   mesh.triangles = model.mesh.triangle_count();
@@ -60,7 +60,7 @@ BenchMesh described(const Groundwork& ground, bool is_benchmarked) {
 
 // Distances between the reference equilibria from mesh to mesh, and what they say of the error of each.
 // Meshes from the first whose equilibrium is missing on are left out: two that are there say something.
-void estimate_meshes(const std::list<Groundwork>& grounds, const std::vector<Equilibrium>& equilibria,
+void estimate_meshes(const std::list<SceneGeometry>& grounds, const std::vector<Equilibrium>& equilibria,
                      Benchmark& found) {
   if (found.meshes.size() < 2) return;
   std::vector<TriangleMesh> shapes;
@@ -83,7 +83,7 @@ void estimate_meshes(const std::list<Groundwork>& grounds, const std::vector<Equ
 }
 
 // The reference equilibrium on the finest mesh that it is known on, none where the scene's own is the finest.
-std::optional<TriangleMesh> finest_shape(const std::list<Groundwork>& grounds,
+std::optional<TriangleMesh> finest_shape(const std::list<SceneGeometry>& grounds,
                                          const std::vector<Equilibrium>& equilibria, const Benchmark& found) {
   size_t last = 0;
   while (last + 1 < found.meshes.size() && found.meshes[last + 1].error_mm) ++last;
@@ -127,7 +127,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
                         const RunOptions& wanted) {
   check_options(given, solvers, options);
   const Scene scene = with_closed_surface(given, options.closed);
-  const std::list<Groundwork> grounds = laid_grounds(scene, options.levels);
+  const std::list<SceneGeometry> grounds = laid_grounds(scene, options.levels);
   RunOptions run = wanted;
   run.modes = 0;  // eigenvalues are no part of a solve
   const SolveSetup setup = solve_setup(scene, solvers, run);
@@ -150,7 +150,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
 
   const BenchCourse course{scene, solvers, options, run};
   std::vector<Equilibrium> equilibria;
-  for (const Groundwork& ground : grounds) {
+  for (const SceneGeometry& ground : grounds) {
     const bool is_benchmarked = found.meshes.size() <= static_cast<size_t>(options.levels);
     found.meshes.push_back(described(ground, is_benchmarked));
     const size_t mesh = found.meshes.size() - 1;

@@ -67,7 +67,7 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
   for (size_t method = 0; method < bench.methods.size(); ++method)
     for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh) {
       PageSeries series{.name = bench.methods[method].name + ", " + mesh_text(bench.meshes[mesh]),
-                        .kin = static_cast<int>(method)};
+                        .group = static_cast<int>(method)};
       for (const BenchRun& run : bench.runs) {
         if (run.method != method || run.mesh != mesh) continue;
         const std::optional<Height> height = height_of(bench, run, kind);

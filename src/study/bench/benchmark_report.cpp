@@ -203,7 +203,7 @@ void add_row(const Benchmark& bench, const BenchRun& run, std::ostream& csv) {
 std::string benchmark_json(const Benchmark& bench) { return json_text(benchmark_as_json(bench), 2) + "\n"; }
 
 std::string benchmark_csv(const Benchmark& bench) {
-  std::ostringstream csv = csv_begun(kHeader);
+  std::ostringstream csv = csv_with_header(kHeader);
   for (const BenchRun& run : bench.runs) add_row(bench, run, csv);
   return csv.str();
 }

@@ -44,7 +44,7 @@ double energy_above(const ComparedMethod& reference, const ComparedMethod& metho
   Objective& objective = *reference.run->model.objective;
   if (!objective.has_circulatory_force()) return here.energy - there.energy;
   const Vector q = objective.unknowns(method.run->report.fields.x);
-  objective.follow_path(there.q);
+  objective.set_path_anchor(there.q);
   return objective.value(q) - objective.value(there.q);
 }
 

@@ -6,7 +6,7 @@ namespace coapt {
 namespace {
 
 // The nodal gradient of all terms, loads without a potential included.
-Points nodal_gradient(const Scene& scene, const Groundwork& ground, const Points& x) {
+Points nodal_gradient(const Scene& scene, const SceneGeometry& ground, const Points& x) {
   Points gradient = Points::Zero(3, x.cols()), circulatory = gradient;
   for (const auto& term : build_terms(scene, ground)) {
     Sink sink(gradient.data());
@@ -19,7 +19,8 @@ Points nodal_gradient(const Scene& scene, const Groundwork& ground, const Points
 
 }  // namespace
 
-SceneDerivatives::SceneDerivatives(const Groundwork& ground, std::vector<Neighbours> neighbours, double share)
+SceneDerivatives::SceneDerivatives(const SceneGeometry& ground, std::vector<Neighbours> neighbours,
+                                   double share)
     : Parameter("scene"), ground_(ground), neighbours_(std::move(neighbours)), share_(share) {}
 
 std::string SceneDerivatives::defect(const Vector& given) const {

@@ -1,7 +1,7 @@
 // Derivatives by any number of a scene's terms, without a solve. Private to this room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene.hpp"
 #include "sensitivity/parameters/parameter.hpp"
 
@@ -20,7 +20,7 @@ class SceneDerivatives final : public Parameter {
   };
 
   // share: by which each neighbour differs, in (0, 1). ground: of all scenes; must outlive this object.
-  SceneDerivatives(const Groundwork& ground, std::vector<Neighbours> neighbours, double share);
+  SceneDerivatives(const SceneGeometry& ground, std::vector<Neighbours> neighbours, double share);
 
   Vector value() const override { return Vector::Ones(static_cast<Eigen::Index>(neighbours_.size())); }
   std::string defect(const Vector& value) const override;
@@ -32,7 +32,7 @@ class SceneDerivatives final : public Parameter {
  private:
   Points force_derivative(const Neighbours& of, const Points& x) const;
 
-  const Groundwork& ground_;
+  const SceneGeometry& ground_;
   std::vector<Neighbours> neighbours_;
   double share_;
 };

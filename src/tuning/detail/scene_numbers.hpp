@@ -1,7 +1,7 @@
 // Numbers of a scene's elastic terms as parameters of an equilibrium. Private to this room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
 #include "sensitivity/parameters/parameter.hpp"
 
@@ -15,7 +15,7 @@ namespace coapt {
 // The scene as it was given, and by which factors its numbers have been changed since.
 class SceneNumbers : public std::enable_shared_from_this<SceneNumbers> {
  public:
-  SceneNumbers(Scene scene, Groundwork&& ground) : scene_(std::move(scene)), ground_(std::move(ground)) {}
+  SceneNumbers(Scene scene, SceneGeometry&& ground) : scene_(std::move(scene)), ground_(std::move(ground)) {}
 
   // Those of one term, which is one of the objective's, by key. None for a load or a contact.
   std::vector<std::string> keys_of(const EnergyTerm& term, const Objective& objective) const;
@@ -29,7 +29,7 @@ class SceneNumbers : public std::enable_shared_from_this<SceneNumbers> {
   Scene with(const SceneParameter& parameter, double factor) const;
 
   Scene scene_;
-  Groundwork ground_;
+  SceneGeometry ground_;
   std::map<std::string, std::pair<SceneParameter, double>> factors_;
 };
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int kMostRefinements = 200;
 
 // Of all that errors are measured on: the mesh, or all nodes where there is none.
-Points measured(const Groundwork& ground, const Points& x) {
+Points measured(const SceneGeometry& ground, const Points& x) {
   const Model& model = ground.model;
   return model.mesh.triangle_count() > 0 ? Points(x.leftCols(model.mesh.vertex_count())) : x;
 }
@@ -27,7 +27,7 @@ NodeError node_error(const Points& a, const Points& b) {
   return {std::sqrt(squares.maxCoeff()), std::sqrt(squares.mean())};
 }
 
-MethodGap gap_between(const Groundwork& ground, const Points& x, const Points& reference) {
+MethodGap gap_between(const SceneGeometry& ground, const Points& x, const Points& reference) {
   MethodGap gap;
   gap.same_vertex = apart(measured(ground, x), measured(ground, reference));
   Vector ignored;
@@ -71,7 +71,7 @@ std::string refining_solver(const BenchCourse& course, const std::string& method
 
 // Where newton, or where the build has none the method, goes on to from a shape; from a saddle it stays
 // there.
-Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const Groundwork& ground,
+Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const SceneGeometry& ground,
                              const Points& x, const std::string& method, Benchmark& found) {
   const std::string solver = refining_solver(course, method);
   SolveSetup setup = solve_setup(scene, course.solvers, truth_options(course, solver, kEquilibrium));
@@ -107,7 +107,7 @@ BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tol
 }
 
 // From the loosest tolerance to the tightest, or the first that is not reached. Returns the shapes.
-std::vector<Points> run_tolerances(const BenchCourse& course, const Scene& scene, const Groundwork& ground,
+std::vector<Points> run_tolerances(const BenchCourse& course, const Scene& scene, const SceneGeometry& ground,
                                    size_t mesh, size_t method, Benchmark& found) {
   std::vector<Points> shapes;
   for (const double tolerance : found.tolerances) {
@@ -136,7 +136,7 @@ Verdict verdict_of(const Benchmark& found, const BenchEnd& end, const Equilibriu
 }
 
 // Errors of the runs, and the end of the method. shapes: of the last runs of the benchmark, in their order.
-void measure_errors(const Groundwork& ground, const std::vector<Points>& shapes, const Equilibrium& own,
+void measure_errors(const SceneGeometry& ground, const std::vector<Points>& shapes, const Equilibrium& own,
                     const Equilibrium& reference, BenchEnd& end, Benchmark& found) {
   if (own.is_found) end.residual = own.residual;
   if (end.method > 0 && reference.is_found)
@@ -155,7 +155,7 @@ void measure_errors(const Groundwork& ground, const std::vector<Points>& shapes,
 
 }  // namespace
 
-Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size_t mesh, size_t method,
+Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& ground, size_t mesh, size_t method,
                        const Equilibrium& reference, Benchmark& found) {
   BenchEnd end{.method = method, .mesh = mesh};
   Equilibrium own;
@@ -184,7 +184,7 @@ Equilibrium bench_pair(const BenchCourse& course, const Groundwork& ground, size
   return own;
 }
 
-Equilibrium equilibrium_from_start(const BenchCourse& course, const Groundwork& ground, Benchmark& found) {
+Equilibrium equilibrium_from_start(const BenchCourse& course, const SceneGeometry& ground, Benchmark& found) {
   try {
     const std::string& method = found.methods.front().name;
     const SolveSetup setup =

@@ -25,7 +25,7 @@ ViewField mesh_error(const Model& model, const Points& x, const TriangleMesh& fi
 
 }  // namespace
 
-std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
+std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeometry& ground,
                                       const TriangleMesh* finer, Benchmark& found) {
   const std::string& method = found.methods.front().name;
   RunOptions options = course.run;

@@ -9,7 +9,7 @@ namespace coapt {
 // the way through iterates to the shape, coloured first by its distance to `finer`, the equilibrium on the
 // finest mesh that it is known on, where that is not null. A solve of its own, so that keeping the way costs
 // no run that is timed any time. Nothing where the method cannot be run.
-std::optional<ShownSolve> bench_shown(const BenchCourse& course, const Groundwork& ground,
+std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeometry& ground,
                                       const TriangleMesh* finer, Benchmark& found);
 
 }  // namespace coapt

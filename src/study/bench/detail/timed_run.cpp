@@ -17,7 +17,7 @@ Spread spread(std::vector<double> seconds) {
 
 }  // namespace
 
-TimedRun timed_run(const Scene& scene, const Groundwork& ground, const SolveSetup& setup, int repeats) {
+TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup, int repeats) {
   TimedRun run;
   std::vector<double> wall, cpu;
   for (double spent = 0; run.repeats == 0 || (run.repeats < repeats && spent < kEnough); ++run.repeats) {

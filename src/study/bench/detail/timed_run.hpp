@@ -1,7 +1,7 @@
 // One solve, repeated for its time. Private to this room.
 #pragma once
 
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 #include "study/bench/benchmark.hpp"
 
@@ -18,6 +18,6 @@ struct TimedRun {
 
 // repeats: wanted, at least one; no more are begun once they took kEnough seconds together.
 inline constexpr double kEnough = 10;
-TimedRun timed_run(const Scene& scene, const Groundwork& ground, const SolveSetup& setup, int repeats);
+TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup, int repeats);
 
 }  // namespace coapt

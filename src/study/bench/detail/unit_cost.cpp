@@ -13,13 +13,13 @@ constexpr double kShift = 1e-6;  // of the mean diagonal: what has no stiffness 
 
 }  // namespace
 
-double factorisation_seconds(const Scene& scene, const Groundwork& ground, const SolveSetup& setup,
+double factorisation_seconds(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup,
                              const Points& x) {
   const Model model = build(scene, ground);
   Objective& objective = *model.objective;
   objective.prescribe(x);
   const Vector q = objective.unknowns(x);
-  if (objective.has_circulatory_force()) objective.follow_path(q);  // as newton has it
+  if (objective.has_circulatory_force()) objective.set_path_anchor(q);  // as newton has it
   const auto factor = setup.stability.factorisation();
   SparseMatrix h;
   Vector g;

@@ -1,4 +1,4 @@
-#include "scene/build/thinning.hpp"
+#include "scene/build/coarsen_scene.hpp"
 
 #include "core/error.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 using Kind = NodeSelection::Kind;
 
 // Supports of a kind have the same prescribed coordinates and paths of as many stations.
-std::vector<int> support_kinds(const Groundwork& ground) {
+std::vector<int> support_kinds(const SceneGeometry& ground) {
   std::vector<int> kinds(static_cast<size_t>(ground.model.mesh.vertex_count()), 0);
   for (size_t v = 0; v < kinds.size(); ++v)
     for (int c = 0; c < 3; ++c)
@@ -22,7 +22,7 @@ std::vector<int> support_kinds(const Groundwork& ground) {
 }
 
 // The mesh edges with both nodes in the selection: cables run along them.
-void add_lines(const Parameters& p, const Groundwork& ground, std::vector<std::array<int, 2>>& lines) {
+void add_lines(const Parameters& p, const SceneGeometry& ground, std::vector<std::array<int, 2>>& lines) {
   const NodeSelection& selection = p.nodes("edges");
   if (selection.kind == Kind::Set && selection.set == "boundary") return;  // kept in any case
   std::vector<bool> is_wanted(static_cast<size_t>(ground.model.X.cols()), false);
@@ -34,7 +34,7 @@ void add_lines(const Parameters& p, const Groundwork& ground, std::vector<std::a
 }
 
 // Nodes that carry a meaning of their own in a term.
-void add_named(const Parameters& p, const Groundwork& ground, std::vector<int>& keep) {
+void add_named(const Parameters& p, const SceneGeometry& ground, std::vector<int>& keep) {
   constexpr size_t kFew = 64;  // of a set that gives the ends of a line
   if (p.has("nodes")) {
     const NodeSelection& selection = p.nodes("nodes");
@@ -57,7 +57,7 @@ void add_named(const Parameters& p, const Groundwork& ground, std::vector<int>& 
 
 }  // namespace
 
-CoarsenOptions coarsen_options(const Scene& scene, const Groundwork& finest) {
+CoarsenOptions coarsen_options(const Scene& scene, const SceneGeometry& finest) {
   CoarsenOptions options;
   options.kinds = support_kinds(finest);
   std::vector<int> keep;
@@ -75,10 +75,11 @@ CoarsenOptions coarsen_options(const Scene& scene, const Groundwork& finest) {
   return options;
 }
 
-Groundwork thinned(const Groundwork& finest, const TriangleMesh& coarse, const std::vector<int>& kept) {
+SceneGeometry coarsened(const SceneGeometry& finest, const TriangleMesh& coarse,
+                        const std::vector<int>& kept) {
   const Model& fine = finest.model;
   const int fine_count = fine.mesh.vertex_count(), gone = fine_count - coarse.vertex_count();
-  Groundwork ground;
+  SceneGeometry ground;
   ground.finest = &finest;
   ground.number.assign(static_cast<size_t>(fine.X.cols()), -1);
   std::vector<int> nodes = kept;  // the fine node of each node here

@@ -1,4 +1,4 @@
-#include "optim/hosted_run.hpp"
+#include "optim/external_solver_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +14,13 @@ double positive_or_one(double value) { return value > 0 ? value : 1; }
 
 }  // namespace
 
-HostedRun::HostedRun(Monitor& monitor, const Vector& q) : monitor_(monitor) {
+ExternalSolverRun::ExternalSolverRun(Monitor& monitor, const Vector& q) : monitor_(monitor) {
   last_.q = accepted_.q = q;
   last_.energy = monitor_.gradient(last_.q, last_.g);
   report();
 }
 
-bool HostedRun::begin_attempt() {
+bool ExternalSolverRun::begin_attempt() {
   if (status_) return false;
   const double gradient = accepted_.g.norm();
   attempts_without_gain_ = gradient < kWorthAnAttempt * gradient_at_attempt_ ? 0 : attempts_without_gain_ + 1;
@@ -37,7 +37,7 @@ bool HostedRun::begin_attempt() {
   return true;
 }
 
-double HostedRun::evaluate(const Vector& z, Vector& gradient) {
+double ExternalSolverRun::evaluate(const Vector& z, Vector& gradient) {
   if (!status_ && monitor_.is_out_of_time()) status_ = Status::TimeLimit;
   if (status_ || !z.allFinite() || !evaluate_last(z)) {
     gradient.setZero(z.size());
@@ -51,7 +51,7 @@ double HostedRun::evaluate(const Vector& z, Vector& gradient) {
   return change / energy_;
 }
 
-bool HostedRun::accept(const Vector& z) {
+bool ExternalSolverRun::accept(const Vector& z) {
   if (status_) return false;
   const bool is_known = z.size() == last_z_.size() && z == last_z_;
   if (is_known || evaluate_last(z)) {
@@ -60,7 +60,7 @@ bool HostedRun::accept(const Vector& z) {
   return !status_;
 }
 
-bool HostedRun::accept_if_better() {
+bool ExternalSolverRun::accept_if_better() {
   if (status_) return false;
   const double change = last_.energy - accepted_.energy;
   const double noise = monitor_.energy_noise(accepted_.energy);
@@ -68,14 +68,14 @@ bool HostedRun::accept_if_better() {
   return !status_;
 }
 
-bool HostedRun::evaluate_last(const Vector& z) {
+bool ExternalSolverRun::evaluate_last(const Vector& z) {
   last_z_ = z;
   last_.q = origin_.q + length_ * z;
   last_.energy = monitor_.gradient(last_.q, last_.g);
   return std::isfinite(last_.energy) && last_.g.allFinite();
 }
 
-void HostedRun::report() {
+void ExternalSolverRun::report() {
   status_ = monitor_.accept(last_.q, last_.energy, last_.g);
   if (status_ == Status::NonFinite) return;
   last_step_ = (last_.q - accepted_.q).lpNorm<Eigen::Infinity>();

@@ -1,4 +1,4 @@
-#include "optim/carry_along.hpp"
+#include "optim/harmonic_extension.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>

@@ -1,4 +1,4 @@
-#include "stress/energy_judge.hpp"
+#include "stress/energy_checker.hpp"
 
 #include "core/number_text.hpp"
 #include "stress/bench.hpp"

@@ -2,16 +2,17 @@
 #pragma once
 
 #include "mesh/remesh/coarsen.hpp"
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 
 namespace coapt {
 
 // How to coarsen the scene's mesh: insertions of chords, nodes that terms name one by one and lines of cables
 // stay; supports are thinned out among themselves.
-CoarsenOptions coarsen_options(const Scene& scene, const Groundwork& finest);
+CoarsenOptions coarsen_options(const Scene& scene, const SceneGeometry& finest);
 
-// The groundwork on a coarser mesh; kept: for each of its vertices the vertex of the scene's own mesh.
+// The geometry on a coarser mesh; kept: for each of its vertices the vertex of the scene's own mesh.
 // The result refers to `finest`. Pre: coarsened with coarsen_options().
-Groundwork thinned(const Groundwork& finest, const TriangleMesh& coarse, const std::vector<int>& kept);
+SceneGeometry coarsened(const SceneGeometry& finest, const TriangleMesh& coarse,
+                        const std::vector<int>& kept);
 
 }  // namespace coapt

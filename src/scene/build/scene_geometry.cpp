@@ -1,4 +1,4 @@
-#include "scene/build/groundwork.hpp"
+#include "scene/build/scene_geometry.hpp"
 
 #include "core/error.hpp"
 #include "formats/json/valve_json.hpp"
@@ -17,7 +17,7 @@ namespace coapt {
 namespace {
 
 // Everything that is gathered on the way.
-struct Assembly : Groundwork {
+struct Assembly : SceneGeometry {
   std::map<std::string, Points> points;  // named positions, in the frame of the files [mm]
   std::vector<int> held;                 // nodes prescribed unless the scene frees them
 
@@ -263,7 +263,7 @@ void order_annulus(const Scene& scene, Assembly& assembly) {
 namespace {
 
 // The surface is there.
-Groundwork laid(const Scene& scene, Assembly assembly) {
+SceneGeometry assembled(const Scene& scene, Assembly assembly) {
   Model& model = assembly.model;
   read_reference(scene, assembly);
   NamedNetworks networks = read_valves(scene, assembly);
@@ -289,28 +289,28 @@ Groundwork laid(const Scene& scene, Assembly assembly) {
   SupportEdit supports{scene, model, assembly.prescribed, model.warnings};
   if (assembly.defects.empty()) edit_supports(supports, assembly.defects);
   hold_isolated_nodes(model, assembly.networks, assembly.prescribed.fixed);
-  return std::move(static_cast<Groundwork&>(assembly));
+  return std::move(static_cast<SceneGeometry&>(assembly));
 }
 
 }  // namespace
 
-Groundwork lay_groundwork(const Scene& scene) {
+SceneGeometry scene_geometry(const Scene& scene) {
   Assembly assembly;
   read_surface(scene, assembly);
-  return laid(scene, std::move(assembly));
+  return assembled(scene, std::move(assembly));
 }
 
-Groundwork lay_groundwork(const Scene& scene, TriangleMesh mesh) {
+SceneGeometry scene_geometry(const Scene& scene, TriangleMesh mesh) {
   Assembly assembly;
   assembly.model.mesh = std::move(mesh);
-  return laid(scene, std::move(assembly));
+  return assembled(scene, std::move(assembly));
 }
 
-const Groundwork& scene_ground(const Groundwork& ground) {
+const SceneGeometry& scene_ground(const SceneGeometry& ground) {
   return ground.finest == nullptr ? ground : scene_ground(*ground.finest);
 }
 
-std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork& ground,
+std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeometry& ground,
                                 const std::string& where) {
   const bool is_listed = selection.kind == NodeSelection::Kind::Indices;
   if (ground.finest == nullptr || (ground.is_refined && !is_listed))
@@ -321,7 +321,7 @@ std::vector<int> selected_nodes(const NodeSelection& selection, const Groundwork
   return nodes;
 }
 
-std::vector<int> kept_vertices(const Groundwork& ground) {
+std::vector<int> kept_vertices(const SceneGeometry& ground) {
   std::vector<int> kept(static_cast<size_t>(ground.model.mesh.vertex_count()));
   for (int v = 0; v < ground.finest->model.mesh.vertex_count(); ++v)
     if (const int here = ground.number[static_cast<size_t>(v)]; here >= 0)
@@ -329,7 +329,7 @@ std::vector<int> kept_vertices(const Groundwork& ground) {
   return kept;
 }
 
-double multiplicity(const NodeSelection* selection, const Groundwork& ground, const std::string& where) {
+double multiplicity(const NodeSelection* selection, const SceneGeometry& ground, const std::string& where) {
   if (ground.finest == nullptr) return 1;
   const Model& own = scene_ground(ground).model;
   if (selection == nullptr)
@@ -339,9 +339,9 @@ double multiplicity(const NodeSelection* selection, const Groundwork& ground, co
   return left > 0 ? static_cast<double>(all) / static_cast<double>(left) : 1;
 }
 
-const TriangleMesh& scene_mesh(const Groundwork& ground) { return scene_ground(ground).model.mesh; }
+const TriangleMesh& scene_mesh(const SceneGeometry& ground) { return scene_ground(ground).model.mesh; }
 
-Vector at_vertices(const Vector& values, const Groundwork& ground) {
+Vector at_vertices(const Vector& values, const SceneGeometry& ground) {
   if (ground.finest == nullptr) return values;
   Vector here(ground.model.mesh.vertex_count());
   if (ground.is_refined) {
@@ -358,7 +358,7 @@ Vector at_vertices(const Vector& values, const Groundwork& ground) {
   return here;
 }
 
-Vector on_triangles(const Vector& values, const Groundwork& ground) {
+Vector on_triangles(const Vector& values, const SceneGeometry& ground) {
   if (ground.finest == nullptr) return values;
   if (ground.is_refined) return on_triangles(values, *ground.coarser).transpose().replicate(4, 1).reshaped();
   const TriangleMesh& fine = ground.finest->model.mesh;

@@ -1,4 +1,4 @@
-#include "scene/build/refining.hpp"
+#include "scene/build/refine_scene.hpp"
 
 #include "mesh/remesh/cut_in_four.hpp"
 
@@ -125,11 +125,11 @@ Prescribed refined_supports(const Prescribed& coarse, const Points& X, const Cut
 
 }  // namespace
 
-Groundwork refined(const Groundwork& ground) {
+SceneGeometry refined(const SceneGeometry& ground) {
   const Model& coarse = ground.model;
   const int old_vertices = coarse.mesh.vertex_count();
   const Cut cut(coarse);
-  Groundwork fine;
+  SceneGeometry fine;
   fine.finest = ground.finest != nullptr ? ground.finest : &ground;
   fine.is_refined = true;
   fine.coarser = &ground;

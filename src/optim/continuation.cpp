@@ -1,7 +1,7 @@
-#include "optim/path_following.hpp"
+#include "optim/continuation.hpp"
 
 #include "core/number_text.hpp"
-#include "optim/carry_along.hpp"
+#include "optim/harmonic_extension.hpp"
 #include "optim/move_prescribed.hpp"
 #include "optim/stability/branch_watch.hpp"
 
@@ -46,7 +46,7 @@ PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& sto
           },
           [&](Vector& q) {
             std::string note;
-            const Status status = settle(solver, objective, q, monitor, stop.tolerance, rounds, note);
+            const Status status = solve_rounds(solver, objective, q, monitor, stop.tolerance, rounds, note);
             return !ends_the_run(status) && objective.true_residual(q) <= stop.tolerance;
           }};
 }
@@ -75,14 +75,15 @@ Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) 
   return outcome;
 }
 
-Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-              int& rounds, std::string& note) {
+Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+                    int& rounds, std::string& note) {
   if (!objective.has_circulatory_force() || solver.follows_path()) {
     for (int stiffening = 0;; ++stiffening) {
-      if (objective.has_circulatory_force()) objective.follow_path(q);
+      if (objective.has_circulatory_force()) objective.set_path_anchor(q);
       monitor.begin_round(monitor.round() + 1, tolerance);
       const Status status = solver.minimize(objective, q, monitor);
-      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.stiffen(q)) return status;
+      if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.escalate_stiffness(q))
+        return status;
     }
   }
   Vector best = q;
@@ -90,7 +91,7 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   double last_residual = kInfinity, contraction = kNaN;
   int without_gain = 0;
   for (int round = 0; round < kMaxRounds; ++round) {
-    objective.hold_dead(q);
+    objective.lag_circulatory_force(q);
     const double residual = objective.true_residual(q);
     without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
     if (without_gain == 0) gained_residual = residual;
@@ -113,8 +114,8 @@ Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
   return Status::Stalled;
 }
 
-Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
-                    Result& result) {
+Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                         Result& result) {
   Objective& objective = problem.objective;
   const Continuation& continuation = problem.continuation;
   const bool is_continued = std::max(continuation.load_steps, continuation.stiffness_steps) > 1;
@@ -142,8 +143,8 @@ Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop
       }
       set_scales(continuation, t, objective);
       const bool is_last = has_arrived && step == steps;
-      outcome.status = settle(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_the_way,
-                              result.rounds, outcome.note);
+      outcome.status = solve_rounds(solver, objective, result.q, monitor,
+                                    is_last ? stop.tolerance : on_the_way, result.rounds, outcome.note);
     } while (!has_arrived && !ends_the_run(outcome.status));
     if (is_blocked || ends_the_run(outcome.status)) break;
     if (steps < kLeastPath) continue;

@@ -1,4 +1,4 @@
-#include "formats/json/sealed_json.hpp"
+#include "formats/json/checksummed_cbor.hpp"
 
 #include "core/error.hpp"
 #include "formats/durable_file.hpp"

@@ -1,11 +1,11 @@
 // What a scene's surface, sets, supports and chords become on finer meshes.
-#include "scene/build/refining.hpp"
+#include "scene/build/refine_scene.hpp"
 
 #include "exchange/import.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
 #include "scene/build/build.hpp"
-#include "scene/build/thinning.hpp"
+#include "scene/build/coarsen_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "valve/generators/mitral.hpp"
 
@@ -21,13 +21,13 @@ class RefinedValve : public testing::Test {
   RefinedValve() {
     write_valve_scene(mitral_valve({.triangles = 400}), folder_.path(), {});
     scene_ = load_scene(folder_.path() / "scene.json");
-    ground_ = lay_groundwork(scene_);
+    ground_ = scene_geometry(scene_);
     fine_ = refined(ground_);
   }
 
   TemporaryFolder folder_;
   Scene scene_;
-  Groundwork ground_, fine_;
+  SceneGeometry ground_, fine_;
 };
 
 TEST_F(RefinedValve, IsTheSameSurfaceWithTheSameChords) {
@@ -77,13 +77,13 @@ TEST_F(RefinedValve, MovesTheMiddlesOfItsAnnulusWithTheirEnds) {
 
 class RefinedSheet : public testing::Test {
  protected:
-  Groundwork ground(const TriangleMesh& mesh, const std::string& boundary, const std::string& load = "") {
+  SceneGeometry ground(const TriangleMesh& mesh, const std::string& boundary, const std::string& load = "") {
     write_mesh(folder_.path() / "sheet.obj", mesh);
     scene_ =
         load_scene(folder_.write("scene.json", R"({"mesh": {"file": "sheet.obj"}, "boundary": )" + boundary +
                                                    R"(, "terms": [{"type": "cst_stvk", "young": "1 MPa",
       "thickness": "0.1 mm"})" + load + "]}"));
-    return lay_groundwork(scene_);
+    return scene_geometry(scene_);
   }
 
   TemporaryFolder folder_;
@@ -92,10 +92,10 @@ class RefinedSheet : public testing::Test {
 
 // All vertices of a strip are on its boundary, but the middles of the edges across it are not.
 TEST_F(RefinedSheet, HoldsItsBoundaryAloneThoughInnerEdgesJoinPlacesOfIt) {
-  const Groundwork coarse = ground(rectangle(4, 1, 8), R"([{"nodes": "boundary", "fix": true}])");
+  const SceneGeometry coarse = ground(rectangle(4, 1, 8), R"([{"nodes": "boundary", "fix": true}])");
   ASSERT_TRUE(coarse.prescribed.fixed.all());
-  const Groundwork fine = refined(coarse), finer = refined(fine);
-  for (const Groundwork* level : {&fine, &finer}) {
+  const SceneGeometry fine = refined(coarse), finer = refined(fine);
+  for (const SceneGeometry* level : {&fine, &finer}) {
     const auto loops = boundary_loops(level->model.mesh.triangles);
     ASSERT_EQ(loops.size(), 1u);
     EXPECT_EQ(level->prescribed.fixed.count(), 3 * static_cast<Eigen::Index>(loops[0].size()));
@@ -105,9 +105,9 @@ TEST_F(RefinedSheet, HoldsItsBoundaryAloneThoughInnerEdgesJoinPlacesOfIt) {
 }
 
 TEST_F(RefinedSheet, HoldsCoordinatesOneByOneAndInnerNodesToo) {
-  const Groundwork coarse = ground(
+  const SceneGeometry coarse = ground(
       square(10, 200), R"([{"nodes": {"box": {"min": [-1, -1, -1], "max": [5.5, 11, 1]}}, "fix": ["z"]}])");
-  const Groundwork fine = refined(coarse);
+  const SceneGeometry fine = refined(coarse);
   for (int v = 0; v < fine.model.X.cols(); ++v) {
     EXPECT_EQ(fine.prescribed.fixed(2, v), fine.model.X(0, v) < 5.01) << fine.model.X.col(v).transpose();
     EXPECT_FALSE(fine.prescribed.fixed(0, v));
@@ -116,20 +116,20 @@ TEST_F(RefinedSheet, HoldsCoordinatesOneByOneAndInnerNodesToo) {
 
 // A value on each vertex or triangle, through two cuts and back to a coarser mesh.
 TEST_F(RefinedSheet, CarriesValuesThroughCutsAndCascades) {
-  const Groundwork own =
+  const SceneGeometry own =
       ground(square(10, 800, CellPattern::Cross), R"([{"nodes": "boundary", "fix": true}])");
   const Vec3 slope(0.3, -0.7, 0);
   const auto linear = [&](const Points& x) { return Vector((slope.transpose() * x).transpose()); };
-  const auto centres = [](const Groundwork& level) {
+  const auto centres = [](const SceneGeometry& level) {
     Points c(3, level.model.mesh.triangle_count());
     for (int t = 0; t < c.cols(); ++t)
       c.col(t) = level.model.X(Eigen::all, level.model.mesh.triangles.col(t)).rowwise().mean();
     return c;
   };
   const Vector at_nodes = linear(own.model.X), in_facets = linear(centres(own));
-  const Groundwork fine = refined(own), finer = refined(fine);
+  const SceneGeometry fine = refined(own), finer = refined(fine);
   int parts = 1;
-  for (const Groundwork* level : {&own, &fine, &finer}) {
+  for (const SceneGeometry* level : {&own, &fine, &finer}) {
     EXPECT_EQ(scene_mesh(*level).triangle_count(), own.model.mesh.triangle_count());
     EXPECT_LT((at_vertices(at_nodes, *level) - linear(level->model.X)).cwiseAbs().maxCoeff(), 1e-12);
     const Vector here = on_triangles(in_facets, *level);
@@ -137,7 +137,7 @@ TEST_F(RefinedSheet, CarriesValuesThroughCutsAndCascades) {
     for (Eigen::Index t = 0; t < here.size(); ++t) EXPECT_EQ(here[t], in_facets[t / parts]);
 
     const Coarsening coarsening = coarsen(level->model.mesh, coarsen_options(scene_, *level));
-    const Groundwork thin = thinned(*level, coarsening.mesh, coarsening.kept);
+    const SceneGeometry thin = coarsened(*level, coarsening.mesh, coarsening.kept);
     ASSERT_LT(thin.model.mesh.triangle_count(), level->model.mesh.triangle_count() / 2);
     EXPECT_EQ(scene_mesh(thin).triangle_count(), own.model.mesh.triangle_count());
     EXPECT_LT((at_vertices(at_nodes, thin) - linear(thin.model.X)).cwiseAbs().maxCoeff(), 1e-12);
@@ -151,7 +151,7 @@ TEST_F(RefinedSheet, CarriesValuesThroughCutsAndCascades) {
   }
 }
 
-double total_force(const Scene& scene, const Groundwork& level) {
+double total_force(const Scene& scene, const SceneGeometry& level) {
   const Model model = build(scene, level);
   Points forces = Points::Zero(3, model.X.cols());
   Sink sink(forces.data());
@@ -162,11 +162,11 @@ double total_force(const Scene& scene, const Groundwork& level) {
 
 // Forces that the scene gives by node are shared out: their sum stays, also on a coarser mesh of a finer one.
 TEST_F(RefinedSheet, KeepsTheWholeOfForcesThatAreGivenByNode) {
-  const Groundwork own = ground(square(10, 800), R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])",
-                                R"(, {"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})");
-  const Groundwork fine = refined(own);
+  const SceneGeometry own = ground(square(10, 800), R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])",
+                                   R"(, {"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})");
+  const SceneGeometry fine = refined(own);
   const Coarsening coarsening = coarsen(fine.model.mesh, coarsen_options(scene_, fine));
-  const Groundwork thin = thinned(fine, coarsening.mesh, coarsening.kept);
+  const SceneGeometry thin = coarsened(fine, coarsening.mesh, coarsening.kept);
   const double whole = total_force(scene_, own);
   EXPECT_GT(std::abs(whole), 0.1);
   EXPECT_NEAR(total_force(scene_, fine) / whole, 1, 1e-12);
@@ -178,10 +178,10 @@ TEST_F(RefinedValve, KeepsListedNodesWhatTheyAre) {
   NodeSelection listed;
   listed.kind = NodeSelection::Kind::Indices;
   listed.indices = {3, static_cast<int>(ground_.model.X.cols()) - 1};
-  const Groundwork finer = refined(fine_);
+  const SceneGeometry finer = refined(fine_);
   const Coarsening coarsening = coarsen(fine_.model.mesh, coarsen_options(scene_, fine_));
-  const Groundwork thin = thinned(fine_, coarsening.mesh, coarsening.kept);
-  for (const Groundwork* level : std::initializer_list<const Groundwork*>{&fine_, &finer}) {
+  const SceneGeometry thin = coarsened(fine_, coarsening.mesh, coarsening.kept);
+  for (const SceneGeometry* level : std::initializer_list<const SceneGeometry*>{&fine_, &finer}) {
     const std::vector<int> nodes = selected_nodes(listed, *level, "");
     ASSERT_EQ(nodes.size(), 2u);
     for (size_t k = 0; k < 2; ++k)

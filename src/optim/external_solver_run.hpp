@@ -12,10 +12,10 @@
 
 namespace coapt {
 
-class HostedRun {
+class ExternalSolverRun {
  public:
   // Evaluates at q and reports it as the first iterate; status() tells whether there is anything to do.
-  HostedRun(Monitor& monitor, const Vector& q);
+  ExternalSolverRun(Monitor& monitor, const Vector& q);
 
   // To be called before each attempt of the library, which then starts at z = 0: the last accepted
   // iterate. From the second attempt on a change of energy is measured by the work of the forces,

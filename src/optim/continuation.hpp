@@ -19,8 +19,8 @@ struct Outcome {
 // at once where the loads have a potential or the solver works from the exact force, else in rounds. Of the
 // result it changes q, rounds and branch_changes. A run that is cut short stays where it had got to, with all
 // loads and the full stiffness.
-Outcome follow_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
-                    Result& result);
+Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                         Result& result);
 
 // Whether nothing can follow on a minimization that ended like this.
 bool ends_the_run(Status status);
@@ -32,7 +32,7 @@ Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q);
 // the exact residual is small, where the solver does not work from the exact force: each round minimises the
 // potential around the last equilibrium, and the remainder contracts geometrically where it settles. rounds:
 // how many renewals, added. note: what there is to say where it does not settle.
-Status settle(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-              int& rounds, std::string& note);
+Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
+                    int& rounds, std::string& note);
 
 }  // namespace coapt
