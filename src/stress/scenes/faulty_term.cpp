@@ -49,6 +49,7 @@ class PassingTerm final : public EnergyTerm {
     return inner_.step_limit(x, d, most);
   }
   bool escalate_stiffness(const Points& x) override { return inner_.escalate_stiffness(x); }
+  bool restore_stiffness() override { return inner_.restore_stiffness(); }
   TermCounters counters() const override { return inner_.counters(); }
 
  private:
