@@ -103,7 +103,7 @@ Vector tune_factors(const TunedScene& tuned, const RegionTuningOptions& options,
   found.failed_solves = tuning.failed;
   for (const TuningTrial& trial : tuning.best.history) found.rounds += trial.is_best ? 1 : 0;
   found.rounds = std::max(0, found.rounds - 1);
-  const Vector factors = tuning.best.value.array().exp();
+  Vector factors = tuning.best.value.array().exp();
   if (found.rounds > 0)
     finish(tuned, options, setup, model.objective->positions(tuning.best.q), factors, found);
   else if (tuning.status == TuningStatus::NoStart || tuning.jacobian.size() == 0)
