@@ -1,4 +1,4 @@
-// Whether a solve's own way suggests that other equilibria are near by, at no cost.
+// Whether the history of a solve suggests that other equilibria are near by, without a search for them.
 #pragma once
 
 #include "optim/solver.hpp"

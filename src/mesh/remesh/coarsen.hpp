@@ -34,8 +34,10 @@ struct Coarsening {
 // other, best first: short new edges, relative to those that the mesh had there, and round triangles; in
 // between edges are flipped to the Delaunay side. Boundary loops, regions, orientation and grading are kept,
 // nothing folds over, and corners of lines and vertices where the mesh is not manifold stay. Where this does
-// not reach the wanted number the mesh is returned less coarse. Deterministic. O(n log n).
-// Pre: corner indices are in range, coordinates are finite, share is in (0, 1].
+// not reach the wanted number the mesh is returned less coarse. Deterministic, and the same
+// surface whatever the order of vertices and triangles, and whatever the frame unless the mesh is symmetric;
+// triangles come in the order of their place. O(n log n). Pre: corner indices are in range, coordinates are
+// finite, share is in (0, 1].
 Coarsening coarsen(const TriangleMesh& mesh, const CoarsenOptions& options = {});
 
 }  // namespace coapt
