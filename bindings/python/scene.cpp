@@ -20,11 +20,13 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
                               std::optional<double> tolerance, std::optional<double> max_seconds,
                               std::optional<int> modes, const std::optional<std::string>& folder,
                               std::optional<int> frames, std::optional<bool> page, int branches,
-                              double branch_kick, std::uint64_t branch_seed) {
+                              double branch_kick, std::uint64_t branch_seed,
+                              std::optional<int> damped_steps) {
   RunOptions options;
   options.solver = solver;
   options.tolerance = tolerance;
   options.max_seconds = max_seconds;
+  options.damped_steps = damped_steps;
   options.modes = modes;
   options.frame_interval = frames;
   options.writes_page = page;
@@ -73,7 +75,8 @@ void define_scene(py::module_& module) {
   module.def("run", &run, py::arg("input"), py::kw_only(), py::arg("callback"), py::arg("solver"),
              py::arg("tolerance"), py::arg("max_seconds"), py::arg("modes"), py::arg("folder"),
              py::arg("frames"), py::arg("page"), py::arg("branches"), py::arg("branch_kick"),
-             py::arg("branch_seed"), "Solves what is handed over, without the interpreter lock.");
+             py::arg("branch_seed"), py::arg("damped_steps"),
+             "Solves what is handed over, without the interpreter lock.");
 }
 
 }  // namespace coapt::python

@@ -7,6 +7,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
+#include "results/result_warnings.hpp"
 #include "run/branches.hpp"
 #include "study/bench/accuracy.hpp"
 
@@ -122,7 +123,7 @@ void print_summary(const RunReport& run) {
   const std::optional<Branches>& branches = report.branches;
   const Result& result = report.result;
   const Metrics& m = report.metrics;
-  std::printf("%s\n", result.message.c_str());
+  std::printf("%s\n", headline(report).text.c_str());
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
   std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
   std::printf("  %-22s %.8g mJ\n", "energy", result.energy);

@@ -175,13 +175,13 @@ void run_command(const TuneArguments& arguments, int& exit_code) {
 void add_tune_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<TuneArguments>();
   CLI::App* command = app.add_subcommand(
-      "tune", "Chord lengths that fit a closed surface, or make orifice and chord force least");
+      "tune", "Chord lengths that fit a closed surface, or minimise orifice and chord force");
   ChordTuningOptions& tuning = arguments->tuning;
   command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
-  command->add_option("-o,--output", arguments->folder,
-                      "Folder of the files (default: the scene's result folder)");
+  command->add_option("-o,--output", arguments->folder, "Folder of the files (default: the scene's)");
   command->add_option("--tolerance", arguments->tolerance, "On the residual (default: the scene's)")
       ->check(positive_defect);
+  add_path_option(*command, arguments->damped_steps);
   command->add_option("--solver", arguments->solver,
                       "Of the first solve and the last (default: the scene's)");
   command->add_option("--target", arguments->target,

@@ -6,7 +6,24 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
+
 namespace coapt::cli {
+namespace {
+
+constexpr int kMostSteps = 100000;  // as in a scene
+
+// Of a number of steps; empty where it can be one.
+std::string steps_defect(const std::string& text) {
+  int steps = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), steps);
+  if (error == std::errc() && end == text.data() + text.size() && steps >= 0 && steps <= kMostSteps)
+    return "";
+  return "expected a whole number from 0, which solves at once, to " + std::to_string(kMostSteps) +
+         ", read " + text;
+}
+
+}  // namespace
 
 RunOptions StudyArguments::options() const {
   RunOptions options;
@@ -48,7 +65,7 @@ void add_path_option(CLI::App& command, std::optional<int>& damped_steps) {
                   "Steps of all loads and of the prescribed motion along a damped path; 0 solves at once "
                   "(default: the scene's)")
       ->type_name("N")
-      ->check(CLI::Range(0, 100000));
+      ->check(steps_defect);
 }
 
 void add_run_arguments(CLI::App& command, StudyArguments& arguments) {

@@ -290,10 +290,9 @@ std::string solve_page(const Model& model, const Report& report) {
   const Result& result = report.result;
   Page page;
   page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
-  page.lead = result.message;
-  page.tone = result.status != Status::Converged            ? Tone::Bad
-              : stability_doubt(result.certificate).empty() ? Tone::Good
-                                                            : Tone::Caution;
+  const Headline line = headline(report);
+  page.lead = line.text;
+  page.tone = result.status != Status::Converged ? Tone::Bad : line.is_in_doubt ? Tone::Caution : Tone::Good;
   if (PageList warnings = warning_list(report); !warnings.items.empty())
     page.sections.push_back({"Warnings", {std::move(warnings)}});
   page.sections.push_back({"Shape", {tiles(report), shape_view_html(solved_view(model, report))}});

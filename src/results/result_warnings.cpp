@@ -22,4 +22,15 @@ std::vector<std::string> result_warnings(const Report& report) {
   return warnings;
 }
 
+Headline headline(const Report& report) {
+  Headline line{report.result.message};
+  if (report.result.status != Status::Converged) return line;
+  line.is_in_doubt = !stability_doubt(report.result.certificate).empty();
+  const bool has_others = report.branches && report.branches->equilibria.size() > 1;
+  if (!has_others && (report.branches || !report.neighbours.is_suspected)) return line;
+  line.is_in_doubt = true;
+  line.text += has_others ? "; one of several equilibria" : "; there may be other equilibria near by";
+  return line;
+}
+
 }  // namespace coapt

@@ -335,7 +335,9 @@ class StudyTest(unittest.TestCase):
         strain = ["--yield-strain", 0.1]
         self.assert_bad_input(coapt("tune-regions", scene, *strain, "--regions", "mesh", "--zones", 2), "--zones")
         for number in ["-1", "half", "nan"]:
-            self.assert_bad_input(coapt("mesh-study", scene, "--damped-steps", number), "--damped-steps", number)
+            for command in ["mesh-study", "tune"]:
+                self.assert_bad_input(coapt(command, scene, "--damped-steps", number), "--damped-steps", number,
+                                      "whole number")
         for command, options in [("tune-regions", strain), ("sensitivity", []), ("mesh-study", []), ("solve", [])]:
             for option in ["--tolerance", "--max-seconds"] + ["--orifice"] * (command == "tune-regions"):
                 for number in ["nan", "inf", "-1", "0"]:

@@ -43,6 +43,12 @@ def test_looks_for_other_equilibria():
     for wrong in [{"branches": -1}, {"branches": True}, {"branches": 1, "branch_kick": 0}]:
         with pytest.raises(coapt.InputError, match="branch"):
             coapt.minimize(V, F, terms, fixed="boundary", **wrong)
+    for wrong in [-1, True, 2.5, 100001]:
+        with pytest.raises(coapt.InputError, match="damped_steps.*solves at once"):
+            coapt.minimize(V, F, terms, fixed="boundary", damped_steps=wrong)
+    damped = coapt.minimize(V, F, terms, fixed="boundary", damped_steps=4)
+    assert damped.success and damped.document["damped_steps"] >= 4
+    assert damped.x == pytest.approx(alone.x, abs=1e-8)
 
 
 def test_a_file_a_dict_and_a_mesh_in_memory_give_the_same_bits(solved):

@@ -3,6 +3,7 @@
 
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
+#include "results/result_warnings.hpp"
 #include "scene/build/build.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
@@ -141,6 +142,22 @@ TEST_F(BranchesOfAScene, SaysWhereTheyWereNotLookedFor) {
   EXPECT_FALSE(report.report.branches.has_value());
   ASSERT_EQ(report.report.warnings.size(), 1u);
   EXPECT_NE(report.report.warnings[0].find("No other equilibria"), std::string::npos);
+}
+
+TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
+  Report report;
+  report.result.message = "converged";
+  report.result.status = Status::Stalled;
+  report.neighbours.is_suspected = true;
+  EXPECT_EQ(headline(report).text, "converged") << "no equilibrium, no doubt about others";
+  report.result.status = Status::Converged;
+  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by");
+  EXPECT_TRUE(headline(report).is_in_doubt);
+  report.branches.emplace().equilibria.resize(1);
+  EXPECT_EQ(headline(report).text, "converged") << "a search found none";
+  report.branches->equilibria.resize(2);
+  EXPECT_EQ(headline(report).text, "converged; one of several equilibria");
+  EXPECT_TRUE(headline(report).is_in_doubt);
 }
 
 TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {

@@ -13,10 +13,14 @@ from ._result import Result, result_of
 Callback = Callable[[_core.Iterate], Any]
 
 
-def _checked_options(tol: Any, max_seconds: Any, callback: Any, branches: Any, branch_kick: Any,
+def _checked_options(tol: Any, max_seconds: Any, callback: Any, branches: Any, branch_kick: Any, damped_steps: Any,
                      defects: list[str]) -> None:
     if isinstance(branches, bool) or not isinstance(branches, int) or not 0 <= branches <= 1000:
         defects.append(f"branches: is {branches!r}; expected a number of starts, 0 to 1000")
+    if damped_steps is not None and (isinstance(damped_steps, bool) or not isinstance(damped_steps, int)
+                                     or not 0 <= damped_steps <= 100000):
+        defects.append(f"damped_steps: is {damped_steps!r}; expected a number of steps from 0, which solves at once, "
+                       "to 100000")
     _arguments.positive(branch_kick, "branch_kick", "", defects)
     if tol is not None:
         _arguments.positive(tol, "tol", "", defects)
@@ -28,18 +32,20 @@ def _checked_options(tol: Any, max_seconds: Any, callback: Any, branches: Any, b
 
 def _run(given: _inputs.Given, *, callback: Callback | None, method: str | None, tol: float | None,
          max_seconds: float | None, modes: int | None, folder: _inputs.Path | None, frames: int | None,
-         report: bool | None, branches: int, branch_kick: float, branch_seed: int) -> Result:
+         report: bool | None, branches: int, branch_kick: float, branch_seed: int,
+         damped_steps: int | None) -> Result:
     return result_of(given.solve(
         _core.run, callback=callback, solver=method or "", tolerance=tol, max_seconds=max_seconds, modes=modes,
         folder=None if folder is None else os.fsencode(folder), frames=frames, page=report,
-        branches=branches, branch_kick=branch_kick, branch_seed=branch_seed))
+        branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps))
 
 
 def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None, tol: float | None = None,
           x0: npt.ArrayLike | None = None, terms: Sequence[Any] = (), callback: Callback | None = None,
           max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
           frames: int | None = None, report: bool | None = None,
-          branches: int = 0, branch_kick: float = 0.01, branch_seed: int = 1) -> Result:
+          branches: int = 0, branch_kick: float = 0.01, branch_seed: int = 1,
+          damped_steps: int | None = None) -> Result:
     """Solves a scene, as `coapt solve` does.
 
     Args:
@@ -62,6 +68,8 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
             near the equilibrium alone.
         branch_kick: greatest move of a node of these starts, over the mean edge length.
         branch_seed: of their random moves.
+        damped_steps: of all loads and the prescribed motion along a damped path, which defines the equilibrium that a
+            valve comes to; 0 solves at once. Default: the scene's `solver.continuation.damped_steps`.
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -72,10 +80,10 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
         Exception: whatever a callback or a term of one's own raised.
     """
     defects: list[str] = []
-    _checked_options(tol, max_seconds, callback, branches, branch_kick, defects)
+    _checked_options(tol, max_seconds, callback, branches, branch_kick, damped_steps, defects)
     return _run(_inputs.of_scene(scene, terms, x0, defects), callback=callback, method=method, tol=tol,
                 max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report, branches=branches,
-                branch_kick=branch_kick, branch_seed=branch_seed)
+                branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps)
 
 
 def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed: Any = None,
@@ -83,7 +91,7 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
              callback: Callback | None = None, regions: Any = None, scene: Mapping[str, Any] | None = None,
              max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
              frames: int | None = None, report: bool | None = None, branches: int = 0, branch_kick: float = 0.01,
-             branch_seed: int = 1) -> Result:
+             branch_seed: int = 1, damped_steps: int | None = None) -> Result:
     """Finds the equilibrium of a membrane whose mesh is in memory.
 
     Args:
@@ -98,8 +106,8 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         regions: name of each triangle's region, (m,), for terms with the key `region`.
         scene: other keys of the scene file (`boundary`, `sets`, `solver`, `obstacles`, `fibres`, `reference`, ...);
             entries of `boundary` win over `fixed`.
-        method, tol, callback, max_seconds, modes, folder, frames, report, branches, branch_kick, branch_seed: as in
-            `solve`.
+        method, tol, callback, max_seconds, modes, folder, frames, report, branches, branch_kick, branch_seed,
+            damped_steps: as in `solve`.
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -108,7 +116,7 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         As `solve`.
     """
     defects: list[str] = []
-    _checked_options(tol, max_seconds, callback, branches, branch_kick, defects)
+    _checked_options(tol, max_seconds, callback, branches, branch_kick, damped_steps, defects)
     return _run(_inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects), callback=callback, method=method,
                 tol=tol, max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report,
-                branches=branches, branch_kick=branch_kick, branch_seed=branch_seed)
+                branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps)

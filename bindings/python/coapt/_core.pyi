@@ -170,4 +170,5 @@ def run(
     branches: int,
     branch_kick: float,
     branch_seed: int,
+    damped_steps: int | None,
 ) -> Solution: ...
