@@ -40,6 +40,7 @@ int run_command(int argc, char** argv) {
   add_intervene_command(app, exit_code);
   add_study_command(app, exit_code);
   add_compare_command(app, exit_code);
+  add_register_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
   app.footer(

@@ -1,0 +1,187 @@
+#include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
+#include "core/error.hpp"
+#include "formats/durable_file.hpp"
+#include "formats/json/markups.hpp"
+#include "formats/mesh_io.hpp"
+#include "formats/vtk/vtp_writer.hpp"
+#include "registration/register_points.hpp"
+#include "registration/register_surfaces.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace coapt::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RegisterArguments {
+  std::string moving, target, output = "registered", method;
+  std::vector<std::string> landmarks;
+  RegistrationOptions options;
+};
+
+struct RegisteredMeshes {
+  TriangleMesh moving, target;
+  Registration registration;
+  RegistrationDistances before, after;
+};
+
+TriangleMesh mesh_of(const std::string& path) {
+  MeshFile file = read_mesh(path);
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+  return std::move(file.mesh);
+}
+
+Points loop_of(const std::string& path, const TriangleMesh& mesh) {
+  try {
+    return annulus_loop(mesh);
+  } catch (const InputError& error) {
+    throw error.within(path);
+  }
+}
+
+Registration registration_of(const RegisterArguments& arguments, const TriangleMesh& moving,
+                             const TriangleMesh& target) {
+  const RegistrationMethod method = registration_method(arguments.method).value();
+  if (method == RegistrationMethod::Annulus) {
+    const Points from = loop_of(arguments.moving, moving), to = loop_of(arguments.target, target);
+    try {
+      return register_curves(from, to, arguments.options);
+    } catch (const InputError& error) {
+      throw error.within(arguments.moving);
+    }
+  }
+  if (method == RegistrationMethod::Surface) {
+    try {
+      return register_surfaces(moving, target, arguments.options);
+    } catch (const InputError& error) {
+      throw error.within(arguments.moving);
+    }
+  }
+  const Points from = papillary_points(arguments.landmarks[0]), to = papillary_points(arguments.landmarks[1]);
+  try {
+    return register_landmarks(from, to, arguments.options.with_scale);
+  } catch (const InputError& error) {
+    throw error.within(arguments.landmarks[0] + " and " + arguments.landmarks[1]);
+  }
+}
+
+nlohmann::ordered_json distances_json(const RegistrationDistances& distances) {
+  const auto one = [](const RegistrationDistance& d) {
+    return nlohmann::ordered_json{
+        {"mean_mm", d.mean}, {"p95_mm", d.p95}, {"rms_mm", d.rms}, {"max_mm", d.max}};
+  };
+  return {{"to_target", one(distances.to_target)}, {"from_target", one(distances.from_target)}};
+}
+
+nlohmann::ordered_json registration_json(const RegisterArguments& arguments, const RegisteredMeshes& meshes) {
+  const Registration& found = meshes.registration;
+  const Eigen::Matrix4d m = found.motion.matrix();
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (int r = 0; r < 4; ++r) rows.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
+  return {{"method", registration_method_name(found.method)},
+          {"moving", arguments.moving},
+          {"target", arguments.target},
+          {"transform", rows},
+          {"scale", found.motion.scale},
+          {"angle_deg", found.motion.angle_deg()},
+          {"translation_mm", moved_by(found.motion, meshes.moving.vertices)},
+          {"rms_mm", found.rms},
+          {"overlap", found.overlap},
+          {"pairs", found.pairs},
+          {"iterations", found.iterations},
+          {"free_directions", found.free_directions},
+          {"distances_before", distances_json(meshes.before)},
+          {"distances_after", distances_json(meshes.after)},
+          {"warnings", registration_doubts(found)}};
+}
+
+void write_map(const fs::path& path, const TriangleMesh& mesh, const Vector& distances) {
+  VtpSurface surface;
+  surface.vertices = mesh.vertices;
+  surface.triangles = mesh.triangles;
+  surface.point_arrays.push_back({"distance", distances.transpose()});
+  surface.texts.push_back({"units", {"mm"}});
+  write_vtp(path, surface);
+}
+
+void write_files(const RegisterArguments& arguments, const RegisteredMeshes& meshes) {
+  const fs::path folder = arguments.output;
+  TriangleMesh moved = meshes.moving;
+  moved.vertices = meshes.registration.motion.apply(moved.vertices);
+  write_mesh(folder / "moved.obj", moved);
+  write_map(folder / "moved.vtp", moved, meshes.after.moving_vertices);
+  write_map(folder / "target.vtp", meshes.target, meshes.after.target_vertices);
+  formats::write_durable(folder / "registration.json", registration_json(arguments, meshes).dump(2) + "\n");
+}
+
+void print_distances(const char* when, const RegistrationDistances& distances) {
+  for (const auto& [from, d] : {std::pair{"moving to target", distances.to_target},
+                                std::pair{"target to moving", distances.from_target}})
+    std::printf("  %-7s %-17s %10.4g %10.4g %10.4g %10.4g\n", when, from, d.mean, d.p95, d.rms, d.max);
+}
+
+void register_meshes(RegisterArguments& arguments) {
+  if (arguments.method.empty()) arguments.method = arguments.landmarks.empty() ? "surface" : "landmarks";
+  if ((arguments.method == "landmarks") != !arguments.landmarks.empty())
+    throw InputError("--landmarks A.mrk.json B.mrk.json and --method landmarks need each other");
+  for (const std::string& path : {arguments.moving, arguments.target})
+    refuse_folder_of(path, arguments.output);
+  RegisteredMeshes meshes{mesh_of(arguments.moving), mesh_of(arguments.target), {}, {}, {}};
+  meshes.registration = registration_of(arguments, meshes.moving, meshes.target);
+  const Registration& found = meshes.registration;
+  TriangleMesh moved = meshes.moving;
+  moved.vertices = found.motion.apply(moved.vertices);
+  meshes.before = registration_distances(meshes.moving, meshes.target);
+  meshes.after = registration_distances(moved, meshes.target);
+  std::error_code error;
+  fs::create_directories(arguments.output, error);
+  if (error) throw InputError(arguments.output + ": cannot be made: " + error.message());
+  write_files(arguments, meshes);
+  std::printf("%s onto %s by %s: turned by %.4g degrees, moved by %.4g mm, scale %.6g\n",
+              arguments.moving.c_str(), arguments.target.c_str(), arguments.method.c_str(),
+              found.motion.angle_deg(), moved_by(found.motion, meshes.moving.vertices), found.motion.scale);
+  std::printf("  overlap %.3g, %d pairs, %.3g mm rms between them, %d iterations\n", found.overlap,
+              found.pairs, found.rms, found.iterations);
+  std::printf("  %-7s %-17s %10s %10s %10s %10s\n", "mm", "", "mean", "95 %", "rms", "max");
+  print_distances("before", meshes.before);
+  print_distances("after", meshes.after);
+  for (const std::string& doubt : registration_doubts(found)) std::printf("warning: %s\n", doubt.c_str());
+  std::printf("written to %s (moved.obj, moved.vtp, target.vtp, registration.json)\n",
+              arguments.output.c_str());
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& app, int& /*exit_code*/) {
+  const auto arguments = std::make_shared<RegisterArguments>();
+  CLI::App* command = app.add_subcommand(
+      "register", "Move one surface onto another, as a scan: motion, overlap, distances before and after");
+  command->add_option("A", arguments->moving, "Mesh that is moved [mm]")->required();
+  command->add_option("B", arguments->target, "Mesh that it is moved onto [mm]")->required();
+  command
+      ->add_option("--method", arguments->method,
+                   "annulus, landmarks or surface (default: surface, or landmarks where they are given)")
+      ->check(CLI::IsMember({"annulus", "landmarks", "surface"}));
+  command
+      ->add_option(
+          "--landmarks", arguments->landmarks,
+          "Points of A and of B, two files of 3D Slicer (.mrk.json), the same points in the same order")
+      ->expected(2);
+  command->add_option("--trim", arguments->options.trim, "Share of the pairs that is left out, the farthest")
+      ->check(CLI::Range(0.0, 0.9))
+      ->capture_default_str();
+  command->add_flag("--scale", arguments->options.with_scale, "Also find one scale");
+  command->add_option("-o,--output", arguments->output, "Folder to write")->capture_default_str();
+  command->callback([arguments] { register_meshes(*arguments); });
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,123 @@
+#include "registration/register_surfaces.hpp"
+
+#include "core/error.hpp"
+#include "formats/json/valve_json.hpp"
+#include "registration/motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace coapt {
+namespace {
+
+// What is left of a registration at the moving vertices, whose true places are known.
+double error_of(const Registration& found, const Points& moved, const Points& truth) {
+  return greatest_distance(found.motion.apply(moved), truth);
+}
+
+// The half of a surface on one side of its middle; its vertices stay, also those without triangles.
+TriangleMesh half_of(const TriangleMesh& mesh, double angle) {
+  const Vec3 side(std::cos(angle), std::sin(angle), 0);
+  TriangleMesh half = mesh;
+  int kept = 0;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    Vec3 sum = Vec3::Zero();
+    for (const int v : mesh.triangles.col(t)) sum += mesh.vertices.col(v);
+    if (side.dot(sum) > 0) half.triangles.col(kept++) = mesh.triangles.col(t);
+  }
+  half.triangles.conservativeResize(3, kept);
+  return half;
+}
+
+TEST(RegisterSurfaces, EqualSurfacesComeBackToRoundingFrom30DegreesAnd10Millimetres) {
+  const TriangleMesh target = valve_like(2000);
+  std::mt19937 random(1);
+  for (int k = 0; k < 24; ++k) {
+    TriangleMesh moving = target;
+    moving.vertices = random_motion(target.vertices, random).apply(target.vertices);
+    const Registration found = register_surfaces(moving, target);
+    EXPECT_LT(error_of(found, moving.vertices, target.vertices), 1e-9) << k;
+    EXPECT_GT(found.overlap, 0.99);
+    EXPECT_EQ(found.free_directions, 0);
+  }
+}
+
+TEST(RegisterSurfaces, ScaleComesBackToo) {
+  const TriangleMesh target = valve_like(2000);
+  std::mt19937 random(2);
+  TriangleMesh moving = target;
+  RigidMotion motion = random_motion(target.vertices, random);
+  motion.scale = 1.1;
+  moving.vertices = motion.apply(target.vertices);
+  const Registration found = register_surfaces(moving, target, {.with_scale = true});
+  EXPECT_LT(error_of(found, moving.vertices, target.vertices), 1e-9);
+}
+
+TEST(RegisterSurfaces, AScanWithNoiseOutliersAndHalfOfTheSurfaceFindsItsPlace) {
+  const TriangleMesh whole = valve_like(10000);
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share;
+  for (int k = 0; k < 20; ++k) {
+    TriangleMesh scan = half_of(whole, 0.3 * k);
+    const RigidMotion motion = random_motion(whole.vertices, random);
+    const Points exact = motion.apply(whole.vertices);
+    for (int v = 0; v < scan.vertex_count(); ++v) {
+      const Vec3 step(normal(random), normal(random), normal(random));
+      scan.vertices.col(v) = exact.col(v) + (share(random) < 0.2 ? 8.0 : 0.5) * step;
+    }
+    const Registration found = register_surfaces(scan, whole);
+    std::vector<int> seen(scan.triangles.data(), scan.triangles.data() + scan.triangles.size());
+    const Points off = (found.motion.apply(exact) - whole.vertices)(Eigen::all, seen);
+    EXPECT_LT(std::sqrt(off.colwise().squaredNorm().mean()), 0.25) << k;
+    EXPECT_FALSE(found.from_target);
+  }
+}
+
+TEST(RegisterSurfaces, TheWholeFindsItsPlaceOnAHalf) {
+  const TriangleMesh whole = valve_like(2000), half = half_of(whole, 1);
+  std::mt19937 random(5);
+  for (int k = 0; k < 20; ++k) {
+    TriangleMesh moving = whole;
+    moving.vertices = random_motion(whole.vertices, random).apply(whole.vertices);
+    const Registration found = register_surfaces(moving, half);
+    EXPECT_LT(error_of(found, moving.vertices, whole.vertices), 1e-9) << k;
+    EXPECT_TRUE(found.from_target);
+  }
+}
+
+TEST(RegisterSurfaces, RefuseAMirrorImageAndSurfacesWithoutOverlap) {
+  const TriangleMesh target = valve_like(2000);
+  TriangleMesh mirrored = target;
+  mirrored.vertices.row(1) *= -1;
+  std::mt19937 random(6);
+  mirrored.vertices = random_motion(target.vertices, random).apply(mirrored.vertices);
+  try {
+    register_surfaces(mirrored, target);
+    FAIL() << "a mirror image was registered";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("mirror image"), std::string::npos);
+  }
+  try {
+    register_surfaces(sphere(8, 2000), target);
+    FAIL() << "surfaces without overlap were registered";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no overlap"), std::string::npos);
+  }
+}
+
+TEST(RegisterSurfaces, ThePublishedClosedTricuspidValveComesBack) {
+  const auto file = std::filesystem::path(COAPT_SHARED_DIR) / "data/trivalve11-healthy/valve.json";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: data not found";
+  const TriangleMesh target = *read_valve(file).valve.closed_reference;
+  std::mt19937 random(7);
+  for (int k = 0; k < 5; ++k) {
+    TriangleMesh moving = target;
+    moving.vertices = random_motion(target.vertices, random).apply(target.vertices);
+    EXPECT_LT(error_of(register_surfaces(moving, target), moving.vertices, target.vertices), 1e-9) << k;
+  }
+}
+
+}  // namespace
+}  // namespace coapt
