@@ -1,7 +1,7 @@
 #include "registration/register_surfaces.hpp"
 
 #include "core/error.hpp"
-#include "formats/json/valve_json.hpp"
+#include "formats/mesh_io.hpp"
 #include "registration/motions.hpp"
 
 #include <gtest/gtest.h>
@@ -108,9 +108,10 @@ TEST(RegisterSurfaces, RefuseAMirrorImageAndSurfacesWithoutOverlap) {
 }
 
 TEST(RegisterSurfaces, ThePublishedClosedTricuspidValveComesBack) {
-  const auto file = std::filesystem::path(COAPT_SHARED_DIR) / "data/trivalve11-healthy/valve.json";
+  const auto file =
+      std::filesystem::path(COAPT_SHARED_DIR) / "data/trivalve11-healthy/leaflets_closed_reference.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: data not found";
-  const TriangleMesh target = *read_valve(file).valve.closed_reference;
+  const TriangleMesh target = read_mesh(file).mesh;
   std::mt19937 random(7);
   for (int k = 0; k < 5; ++k) {
     TriangleMesh moving = target;
