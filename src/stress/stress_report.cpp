@@ -1,13 +1,11 @@
 #include "stress/stress_report.hpp"
 
 #include "core/components.hpp"
-#include "formats/json/csv_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/report_page.hpp"
+#include "results/csv_row.hpp"
 #include "results/study_files.hpp"
-
-#include <cmath>
 
 namespace coapt {
 namespace {
@@ -110,23 +108,19 @@ std::string stress_json(const StressMatrix& matrix) { return json_text(matrix_js
 std::string stress_csv(const StressMatrix& matrix) {
   std::ostringstream csv = csv_with_header(
       "id,scene,name,verdict,figure,limit,unit,status,residual,iterations,wall_s,cpu_s,measure,message");
-  const auto cell = [&](const std::optional<double>& value) {
-    csv << ',';
-    if (value && std::isfinite(*value)) csv << *value;
-  };
   for (const StressResult& result : matrix.results) {
     const StressOutcome& outcome = result.outcome;
-    csv << result.row.id << ',' << csv_text(result.row.scene) << ',' << csv_text(result.row.name) << ','
-        << stress_verdict_name(outcome.verdict);
-    cell(outcome.figure);
-    cell(outcome.limit);
-    csv << ',' << result.row.unit << ',' << outcome.status;
-    cell(outcome.residual);
-    csv << ',';
-    if (outcome.iterations) csv << *outcome.iterations;
-    cell(result.wall_s);
-    cell(result.cpu_s);
-    csv << ',' << csv_text(result.row.measure) << ',' << csv_text(outcome.message) << '\n';
+    Row row(csv);
+    for (const std::string& text : {result.row.id, result.row.scene, result.row.name,
+                                    std::string(stress_verdict_name(outcome.verdict))})
+      row.text(text);
+    for (const auto& value : {outcome.figure, outcome.limit}) row.number(value);
+    for (const std::string& text : {result.row.unit, outcome.status}) row.text(text);
+    row.number(outcome.residual);
+    row.number(outcome.iterations);
+    for (const double seconds : {result.wall_s, result.cpu_s}) row.number(seconds);
+    for (const std::string& text : {result.row.measure, outcome.message}) row.text(text);
+    csv << '\n';
   }
   return csv.str();
 }
