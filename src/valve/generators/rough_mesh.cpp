@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -57,6 +59,25 @@ void name_leaflets(const RoughSurface& surface, const RoughTriangles& mesh, Tria
   }
 }
 
+// A triangle with none of its own leaflet across its edges, as a flip may leave one, goes to that of a
+// neighbour.
+void join_lone_triangles(TriangleMesh& leaflets) {
+  std::map<std::pair<int, int>, size_t> first;  // triangle at each edge
+  std::vector<bool> is_joined(leaflets.regions.size(), false);
+  std::vector<int> beside = leaflets.regions;
+  for (size_t t = 0; t < beside.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3i corners = leaflets.triangles.col(static_cast<Eigen::Index>(t));
+      const auto [edge, is_new] = first.try_emplace(std::minmax({corners[k], corners[(k + 1) % 3]}), t);
+      const size_t s = edge->second;
+      if (is_new) continue;
+      if (leaflets.regions[s] == leaflets.regions[t]) is_joined[s] = is_joined[t] = true;
+      beside[s] = leaflets.regions[t], beside[t] = leaflets.regions[s];
+    }
+  for (size_t t = 0; t < beside.size(); ++t)
+    if (!is_joined[t]) leaflets.regions[t] = beside[t];
+}
+
 }  // namespace
 
 RoughMesh rough_mesh(const RoughSurface& surface, int triangles, RandomSource& random) {
@@ -83,6 +104,7 @@ RoughMesh rough_mesh(const RoughSurface& surface, int triangles, RandomSource& r
   }
   mesh.leaflets.triangles = rough.as_matrix();
   name_leaflets(surface, rough, mesh.leaflets);
+  join_lone_triangles(mesh.leaflets);
   for (std::vector<int>& loop : boundary_loops(mesh.leaflets.triangles))
     (rough.at[loop.front()][1] == 0 ? mesh.annulus : mesh.free_edge) = std::move(loop);
   return mesh;

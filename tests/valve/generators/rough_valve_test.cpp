@@ -233,6 +233,21 @@ TEST_P(RoughValve, DrawsItsSizeWhereNoneIsGiven) {
   EXPECT_GT(greatest, 3 * least);
 }
 
+// Fibres are found on each leaflet by itself, from its part of the annulus.
+TEST_P(RoughValve, LeavesNoTriangleAloneInAnotherLeaflet) {
+  const unsigned seed = GetParam() == RoughKind::Mitral ? 67 : 77;
+  const TriangleMesh leaflets = rough_valve({.kind = GetParam(), .seed = seed}).leaflets;
+  std::map<std::pair<int, int>, std::vector<int>> at_edge;
+  for (int t = 0; t < leaflets.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k)
+      at_edge[std::minmax({leaflets.triangles(k, t), leaflets.triangles((k + 1) % 3, t)})].push_back(t);
+  std::set<int> joined;
+  for (const auto& [edge, around] : at_edge)
+    if (around.size() == 2 && leaflets.regions[around[0]] == leaflets.regions[around[1]])
+      joined.insert(around.begin(), around.end());
+  EXPECT_EQ(std::ssize(joined), leaflets.triangle_count());
+}
+
 TEST_P(RoughValve, RefusesTooFewTriangles) { EXPECT_THROW(of(1, 249), InputError); }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RoughValve, testing::Values(RoughKind::Mitral, RoughKind::Tricuspid),
