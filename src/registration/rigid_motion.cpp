@@ -47,7 +47,7 @@ RigidFit fit_rigid(const Points& points, const Points& targets, const Vector& we
   const Eigen::Matrix3d covariance = y * w.asDiagonal() * x.transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double handed = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-  const Vec3 values = svd.singularValues();
+  const Vec3& values = svd.singularValues();
   const Vec3 signs(1, 1, handed);
 
   RigidFit fit;

@@ -116,7 +116,7 @@ Step least_squares_step(const std::vector<Pair>& pairs, const Vec3& centre, doub
       for (int axis = 0; axis < 3; ++axis) add(pair, Vec3::Unit(axis), point_share * pair.weight);
   }
   const Eigen::SelfAdjointEigenSolver<Matrix7> eigen(h);  // reads the lower triangle
-  const Vector7 values = eigen.eigenvalues();
+  const Vector7& values = eigen.eigenvalues();
   Step step;
   for (int k = 0; k < 7; ++k) {
     if (values[k] > kUndetermined * values[6])
