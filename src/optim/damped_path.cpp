@@ -19,6 +19,8 @@ constexpr double kMostFall = 0.5;        // of the damping, from one step to the
 constexpr double kHold = 1e-4;  // of the damping: holds free nodes where a step is asked for its stability
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
+constexpr int kMostInStep =
+    200;  // iterations of a step from a loaded start; a start that needs more is given up
 constexpr int kMostWithoutMotion = 3;  // steps in a row in which the prescribed motion gets no further
 
 class DampedPath {
@@ -85,10 +87,14 @@ class DampedPath {
     advance_motion();
     if (is_blocked_) return;
     objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
+    if (is_loaded()) monitor_.limit_iterations(kMostInStep);
     outcome_.status =
         solve_rounds(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
+    const bool is_slow = outcome_.status == Status::IterationLimit && monitor_.has_reached_limit();
+    if (is_slow) outcome_.status = Status::Stalled;
+    monitor_.lift_limit();
     objective.damp({}, {});
-    is_lost_ = is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost;
+    is_lost_ = is_slow || (is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost);
     if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();
   }
 

@@ -108,7 +108,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
     return Status::NoEquilibrium;
   if (now.residual <= tolerance_) return Status::Converged;
   if (is_out_of_time()) return Status::TimeLimit;
-  if (iterations_ >= stop_.max_iterations) return Status::IterationLimit;
+  if (iterations_ >= std::min(stop_.max_iterations, most_iterations_)) return Status::IterationLimit;
   // Small gains add up: they are measured from the last iterate that counted as one.
   const bool is_closer = now.residual < 0.9 * best_residual_;
   if (is_closer) last_residual_gain_ = iterations_;

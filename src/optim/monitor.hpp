@@ -4,6 +4,7 @@
 #include "optim/solver.hpp"
 #include "optim/stability/equilibrium_watch.hpp"
 
+#include <limits>
 #include <optional>
 
 namespace coapt {
@@ -44,6 +45,10 @@ class Monitor {
   // Asked at each accepted iterate whether the run is lost. It must outlive the run.
   void set_watch(EquilibriumWatch* watch) { watch_ = watch; }
   void begin_round(int round, double tolerance);
+  // Ends minimisations after so many more iterations than now; what the whole run may take still holds.
+  void limit_iterations(int count) { most_iterations_ = iterations_ + count; }
+  bool has_reached_limit() const { return iterations_ >= most_iterations_; }
+  void lift_limit() { most_iterations_ = std::numeric_limits<int>::max(); }
   int round() const { return round_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
@@ -59,7 +64,7 @@ class Monitor {
   double start_;
   int round_ = 0;
   double time_before_ = 0;  // simulated, before this round [s]
-  int iterations_ = 0;
+  int iterations_ = 0, most_iterations_ = std::numeric_limits<int>::max();
   bool is_first_of_round_ = true;
   double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round
   int last_gain_ = 0, last_residual_gain_ = 0;                  // iterations of the last improvements

@@ -1,6 +1,7 @@
 // A damped path: one shape whatever the order of nodes, the frame and the method.
 #include "optim/damped_path.hpp"
 
+#include "optim/monitor.hpp"
 #include "support/contact_scene.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
@@ -104,6 +105,38 @@ TEST(DampedPath, SaysWhereItWasCutShort) {
   EXPECT_NE(found.result.message.find("of the damped path"), std::string::npos) << found.result.message;
   EXPECT_TRUE(found.x.allFinite());
   EXPECT_GT(found.result.residual, 1e-3) << "with all loads, and without dampers";
+}
+
+// Accepts where it is for ever.
+class IdleSolver : public Solver {
+ public:
+  std::string_view name() const override { return "idle"; }
+  Status minimize(Objective&, Vector& q, Monitor& monitor) override {
+    Vector g;
+    for (;;) {
+      const double energy = monitor.gradient(q, g);
+      if (const auto why = monitor.accept(q, energy, g)) return *why;
+    }
+  }
+};
+
+// A crawl from a coarser mesh's shape would otherwise take all the iterations of the run.
+TEST(DampedPath, GivesUpAStartNearItsEndWhoseStepsTakeTooLong) {
+  const TriangleMesh mesh = grid_mesh(4, 4);
+  const FixedMask fixed = fixed_nodes(mesh.vertex_count(), rim_of(mesh));
+  Objective objective(mesh.vertices, fixed, terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
+  Points start = mesh.vertices;
+  for (Eigen::Index v = 0; v < start.cols(); ++v)
+    if (!fixed(0, v)) start(0, v) += 0.01;
+  Problem problem{objective, objective.unknowns(start)};
+  problem.continuation.damped_steps = 20;
+  problem.continuation.is_loaded = true;
+  IdleSolver solver;
+  const Result result = solve(solver, problem, {.tolerance = 1e-9, .max_iterations = 100000});
+  EXPECT_EQ(result.status, Status::Stalled) << result.message;
+  EXPECT_EQ(result.damped_steps, 1);
+  EXPECT_EQ(result.iterations, 200);
+  EXPECT_NE(result.message.find("step 1 of the damped path"), std::string::npos) << result.message;
 }
 
 // Without loads there is nothing that dampers could be measured by, and nothing that they must hold.
