@@ -21,7 +21,7 @@ using registration::SearchSettings;
 
 constexpr int kCoarsePoints = 80, kFinePoints = 300;        // that are sought while starts are compared
 constexpr int kCoarseIterations = 5, kFineIterations = 25;  // of each start, and of the best ones
-constexpr size_t kBest = 4;                                 // starts that go on
+constexpr size_t kBest = 8;                                 // starts that go on; all where the fit is poor
 constexpr int kMostIterations = 100;                        // with all points
 constexpr double kPointShare =
     0.1;  // of point to point while starts are compared: it draws from farther away
@@ -55,19 +55,28 @@ std::vector<RigidMotion> starts(const SearchedSurface& sought, const SearchedSur
   return all;
 }
 
-// The best of all starts, by the mean distance that none is counted beyond.
+bool is_poor(const SearchResult& found, const SearchedSurface& on) {
+  return found.rms > kGoodFit * on.size || found.overlap < kSmallOverlap;
+}
+
+// The best of all starts, by the mean distance that none is counted beyond. Where even that one fits poorly
+// by noise or by a wrong place, every start is followed to its end if `is_thorough`.
 SearchResult best_start(const SearchedSurface& sought, const SearchedSurface& on,
-                        const RegistrationOptions& options) {
+                        const RegistrationOptions& options, bool is_thorough = true) {
   const auto is_better = [](const SearchResult& a, const SearchResult& b) { return a.score < b.score; };
   std::vector<SearchResult> found;
   for (const RigidMotion& start : starts(sought, on))
     found.push_back(
         search(sought, on, start, {kCoarsePoints, kCoarseIterations, kPointShare, false, options}));
   std::sort(found.begin(), found.end(), is_better);
-  found.resize(std::min(found.size(), kBest));
-  for (SearchResult& result : found)
-    result = search(sought, on, result.motion, {kFinePoints, kFineIterations, kPointShare, false, options});
-  return *std::min_element(found.begin(), found.end(), is_better);
+  SearchResult best;
+  best.score = kInfinity;
+  for (size_t k = 0; k < found.size() && (k < kBest || (is_thorough && is_poor(best, on))); ++k)
+    best = std::min(
+        best,
+        search(sought, on, found[k].motion, {kFinePoints, kFineIterations, kPointShare, false, options}),
+        is_better);
+  return best;
 }
 
 struct TwoWays {
@@ -98,8 +107,8 @@ bool fits_better_mirrored(const TriangleMesh& moving, const SearchedSurface& tar
     const double middle = mirrored.vertices.row(axis).mean();
     mirrored.vertices.row(axis) = 2 * middle - mirrored.vertices.row(axis).array();
     const SearchedSurface image(mirrored);
-    const SearchResult best =
-        found.from_target ? best_start(target, image, options) : best_start(image, target, options);
+    const SearchResult best = found.from_target ? best_start(target, image, options, false)
+                                                : best_start(image, target, options, false);
     if (best.score < kMirrorGain * found.best.score) return true;
   }
   return false;
@@ -124,8 +133,7 @@ Registration register_surfaces(const TriangleMesh& moving, const TriangleMesh& t
   const TwoWays start = best_of_both_ways(a, b, options);
   const SearchedSurface &sought = start.from_target ? b : a, &on = start.from_target ? a : b;
   const SearchResult found = search(sought, on, start.best.motion, {0, kMostIterations, 0, true, options});
-  if ((found.rms > kGoodFit * on.size || found.overlap < kSmallOverlap) &&
-      fits_better_mirrored(moving, b, start, options))
+  if (is_poor(found, on) && fits_better_mirrored(moving, b, start, options))
     throw InputError(
         "is a mirror image of the other surface: mirrored it would fit; turn one axis of one file. Nothing "
         "was "

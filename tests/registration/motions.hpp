@@ -24,10 +24,17 @@ inline TriangleMesh valve_like(int triangles) {
   return mesh;
 }
 
+// Each component in its turn: the order in which arguments are evaluated is the compiler's.
+inline Vec3 random_vector(std::mt19937& random, std::normal_distribution<double>& normal) {
+  Vec3 vector;
+  for (double& component : vector) component = normal(random);
+  return vector;
+}
+
 // 30 degrees about a random axis through the middle of the vertices and 10 mm in a random direction.
 inline RigidMotion random_motion(const Points& about, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
+  const auto direction = [&] { return random_vector(random, normal).normalized(); };
   const Vec3 middle = about.rowwise().mean();
   RigidMotion motion;
   motion.rotation = Eigen::AngleAxisd(std::numbers::pi / 6, direction()).toRotationMatrix();

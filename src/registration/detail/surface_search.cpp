@@ -18,6 +18,7 @@ constexpr double kTukey = 4.685;          // of the standard deviation (Holland 
 constexpr double kDeviation = 1.4826;     // standard deviation over the median of the sizes, of a normal law
 constexpr double kLeastDeviation = 1e-9;  // of the size: below it all pairs weigh the same
 constexpr double kAtRest = 1e-14;         // of the size: a step that ends the search
+constexpr double kWithinNoise = 0.25;     // of the standard error of a place: a step that ends the search
 constexpr double kUndetermined = 1e-8;    // of the greatest eigenvalue: such a direction is left as it is
 constexpr double kLargestTurn = 0.35;     // rad in one step, as the equations are linear in the turn
 constexpr double kOnEdge = 1e-9;          // barycentric weight below which a point lies on the edge across
@@ -215,6 +216,7 @@ SearchResult search(const SearchedSurface& sought, const SearchedSurface& on, co
     result.free_directions = step.free_directions;
     result.motion = moved_on(result.motion, step.change, centre, on.size);
     move = step.change.norm();
+    if (move * on.size < kWithinNoise * result.rms / std::sqrt(static_cast<double>(pairs.size()))) break;
   }
   return result;
 }
