@@ -5,8 +5,7 @@
 #include "formats/json/markups.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/vtk/vtp_writer.hpp"
-#include "registration/register_points.hpp"
-#include "registration/register_surfaces.hpp"
+#include "registration/wanted_registration.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -40,37 +39,21 @@ TriangleMesh mesh_of(const std::string& path) {
   return std::move(file.mesh);
 }
 
-Points loop_of(const std::string& path, const TriangleMesh& mesh) {
-  try {
-    return annulus_loop(mesh);
-  } catch (const InputError& error) {
-    throw error.within(path);
-  }
-}
-
 Registration registration_of(const RegisterArguments& arguments, const TriangleMesh& moving,
                              const TriangleMesh& target) {
-  const RegistrationMethod method = registration_method(arguments.method).value();
-  if (method == RegistrationMethod::Annulus) {
-    const Points from = loop_of(arguments.moving, moving), to = loop_of(arguments.target, target);
-    try {
-      return register_curves(from, to, arguments.options);
-    } catch (const InputError& error) {
-      throw error.within(arguments.moving);
-    }
+  WantedRegistration wanted{registration_method(arguments.method).value(), arguments.options};
+  const bool by_landmarks = !arguments.landmarks.empty();
+  if (by_landmarks) {
+    wanted.moving_landmarks = papillary_points(arguments.landmarks[0]);
+    wanted.target_landmarks = papillary_points(arguments.landmarks[1]);
   }
-  if (method == RegistrationMethod::Surface) {
-    try {
-      return register_surfaces(moving, target, arguments.options);
-    } catch (const InputError& error) {
-      throw error.within(arguments.moving);
-    }
-  }
-  const Points from = papillary_points(arguments.landmarks[0]), to = papillary_points(arguments.landmarks[1]);
+  const std::string where =
+      by_landmarks ? arguments.landmarks[0] + " and " + arguments.landmarks[1] : arguments.moving;
   try {
-    return register_landmarks(from, to, arguments.options.with_scale);
+    check(wanted, moving);
+    return register_by(wanted, moving, target);
   } catch (const InputError& error) {
-    throw error.within(arguments.landmarks[0] + " and " + arguments.landmarks[1]);
+    throw error.within(where);
   }
 }
 

@@ -64,6 +64,15 @@ void print_reference(const ReferenceDistance& reference) {
               distance.p95, distance.max);
   if (reference.left_out > 0) std::printf(" (undetermined nodes left out: %d)", reference.left_out);
   std::printf("\n");
+  if (!reference.registration) return;
+  const AppliedRegistration& registration = *reference.registration;
+  std::printf(
+      "  %-22s by %s: turned by %.4g degrees, moved by %.4g mm, scale %.6g, overlap %.3g; mean %.3f mm "
+      "before\n",
+      "reference registered", registration_method_name(registration.found.method),
+      registration.found.motion.angle_deg(), registration.translation_mm, registration.found.motion.scale,
+      registration.found.overlap,
+      (registration.to_reference_before.mean + registration.from_reference_before.mean) / 2);
 }
 
 void print_certificate(const Certificate& certificate) {

@@ -27,6 +27,7 @@ constexpr double kPointShare =
     0.1;  // of point to point while starts are compared: it draws from farther away
 constexpr double kLeastOverlap = 0.4;  // below it there is nothing to register
 constexpr double kMoreOverlap = 0.1;   // that decides which surface is sought on the other
+constexpr double kLeastSize = 0.125;   // of one surface by the other; a unit of length is wrong below
 constexpr double kCrumpled = 0.1;      // roughness of a mesh whose noise is as large as its edges
 constexpr double kGoodFit = 0.01;      // of the size: rms up to which nothing is asked about mirror images
 constexpr double kMirrorGain = 0.5;    // of the score, below which the mirror image is the better fit
@@ -125,11 +126,24 @@ void refuse_no_overlap(double overlap) {
   throw InputError(text);
 }
 
+// A file in cm, m or inches finds a place everywhere on one in mm.
+void refuse_other_size(double ratio) {
+  if (ratio >= kLeastSize && ratio <= 1 / kLeastSize) return;
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "is %.3g times as large as the other surface; see that both have one unit of length. Nothing was "
+      "moved",
+      ratio);
+  throw InputError(text);
+}
+
 }  // namespace
 
 Registration register_surfaces(const TriangleMesh& moving, const TriangleMesh& target,
                                const RegistrationOptions& options) {
   const SearchedSurface a(moving), b(target);
+  refuse_other_size(a.size / b.size);
   const TwoWays start = best_of_both_ways(a, b, options);
   const SearchedSurface &sought = start.from_target ? b : a, &on = start.from_target ? a : b;
   const SearchResult found = search(sought, on, start.best.motion, {0, kMostIterations, 0, true, options});

@@ -14,8 +14,9 @@ namespace coapt {
 // options.trim is left out of the pairs; what lies far off for another reason gets no weight either. Pairs
 // with the border of a surface are left out: beyond it there is nothing to meet (Turk & Levoy 1994).
 // Equal meshes are brought together to rounding. Throws InputError where less than two fifths of the points
-// find a counterpart, for a mirror image (in a plane across an axis of the frame, then turned by up to 30
-// degrees), or for a surface without area. Pre: positions are finite.
+// find a counterpart, where one surface is more than eight times as large as the other, for a mirror image
+// (in a plane across an axis of the frame, then turned by up to 30 degrees), or for a surface without area.
+// Pre: positions are finite.
 Registration register_surfaces(const TriangleMesh& moving, const TriangleMesh& target,
                                const RegistrationOptions& options = {});
 

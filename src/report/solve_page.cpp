@@ -116,6 +116,15 @@ PageTable distance_table(const ReferenceDistance& distance) {
                           {page_number(distance.same_vertex->mean)},
                           {""},
                           {page_number(distance.same_vertex->max)}});
+  if (const auto& registration = distance.registration) {
+    add("before its registration, from the result", registration->to_reference_before);
+    add("before its registration, from it", registration->from_reference_before);
+    const Registration& found = registration->found;
+    table.caption += std::string("; registered by ") + registration_method_name(found.method) +
+                     ": turned by " + page_number(found.motion.angle_deg()) + "°, moved by " +
+                     page_number(registration->translation_mm) + " mm, scale " +
+                     page_number(found.motion.scale) + ", overlap " + page_number(found.overlap);
+  }
   if (distance.left_out > 0)
     table.caption += "; nodes that can move at no cost, left out: " + std::to_string(distance.left_out);
   return table;

@@ -22,6 +22,8 @@ struct Fields {
   double contact_distance = 0;         // [mm]
   double gap_reach = 0;                // how far gaps were looked for [mm]
   Vector reference_distance;           // per mesh vertex [mm]; empty without a reference
+  std::optional<TriangleMesh> registered_reference;  // moved, relative to the origin; none where it was not
+  Vector registered_distance;                        // per vertex of that one, to the result [mm]
   Vector method_distance;          // per mesh vertex to the shape that the reference method of a comparison
                                    // found [mm]; empty outside of one
   Vector branch_spread;            // per node, Branches::spread_mm [mm]; empty where nothing was looked for

@@ -1,5 +1,8 @@
 #include "results/reference_distance.hpp"
 
+#include "core/error.hpp"
+#include "results/registered_reference.hpp"
+
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -58,8 +61,31 @@ ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleM
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
                                                         const std::vector<int>& free_nodes) {
   if (!model.closed_reference) return std::nullopt;
-  return reference_distance(surface_at(model, fields.x), *model.closed_reference, fields.reference_distance,
-                            {free_nodes, {}});
+  const TriangleMesh closed = surface_at(model, fields.x);
+  const UncountedVertices uncounted{free_nodes, {}};
+  ReferenceDistance as_given =
+      reference_distance(closed, *model.closed_reference, fields.reference_distance, uncounted);
+  if (!model.registration) return as_given;
+  RegisteredReference registered;
+  try {
+    registered = registered_reference(model, closed);
+  } catch (const InputError& error) {
+    as_given.doubts = {std::string(error.what()) + "; the distances are those of the reference as it lies."};
+    return as_given;
+  }
+  ReferenceDistance distance =
+      reference_distance(closed, registered.surface, fields.reference_distance, uncounted);
+  fields.registered_distance = surface_distance(registered.surface, closed).vertex_distances;
+  AppliedRegistration applied{*registered.registration,
+                              moved_by(registered.registration->motion, model.closed_reference->vertices),
+                              as_given.to_reference, as_given.from_reference};
+  applied.found.motion.translation +=
+      model.origin - applied.found.motion.apply(Points(model.origin)) + applied.found.motion.translation;
+  for (const std::string& doubt : registration_doubts(applied.found))
+    distance.doubts.push_back("reference.register: " + doubt);
+  distance.registration = std::move(applied);
+  fields.registered_reference = std::move(registered.surface);
+  return distance;
 }
 
 VertexDistance apart(const Points& a, const Points& b, const std::vector<int>& left_out) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/distance/surface_distance.hpp"
+#include "registration/registration.hpp"
 #include "results/fields.hpp"
 
 #include <optional>
@@ -17,11 +18,20 @@ struct VertexDistance {
   double mean = 0, max = 0;  // [mm]
 };
 
+// How the reference was brought onto the solved surface before its distance was taken.
+struct AppliedRegistration {
+  Registration found;         // its motion acts on the coordinates of the scene's files, in mm
+  double translation_mm = 0;  // of the middle of the reference's vertices
+  DistanceFigures to_reference_before, from_reference_before;
+};
+
 struct ReferenceDistance {
   DistanceFigures to_reference;               // from the solved surface to the reference
   DistanceFigures from_reference;             // from the reference to the solved surface
   std::optional<VertexDistance> same_vertex;  // when both have the same facets, in any order
   int left_out = 0;  // vertices whose place is not determined, and which have no part in these figures
+  std::optional<AppliedRegistration> registration = {};  // none: the reference lies as it was given
+  std::vector<std::string> doubts = {};                  // about the registration, whole sentences
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.
@@ -39,8 +49,10 @@ ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleM
 // The model's surface with its nodes at x (3 x node_count, relative to the origin).
 TriangleMesh surface_at(const Model& model, const Points& x);
 
-// Nothing for a model without a closed reference. Also fills fields.reference_distance. free_nodes: that the
-// certificate found to move at no cost; they are left out.
+// Nothing for a model without a closed reference. That is registered first, where the scene says so; where
+// that fails it stays as it lies, and a doubt says why. Also fills fields.reference_distance and what fields
+// hold of a registered reference. free_nodes: that the certificate found to move at no cost; they are left
+// out.
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
                                                         const std::vector<int>& free_nodes = {});
 

@@ -90,6 +90,24 @@ OrderedJson metrics() {
                 "what was measured on the closed shape; null where not defined for the scene");
 }
 
+OrderedJson registration() {
+  return object(
+      {{"method", text("annulus, landmarks or surface")},
+       {"transform", list(list(number("[mm] in the last column"), "one row"),
+                          "of the reference onto the result, 4 x 4, acts on columns")},
+       {"scale", number("of the transform")},
+       {"angle_deg", number("by which it turns [degrees]")},
+       {"translation_mm", number("of the middle of the reference's vertices [mm]")},
+       {"rms_mm", number("between the pairs that were kept [mm]")},
+       {"overlap", number("share of the points with a counterpart close by")},
+       {"pairs", count("that were kept")},
+       {"iterations", count("of the closest points; 0: matched once")},
+       {"free_directions", count("motions that the surfaces do not determine")},
+       {"to_reference_before", distance("from the solved surface to the reference as it was given")},
+       {"from_reference_before", distance("from the reference as it was given to the solved surface")}},
+      "how the reference was brought onto the result; the distances beside this are those after it");
+}
+
 OrderedJson reference_distance() {
   return object(
       {{"mean_mm", number("mean over both directions of their means [mm]")},
@@ -101,7 +119,8 @@ OrderedJson reference_distance() {
         object({{"mean_mm", number("mean [mm]")}, {"max_mm", number("greatest [mm]")}},
                "between vertices of the same number, when the reference has as many and the same facets"),
         Need::Optional},
-       {"left_out_nodes", count("vertices without a part in these figures: they can be moved at no cost")}},
+       {"left_out_nodes", count("vertices without a part in these figures: they can be moved at no cost")},
+       {"registration", registration(), Need::Optional}},
       "distance between the solved surface and the closed surface that the scene names");
 }
 

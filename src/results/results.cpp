@@ -8,7 +8,9 @@
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "results/branches_json.hpp"
+#include "results/reference_results.hpp"
 #include "results/result_surfaces.hpp"
+#include "results/study_files.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -64,22 +66,6 @@ OrderedJson leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
     entry.update(rows_json(leaflet_rows(leaflet)));
     json.push_back(entry);
   }
-  return json;
-}
-
-OrderedJson figures_json(const DistanceFigures& figures) {
-  return {
-      {"mean_mm", number(figures.mean)}, {"p95_mm", number(figures.p95)}, {"max_mm", number(figures.max)}};
-}
-
-OrderedJson reference_json(const ReferenceDistance& distance) {
-  OrderedJson json = figures_json(both_directions(distance));
-  json["to_reference"] = figures_json(distance.to_reference);
-  json["from_reference"] = figures_json(distance.from_reference);
-  json["left_out_nodes"] = distance.left_out;
-  if (distance.same_vertex)
-    json["same_vertex"] = {{"mean_mm", number(distance.same_vertex->mean)},
-                           {"max_mm", number(distance.same_vertex->max)}};
   return json;
 }
 
@@ -169,7 +155,7 @@ OrderedJson accuracy_json(const AccuracyEstimate& accuracy) {
                       {"wall_s", number(level.wall_s)},
                       {"cpu_s", number(level.cpu_s)},
                       {"distance_to_previous",
-                       level.to_previous ? figures_json(*level.to_previous) : OrderedJson(nullptr)}});
+                       level.to_previous ? distances_json(*level.to_previous) : OrderedJson(nullptr)}});
   return {{"wanted_mm", number(accuracy.wanted_mm)},
           {"reached", accuracy.is_reached},
           {"message", accuracy.message},
@@ -326,6 +312,7 @@ std::vector<std::string> result_files(const Model& model, const Report& report) 
   files.insert(files.end(), {"trace.csv", "metrics.csv"});
   if (has_line(report)) files.push_back("coaptation_line.vtp");
   if (has_orifice(report)) files.push_back("orifice.vtp");
+  if (report.fields.registered_reference) files.push_back("reference.vtp");
   if (report.has_page) files.push_back("report.html");
   if (report.has_frames) files.push_back("frames.pvd");
   return files;
@@ -350,11 +337,13 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
   prepare_result_folder(folder);
   write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
   const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
-                 mesh = folder / "closed.obj";
+                 mesh = folder / "closed.obj", reference = folder / "reference.vtp";
   write_or_remove(has_line(report), line,
                   [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
   write_or_remove(has_orifice(report), orifice,
                   [&] { write_vtp(orifice, orifice_outlines(model, *report.metrics.closure)); });
+  write_or_remove(report.fields.registered_reference.has_value(), reference,
+                  [&] { write_vtp(reference, registered_surface(model, report.fields)); });
   write_or_remove(model.mesh.triangle_count() > 0, mesh, [&] {
     TriangleMesh closed = model.mesh;
     closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;

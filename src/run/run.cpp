@@ -65,6 +65,9 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
         undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
   report.metrics = measure(model, result.q, report.fields, judge);
   report.reference = compare_with_reference(model, report.fields, result.certificate.free_nodes);
+  if (report.reference)
+    report.warnings.insert(report.warnings.end(), report.reference->doubts.begin(),
+                           report.reference->doubts.end());
   if (setup.stability.modes > 0 && !has_smallest_modes())
     report.warnings.push_back("The smallest eigenvalues need a build with Spectra; this one has none.");
   const long slack = report.metrics.slack_chords.value_or(0), lines = std::ssize(model.lines);

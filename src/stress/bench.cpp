@@ -49,6 +49,7 @@ StressScene copy_of(const StressScene& subject) {
   to.model.obstacles = from.model.obstacles;
   to.model.sets = from.model.sets;
   to.model.closed_reference = from.model.closed_reference;
+  to.model.registration = from.model.registration;
   to.model.warnings = from.model.warnings;
   to.networks = from.networks;
   to.prescribed = from.prescribed;

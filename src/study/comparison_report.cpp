@@ -70,7 +70,7 @@ OrderedJson method_json(const ComparedMethod& method) {
   json["energy_above_reference_mj"] = number_json(method.energy_above);
   const bool has_closed = method.run && method.run->report.reference;
   json["distance_to_closed_surface"] =
-      has_closed ? distance_json(*method.run->report.reference) : OrderedJson(nullptr);
+      has_closed ? reference_json(*method.run->report.reference) : OrderedJson(nullptr);
   if (method.run) add_result(*method.run, json);
   return json;
 }
@@ -114,18 +114,8 @@ void add_figures(const ComparedMethod& method, Row& row) {
 
 }  // namespace
 
-OrderedJson distance_json(const ReferenceDistance& distance) {
-  OrderedJson json = distances_json(both_directions(distance));
-  json["to_reference"] = distances_json(distance.to_reference);
-  json["from_reference"] = distances_json(distance.from_reference);
-  json["left_out_nodes"] = distance.left_out;
-  if (const auto& same = distance.same_vertex)
-    json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
-  return json;
-}
-
 OrderedJson gap_json(const MethodGap& gap) {
-  OrderedJson json = gap.surfaces ? distance_json(*gap.surfaces) : OrderedJson::object();
+  OrderedJson json = gap.surfaces ? reference_json(*gap.surfaces) : OrderedJson::object();
   json["same_vertex"] = {{"mean_mm", number_json(gap.same_vertex.mean)},
                          {"max_mm", number_json(gap.same_vertex.max)}};
   json["left_out_nodes"] = gap.left_out;

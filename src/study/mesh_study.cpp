@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
+#include "results/registered_reference.hpp"
 #include "results/study_files.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/refine_scene.hpp"
@@ -33,7 +34,8 @@ MeshLevel solved_level(const Scene& scene, const SceneGeometry& ground, const So
   level.orifice_area_mm2 = metrics.orifice_area_mm2;
   level.max_chord_force_n = metrics.max_chord_force_n;
   level.closed = surface_at(model, fields.x);
-  if (model.closed_reference) level.to_reference = distance_between(level.closed, *model.closed_reference);
+  if (model.closed_reference)
+    level.to_reference = distance_between(level.closed, registered_reference(model, level.closed).surface);
   return level;
 }
 

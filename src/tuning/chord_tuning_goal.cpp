@@ -165,6 +165,11 @@ TriangleMesh read_target(const ChordTuningOptions& options, const Model& model) 
       throw InputError(
           "--target: missing, and the scene has no reference.closed_surface; name the closed surface to fit, "
           "or give --orifice-weight or --force-weight");
+    if (model.registration)
+      throw InputError(
+          "reference.register: a surface that is fitted has one place; register it onto a closed shape of "
+          "this "
+          "valve first (`coapt register`) and name what that writes");
     target = *model.closed_reference;
   } else {
     target = read_mesh(options.target).mesh;

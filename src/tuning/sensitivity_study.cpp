@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/timing.hpp"
+#include "results/registered_reference.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
@@ -123,7 +124,7 @@ class Study {
     found.movement =
         (distance_between(smaller, here).mean + distance_between(larger, here).mean) / (2 * change);
     if (!model_.closed_reference) return;
-    const TriangleMesh& reference = *model_.closed_reference;
+    const TriangleMesh reference = registered_reference(model_, here).surface;  // stays with the first shape
     found.error_change =
         (distance_between(larger, reference).mean - distance_between(smaller, reference).mean) / (2 * change);
   }
@@ -134,7 +135,8 @@ class Study {
   static SensitivityRun measured(double factor, const Result& result, const Model& model,
                                  const TriangleMesh& surface) {
     SensitivityRun run{factor, result.status, result.residual, result.iterations};
-    if (model.closed_reference) run.to_reference = distance_between(surface, *model.closed_reference);
+    if (model.closed_reference)
+      run.to_reference = distance_between(surface, registered_reference(model, surface).surface);
     return run;
   }
 

@@ -108,6 +108,22 @@ TEST(RegisterSurfaces, RefuseAMirrorImageAndSurfacesWithoutOverlap) {
   }
 }
 
+TEST(RegisterSurfaces, RefuseASurfaceInAnotherUnit) {
+  const TriangleMesh target = valve_like(2000);
+  TriangleMesh in_centimetres = target;
+  in_centimetres.vertices *= 0.1;
+  const auto message = [](const TriangleMesh& moving, const TriangleMesh& onto) -> std::string {
+    try {
+      register_surfaces(moving, onto);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const std::string& text : {message(in_centimetres, target), message(target, in_centimetres)})
+    EXPECT_NE(text.find("unit of length"), std::string::npos) << text;
+}
+
 TEST(RegisterSurfaces, ThePublishedClosedTricuspidValveComesBack) {
   const auto file =
       std::filesystem::path(COAPT_SHARED_DIR) / "data/trivalve11-healthy/leaflets_closed_reference.obj";

@@ -21,6 +21,7 @@ Model begun(const SceneGeometry& ground) {
   model.obstacles = ground.model.obstacles;
   model.sets = ground.model.sets;
   model.closed_reference = ground.model.closed_reference;
+  model.registration = ground.model.registration;
   model.warnings = ground.model.warnings;
   return model;
 }

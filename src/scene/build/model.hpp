@@ -6,6 +6,7 @@
 #include "formats/valve.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "optim/solver.hpp"
+#include "registration/wanted_registration.hpp"
 
 #include <functional>
 #include <map>
@@ -61,8 +62,9 @@ struct Model {
   std::unique_ptr<Objective> objective;
   MotionPath motion;
   Vector q0;
-  std::optional<TriangleMesh> closed_reference;  // relative to origin too
-  std::vector<std::string> warnings;             // whole sentences
+  std::optional<TriangleMesh> closed_reference;    // relative to origin too
+  std::optional<WantedRegistration> registration;  // of the closed reference
+  std::vector<std::string> warnings;               // whole sentences
 };
 
 }  // namespace coapt

@@ -147,6 +147,7 @@ SceneGeometry refined(const SceneGeometry& ground) {
   model.X.rightCols(coarse.X.cols() - old_vertices) = coarse.X.rightCols(coarse.X.cols() - old_vertices);
   model.obstacles = coarse.obstacles.array() + cut.added();  // their nodes follow those of the mesh
   model.closed_reference = coarse.closed_reference;
+  model.registration = coarse.registration;
   for (const auto& [name, set] : coarse.sets) model.sets[name] = refined_set(set, cut, coarse.X.cols());
   std::vector<int>& all = model.sets["all"];
   all.clear();

@@ -1,6 +1,7 @@
 #include "scene/build/scene_geometry.hpp"
 
 #include "core/error.hpp"
+#include "formats/json/markups.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/mesh_check.hpp"
@@ -48,11 +49,28 @@ void read_surface(const Scene& scene, Assembly& assembly) {
   }
 }
 
+WantedRegistration wanted_registration(const SceneRegistration& given, const TriangleMesh& reference) {
+  WantedRegistration wanted{given.method, given.options};
+  try {
+    if (given.method == RegistrationMethod::Landmarks) {
+      wanted.moving_landmarks = papillary_points(given.reference_landmarks);
+      wanted.target_landmarks = papillary_points(given.landmarks);
+    }
+    check(wanted, reference);
+  } catch (const InputError& error) {
+    throw error.within(given.where);
+  }
+  return wanted;
+}
+
 void read_reference(const Scene& scene, Assembly& assembly) {
   if (!scene.closed_surface) return;
   try {
     assembly.model.closed_reference =
         read_scaled(*scene.closed_surface, scene.closed_surface_scale, assembly);
+    if (scene.registration)
+      assembly.model.registration =
+          wanted_registration(*scene.registration, *assembly.model.closed_reference);
   } catch (const InputError& error) {
     assembly.keep(error);
   }
@@ -216,6 +234,7 @@ void recentre(Assembly& assembly) {
   model.X.colwise() -= centre;
   model.mesh.vertices.colwise() -= centre;
   if (model.closed_reference) model.closed_reference->vertices.colwise() -= centre;
+  if (model.registration) shift(*model.registration, -centre);
 }
 
 void name_sets(const Scene& scene, Assembly& assembly) {

@@ -284,6 +284,28 @@ void check_continuation(const Parameters& values, const std::string& file, Readi
                               "load_steps and stiffness_steps, or damped_steps");
 }
 
+void read_reference(const Parameters& values, double mesh_scale, Scene& scene, Reading& reading) {
+  if (!values.has("reference")) return;
+  const Parameters& reference = values.object("reference");
+  if (reference.has("closed_surface")) scene.closed_surface = reference.text("closed_surface");
+  scene.closed_surface_scale = length_scale(reference, mesh_scale, reading);
+  if (!reference.has("register")) return;  // it is not one of the words
+  const std::optional<RegistrationMethod> method = registration_method(reference.text("register"));
+  const bool by_landmarks = method == RegistrationMethod::Landmarks;
+  for (const char* key : {"landmarks", "reference_landmarks"})
+    if (reading.defects.empty() && reference.has(key) != by_landmarks)
+      reading.defects.push_back(reference.where(key) + (by_landmarks
+                                                            ? ": missing; \"register\": \"landmarks\" "
+                                                              "needs the points of both"
+                                                            : ": only \"register\": \"landmarks\" uses it"));
+  if (!method || !reading.defects.empty()) return;
+  scene.registration = SceneRegistration{
+      reference.where("register"), *method, {reference.number("trim"), reference.flag("scale")}, {}, {}};
+  if (!by_landmarks) return;
+  scene.registration->landmarks = reference.text("landmarks");
+  scene.registration->reference_landmarks = reference.text("reference_landmarks");
+}
+
 // The mesh is the scene's own, or the caller has it in memory.
 Scene parsed(const std::string& text, const std::filesystem::path& path, bool has_mesh_in_memory) {
   const std::string file = path.string();
@@ -310,11 +332,7 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
   scene.terms = named<TermSpec>(values, "terms", names, reading);
   scene.interventions = named<InterventionSpec>(values, "interventions", names, reading);
   if (reading.defects.empty()) add_terms_of_interventions(scene, reading.defects);
-  if (values.has("reference")) {
-    const Parameters& reference = values.object("reference");
-    if (reference.has("closed_surface")) scene.closed_surface = reference.text("closed_surface");
-    scene.closed_surface_scale = length_scale(reference, mesh_scale, reading);
-  }
+  read_reference(values, mesh_scale, scene, reading);
   if (values.has("output")) {
     const Parameters& output = values.object("output");
     if (output.has("folder"))

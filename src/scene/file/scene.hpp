@@ -2,6 +2,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
+#include "registration/registration.hpp"
 #include "scene/file/parameters.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 
@@ -18,6 +19,14 @@ struct SceneMesh {
   std::filesystem::path file;
   double scale = 1;                           // mm per unit of the file
   std::optional<std::filesystem::path> sets;  // JSON with named node sets and points
+};
+
+// How the closed surface of `reference` is brought onto the result.
+struct SceneRegistration {
+  std::string where;  // for messages
+  RegistrationMethod method = RegistrationMethod::Surface;
+  RegistrationOptions options;
+  std::filesystem::path landmarks, reference_landmarks;  // of the method of this name
 };
 
 // Later entries win over earlier ones where they share nodes.
@@ -103,6 +112,7 @@ struct Scene {
   SolverSpec solver;
   std::optional<std::filesystem::path> closed_surface;  // reference
   double closed_surface_scale = 1;                      // mm per unit of that file
+  std::optional<SceneRegistration> registration;        // none: the closed surface stays as it lies
   std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
   int frame_interval = 0;                               // accepted iterates from frame to frame; 0: no frames
   bool writes_page = true;                              // report.html

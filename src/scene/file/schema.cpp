@@ -197,16 +197,39 @@ KeySpec chords_key() {
 }
 
 KeySpec reference_key() {
-  return {.name = "reference",
-          .kind = KeyKind::Object,
-          .object = {.keys = {{.name = "closed_surface",
-                               .kind = KeyKind::File,
-                               .required = true,
-                               .doc = "Mesh of the closed surface that the result is compared with."},
-                              {.name = "unit",
-                               .kind = KeyKind::Text,
-                               .doc = "Unit of length of that file; default: that of the mesh."}}},
-          .doc = "What the result is compared with; it never influences the solution."};
+  return {
+      .name = "reference",
+      .kind = KeyKind::Object,
+      .object = {.keys = {{.name = "closed_surface",
+                           .kind = KeyKind::File,
+                           .required = true,
+                           .doc = "Mesh of the closed surface that the result is compared with."},
+                          {.name = "unit",
+                           .kind = KeyKind::Text,
+                           .doc = "Unit of length of that file; default: that of the mesh."},
+                          {.name = "register",
+                           .kind = KeyKind::Choice,
+                           .fallback = "\"none\"",
+                           .choices = {"none", "annulus", "landmarks", "surface"},
+                           .doc = "How it is brought onto the result, as `coapt register` does, before "
+                                  "distances are taken; both are reported, and the motion."},
+                          {.name = "trim",
+                           .fallback = "0.1",
+                           .min = 0,
+                           .max = 0.9,
+                           .doc = "Share of the pairs that a registration leaves out, the farthest."},
+                          {.name = "scale",
+                           .kind = KeyKind::Flag,
+                           .fallback = "false",
+                           .doc = "Whether a registration also finds one scale."},
+                          {.name = "landmarks",
+                           .kind = KeyKind::File,
+                           .doc = "Points of the closed shape, such as commissures and papillary tips [mm]: "
+                                  "a markups file of 3D Slicer. For \"register\": \"landmarks\"."},
+                          {.name = "reference_landmarks",
+                           .kind = KeyKind::File,
+                           .doc = "The same points of the closed surface, in the same order [mm]."}}},
+      .doc = "What the result is compared with; it never influences the solution."};
 }
 
 }  // namespace

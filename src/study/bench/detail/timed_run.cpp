@@ -1,5 +1,6 @@
 #include "study/bench/detail/timed_run.hpp"
 
+#include "results/registered_reference.hpp"
 #include "scene/build/build.hpp"
 #include "solve/peak_memory.hpp"
 
@@ -31,8 +32,10 @@ TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveS
     const bool is_cancelled = result.status == Status::Cancelled;
     if (run.repeats == 0) {
       run.x = model.objective->positions(result.q);
-      if (model.closed_reference)
-        run.to_closed = distance_between(surface_at(model, run.x), *model.closed_reference);
+      if (model.closed_reference) {
+        const TriangleMesh closed = surface_at(model, run.x);
+        run.to_closed = distance_between(closed, registered_reference(model, closed).surface);
+      }
     }
     if (run.repeats == 0 || is_cancelled || result.wall_s < run.result.wall_s) run.result = std::move(result);
     if (is_cancelled) break;

@@ -1,0 +1,19 @@
+#include "results/registered_reference.hpp"
+
+#include "core/error.hpp"
+#include "registration/wanted_registration.hpp"
+
+namespace coapt {
+RegisteredReference registered_reference(const Model& model, const TriangleMesh& closed) {
+  RegisteredReference reference{*model.closed_reference, std::nullopt};
+  if (!model.registration) return reference;
+  try {
+    reference.registration = register_by(*model.registration, reference.surface, closed);
+  } catch (const InputError& error) {
+    throw error.within("reference.closed_surface");
+  }
+  reference.surface.vertices = reference.registration->motion.apply(reference.surface.vertices);
+  return reference;
+}
+
+}  // namespace coapt
