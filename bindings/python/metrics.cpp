@@ -27,6 +27,11 @@ TriangleMesh target_of(const Followed& followed, const std::string& name,
     throw InputError(
         "metric \"" + name +
         "\": has no target, and the scene no closed surface as `reference`; give V and F of one");
+  if (followed.tracked.model.registration)
+    throw InputError(
+        "metric \"" + name +
+        "\": its target must stay where it is; leave `reference.register` out of the scene and give "
+        "V and F as coapt.register() returns them");
   return *followed.tracked.model.closed_reference;
 }
 

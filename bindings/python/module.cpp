@@ -58,4 +58,5 @@ PYBIND11_MODULE(_core, module) {
   coapt::python::define_optim(module);
   coapt::python::define_scene(module);
   coapt::python::define_equilibrium(module);
+  coapt::python::define_registration(module);
 }

@@ -20,6 +20,7 @@ void define_energy(py::module_& module);
 void define_optim(py::module_& module);
 void define_scene(py::module_& module);
 void define_equilibrium(py::module_& module);
+void define_registration(py::module_& module);
 
 // The first exception that the caller's Python code raised in a run. Solvers take it for a state that cannot
 // be evaluated; when the run is over it goes on to the caller. All under the interpreter lock.

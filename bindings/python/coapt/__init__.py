@@ -26,13 +26,14 @@ from ._core import Iterate
 from ._equilibrium import AnchorCheck, Equilibrium, KinkWarning, LostBranch, Settling, Switch
 from ._errors import InputError
 from ._objective import LostBranchWarning, Objective, objective
+from ._registration import Registration, register
 from ._result import Result, Status
 from ._terms import Term, check_term
 
 __version__ = _core.version()
 __all__ = ["AnchorCheck", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",
-           "Objective", "Result", "Settling", "Status", "Switch", "Term", "autograd", "check_term", "components",
-           "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "scene_schema", "solve"]
+           "Objective", "Registration", "Result", "Settling", "Status", "Switch", "Term", "autograd", "check_term", "components",
+           "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "register", "scene_schema", "solve"]
 
 
 def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:

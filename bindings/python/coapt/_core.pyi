@@ -172,3 +172,15 @@ def run(
     branch_seed: int,
     damped_steps: int | None,
 ) -> Solution: ...
+
+def register_surface(
+    vertices: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int32],
+    target_vertices: npt.NDArray[np.float64],
+    target_triangles: npt.NDArray[np.int32],
+    method: str,
+    trim: float,
+    with_scale: bool,
+    landmarks: npt.NDArray[np.float64] | None,
+    target_landmarks: npt.NDArray[np.float64] | None,
+) -> dict[str, Any]: ...
