@@ -187,7 +187,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
   const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
   const Result& result = report.report.result;
   if (!is_reached || result.status != Status::Converged) return kNotConverged;
-  return stability_doubt(result.certificate).empty() ? kConverged : kInDoubt;
+  return is_in_doubt(report.report) ? kInDoubt : kConverged;
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ inline constexpr int kConverged = 0;     // or: did what was asked
 inline constexpr int kNotConverged = 1;  // the result is written all the same
 inline constexpr int kBadInput = 2;      // arguments, scene, mesh, or a folder that cannot be written
 inline constexpr int kInternal = 3;      // a fault of the program
-inline constexpr int kInDoubt =
-    4;  // `solve`: converged, but the state is not stable, or that could not be decided
+// `solve`: converged, but the state is not stable, that could not be decided, or facets pass through each
+// other
+inline constexpr int kInDoubt = 4;
 
 }  // namespace coapt::cli

@@ -22,10 +22,17 @@ std::vector<std::string> result_warnings(const Report& report) {
   return warnings;
 }
 
+bool is_in_doubt(const Report& report) {
+  return report.metrics.intersections > 0 || !stability_doubt(report.result.certificate).empty();
+}
+
 Headline headline(const Report& report) {
   Headline line{report.result.message};
   if (report.result.status != Status::Converged) return line;
-  line.is_in_doubt = !stability_doubt(report.result.certificate).empty();
+  line.is_in_doubt = is_in_doubt(report);
+  if (const long pairs = report.metrics.intersections; pairs > 0)
+    line.text += "; " + std::to_string(pairs) +
+                 (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") + " through each other";
   const bool has_others = report.branches && report.branches->equilibria.size() > 1;
   if (!has_others && (report.branches || !report.neighbours.is_suspected)) return line;
   line.is_in_doubt = true;
