@@ -64,6 +64,12 @@ py::dict fields(const py::object& self) {
   all["displacement"] = rows<double>(self, found.displacement);
   if (found.principal_strain.cols() > 0) all["principal_strain"] = rows<double>(self, found.principal_strain);
   if (found.principal_stress.cols() > 0) all["principal_stress"] = rows<double>(self, found.principal_stress);
+  if (found.cauchy_stress.cols() > 0) {
+    all["cauchy_stress"] = rows<double>(self, found.cauchy_stress);
+    all["von_mises_stress"] = numbers(self, found.von_mises_stress);
+  }
+  if (found.first_piola_stress.cols() > 0)
+    all["first_piola_stress"] = rows<double>(self, found.first_piola_stress);
   if (!found.regime.empty()) all["regime"] = regimes(self, found.regime);
   if (found.gap.size() > 0) {
     all["gap"] = numbers(self, found.gap);
@@ -71,7 +77,11 @@ py::dict fields(const py::object& self) {
   }
   if (found.reference_distance.size() > 0)
     all["reference_distance"] = numbers(self, found.reference_distance);
-  if (found.line_force.size() > 0) all["line_force"] = numbers(self, found.line_force);
+  if (found.line_force.size() > 0) {
+    all["line_force"] = numbers(self, found.line_force);
+    all["line_strain"] = numbers(self, found.line_strain);
+    all["line_stress"] = numbers(self, found.line_stress);
+  }
   return all;
 }
 

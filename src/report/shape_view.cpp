@@ -59,10 +59,12 @@ OrderedJson state_json(const ViewState& state) {
 }
 
 OrderedJson view_json(const ShapeView& view) {
-  OrderedJson states = OrderedJson::array(), ways = OrderedJson::array(), fields = OrderedJson::array();
+  OrderedJson states = OrderedJson::array(), ways = OrderedJson::array(), fields = OrderedJson::array(),
+              line_values = OrderedJson::array();
   for (const ViewState& state : view.states) states.push_back(state_json(state));
   for (const ViewWay& way : view.ways) ways.push_back({{"label", way.label}, {"states", way.state_count}});
   for (const ViewField& field : view.fields) fields.push_back(field_json(field));
+  for (const ViewField& field : view.line_values) line_values.push_back(field_json(field));
   return {{"name", view.name},
           {"origin", numbers(view.origin)},
           {"frame",
@@ -75,7 +77,8 @@ OrderedJson view_json(const ShapeView& view) {
           {"states", states},
           {"ways", ways},
           {"fields", fields},
-          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)}};
+          {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)},
+          {"line_values", line_values}};
 }
 
 void replace(std::string& text, std::string_view mark, std::string_view by) {

@@ -59,6 +59,7 @@ struct ShapeView {
   std::vector<ViewWay> ways = {};
   std::vector<ViewField> fields = {};  // of vertices and triangles; the first is shown
   std::optional<ViewField> line_force = {};
+  std::vector<ViewField> line_values = {};  // told of the lines at a node, after their force
 };
 
 // Whether this build holds what draws shapes.

@@ -19,6 +19,7 @@ std::string in_words(const MetricRow& row) {
   std::string name = row.name;
   if (!row.unit.empty() && name.ends_with("_" + row.unit)) name.resize(name.size() - row.unit.size() - 1);
   if (row.unit == "N" && name.ends_with("_n")) name.resize(name.size() - 2);
+  if (row.unit == "kPa" && name.ends_with("_kpa")) name.resize(name.size() - 4);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
@@ -38,9 +39,9 @@ std::string tile(const std::string& name, double value, const std::string& unit)
 PageMarkup tiles(const Report& report) {
   std::string html;
   for (const MetricRow& row : metric_rows(report.metrics))
-    for (const char* name :
-         {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
-          "max_principal_strain", "max_chord_force_n", "max_displacement_mm"})
+    for (const char* name : {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
+                             "tenting_height_mm", "max_principal_strain", "max_cauchy_stress_kpa",
+                             "max_chord_force_n", "max_chord_stress_kpa", "max_displacement_mm"})
       if (row.name == name && row.value) html += tile(in_words(row), *row.value, unit_sign(row.unit));
   if (report.reference)
     html += tile("mean distance to reference", both_directions(*report.reference).mean, "mm");

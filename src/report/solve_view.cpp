@@ -46,17 +46,30 @@ void add_distances(const Fields& fields, std::vector<ViewField>& all) {
     all.push_back({.title = "Distance to other equilibria", .unit = "mm", .values = {fields.branch_spread}});
 }
 
-void add_strains(const Fields& fields, std::vector<ViewField>& all) {
-  const auto add = [&all](const char* title, const char* unit, const Vector& values) {
-    all.push_back({.title = title, .unit = unit, .place = ViewPlace::Triangle, .values = {values}});
-  };
-  if (fields.principal_strain.cols() > 0) {
-    add("Greater principal strain", "", fields.principal_strain.row(0));
-    add("Lesser principal strain", "", fields.principal_strain.row(1));
-  }
-  if (fields.principal_stress.cols() == 0) return;
-  add("Greater principal stress", "MPa", fields.principal_stress.row(0));
-  add("Lesser principal stress", "MPa", fields.principal_stress.row(1));
+void add_of_triangles(const std::string& title, const char* unit, const Vector& values,
+                      std::vector<ViewField>& all) {
+  all.push_back({.title = title, .unit = unit, .place = ViewPlace::Triangle, .values = {values}});
+}
+
+void add_principal(const std::string& title, const char* unit, const Eigen::Matrix2Xd& values,
+                   std::vector<ViewField>& all) {
+  if (values.cols() == 0) return;
+  add_of_triangles("Greater " + title, unit, values.row(0), all);
+  add_of_triangles("Lesser " + title, unit, values.row(1), all);
+}
+
+// What a reader of papers looks for first.
+void add_stress_and_strain(const Fields& fields, std::vector<ViewField>& all) {
+  add_principal("principal Cauchy stress", "kPa", kKilopascals * fields.cauchy_stress, all);
+  if (fields.von_mises_stress.size() > 0)
+    add_of_triangles("Von Mises stress", "kPa", kKilopascals * fields.von_mises_stress, all);
+  add_principal("principal strain", "", fields.principal_strain, all);
+}
+
+void add_reference_stress(const Fields& fields, std::vector<ViewField>& all) {
+  add_principal("first Piola-Kirchhoff stress", "kPa", kKilopascals * fields.first_piola_stress, all);
+  add_principal("second Piola-Kirchhoff stress", "MPa", fields.principal_stress, all);
+  if (fields.regime.empty()) return;
   Vector regime(std::ssize(fields.regime));
   for (Eigen::Index t = 0; t < regime.size(); ++t)
     regime[t] = static_cast<double>(fields.regime[static_cast<size_t>(t)]);
@@ -127,11 +140,12 @@ ShapeView bare_view(const Model& model, const Fields& fields) {
 
 std::vector<ViewField> view_fields(const Model& model, const Fields& fields) {
   std::vector<ViewField> all;
+  add_stress_and_strain(fields, all);
   add_contact(fields, all);
   add_distances(fields, all);
   const Vector moved = fields.displacement.colwise().norm().transpose();
   all.push_back({.title = "Displacement", .unit = "mm", .values = {moved}});
-  add_strains(fields, all);
+  add_reference_stress(fields, all);
   add_regions(model, all);
   return all;
 }
@@ -162,11 +176,13 @@ ShapeView solved_view(const Model& model, const Report& report) {
   if (view.is_valve) view.slider = "Open ↔ closed";
   view.states = view_states(report, report.way);
   view.fields = view_fields(model, report.fields);
-  if (!model.lines.empty())
-    view.line_force = {.title = "Force in chords and cables",
-                       .unit = "N",
-                       .place = ViewPlace::Line,
-                       .values = {report.fields.line_force}};
+  if (model.lines.empty()) return view;
+  const auto of_lines = [](const char* title, const char* unit, const Vector& values) {
+    return ViewField{.title = title, .unit = unit, .place = ViewPlace::Line, .values = {values}};
+  };
+  view.line_force = of_lines("Force in chords and cables", "N", report.fields.line_force);
+  view.line_values = {of_lines("strain", "", report.fields.line_strain),
+                      of_lines("Cauchy stress", "kPa", kKilopascals * report.fields.line_stress)};
   return view;
 }
 

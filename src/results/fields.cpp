@@ -38,6 +38,8 @@ void add_stress(const Model& model, Fields& fields) {
   const auto count = model.mesh.triangle_count();
   fields.principal_stress = Eigen::Matrix2Xd::Zero(2, count);
   fields.regime.assign(static_cast<size_t>(count), MembraneRegime::Slack);
+  Eigen::Matrix2Xd cauchy = fields.principal_stress, first_piola = cauchy;
+  bool has_thickness = false;
   for (const MembranePatch& patch : model.membrane_patches)
     for (size_t e = 0; e < patch.triangles.size(); ++e) {
       const int t = patch.triangles[e];
@@ -47,7 +49,15 @@ void add_stress(const Model& model, Fields& fields) {
       const MembraneState state = patch.state(static_cast<int>(e), x);
       fields.principal_stress.col(t) = state.stress;
       fields.regime[static_cast<size_t>(t)] = state.regime;
+      cauchy.col(t) = state.cauchy;
+      first_piola.col(t) = state.first_piola;
+      has_thickness |= state.has_thickness;
     }
+  if (!has_thickness) return;
+  fields.von_mises_stress.resize(count);
+  for (int t = 0; t < count; ++t) fields.von_mises_stress[t] = von_mises(cauchy.col(t));
+  fields.cauchy_stress = std::move(cauchy);
+  if (model.wants_first_piola) fields.first_piola_stress = std::move(first_piola);
 }
 
 // Springs have forces and no stress, so beside them no triangle is told to be slack.
@@ -76,13 +86,19 @@ double tension_of(const TermAccess& lines, const Line& line, const Points& x) {
 }
 
 void add_line_forces(const Model& model, Fields& fields) {
-  fields.line_force = Vector::Zero(static_cast<Eigen::Index>(model.lines.size()));
+  fields.line_force = Vector::Zero(std::ssize(model.lines));
+  fields.line_strain = fields.line_stress = Vector::Constant(std::ssize(model.lines), kNaN);
   std::map<std::string, const TermAccess*> lines;
   for (const auto& term : model.objective->terms())
     if (kind_of(*term) == TermKind::Line) lines[term->name()] = access_of(*term);
-  for (size_t k = 0; k < model.lines.size(); ++k)
-    if (const auto found = lines.find(model.lines[k].term); found != lines.end())
-      fields.line_force[static_cast<Eigen::Index>(k)] = tension_of(*found->second, model.lines[k], fields.x);
+  for (Eigen::Index k = 0; k < fields.line_force.size(); ++k) {
+    const Line& line = model.lines[static_cast<size_t>(k)];
+    fields.line_strain[k] = line_strain(line, fields.x).value_or(kNaN);
+    const auto found = lines.find(line.term);
+    if (found == lines.end()) continue;
+    fields.line_force[k] = tension_of(*found->second, line, fields.x);
+    fields.line_stress[k] = line_stress(line, fields.line_force[k], fields.x).value_or(kNaN);
+  }
 }
 
 void add_contact(const Model& model, Fields& fields) {
@@ -114,6 +130,16 @@ double part_below(std::array<double, 3> values, double level) {
 std::optional<double> line_strain(const Line& line, const Points& x) {
   if (line.rest_length <= 0) return std::nullopt;
   return (x.col(line.a) - x.col(line.b)).norm() / line.rest_length - 1;
+}
+
+std::optional<double> line_stress(const Line& line, double tension, const Points& x) {
+  if (line.area <= 0 || line.rest_length <= 0) return std::nullopt;
+  return tension / line.area * (x.col(line.a) - x.col(line.b)).norm() / line.rest_length;
+}
+
+double von_mises(const Eigen::Vector2d& principal) {
+  const double mean = 0.5 * principal.sum(), half = 0.5 * (principal[0] - principal[1]);
+  return std::sqrt(mean * mean + 3 * half * half);
 }
 
 const std::vector<int>* annulus_of(const Model& model) {

@@ -42,6 +42,17 @@ void measure_regimes(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.slack_area_mm2 = area_in(MembraneRegime::Slack);
 }
 
+void measure_stress(const Fields& fields, Metrics& metrics) {
+  if (fields.cauchy_stress.cols() > 0) {
+    metrics.max_cauchy_stress_kpa = kKilopascals * fields.cauchy_stress.row(0).maxCoeff();
+    metrics.max_von_mises_stress_kpa = kKilopascals * fields.von_mises_stress.maxCoeff();
+  }
+  for (const double stress : fields.line_stress)
+    if (!std::isnan(stress))
+      metrics.max_chord_stress_kpa =
+          std::max(metrics.max_chord_stress_kpa.value_or(kKilopascals * stress), kKilopascals * stress);
+}
+
 void measure_line_strains(const Model& model, const Fields& fields, Metrics& metrics) {
   double sum = 0;
   int stretched = 0;
@@ -63,6 +74,25 @@ void measure_lines(const Model& model, const Fields& fields, Metrics& metrics) {
   measure_line_strains(model, fields, metrics);
 }
 
+// Strain, stress and force of membrane and lines.
+std::vector<MetricRow> strength_rows(const Metrics& m) {
+  return {
+      {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
+       m.max_principal_strain},
+      {"max_cauchy_stress_kpa", "kPa", "greatest principal Cauchy stress of the membrane", false,
+       m.max_cauchy_stress_kpa},
+      {"max_von_mises_stress_kpa", "kPa", "greatest von Mises stress in the plane of the membrane", false,
+       m.max_von_mises_stress_kpa},
+      {"max_chord_force_n", "N", "greatest tension of a chord or cable", false, m.max_chord_force_n},
+      {"max_chord_stress_kpa", "kPa", "greatest Cauchy stress of a chord or cable of known cross-section",
+       false, m.max_chord_stress_kpa},
+      {"max_chord_strain", "", "greatest strain of a chord or cable, length over rest length - 1", false,
+       m.max_chord_strain},
+      {"mean_chord_strain", "", "mean strain of the chords and cables longer than at rest", false,
+       m.mean_chord_strain},
+  };
+}
+
 }  // namespace
 
 Metrics measure(const Model& model, const Vector& q, const Fields& fields, const IntersectionJudge& judge) {
@@ -79,6 +109,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
     metrics.intersections = std::ssize(membrane_intersections(fields.x, model, judge));
   if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
   measure_lines(model, fields, metrics);
+  measure_stress(fields, metrics);
   measure_regimes(model, fields, metrics);
 
   if (is_finite) try {
@@ -103,7 +134,7 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
   const auto count = [](std::optional<long> value) {
     return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
   };
-  return {
+  std::vector<MetricRow> rows = {
       {"intersections", "",
        "pairs of facets without a common vertex, one or both of the mesh, that touch or pass through each "
        "other",
@@ -138,13 +169,9 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"wrinkled_area_mm2", "mm2", "reference area of the membrane in tension one way", false,
        m.wrinkled_area_mm2},
       {"slack_area_mm2", "mm2", "reference area of the membrane without tension", false, m.slack_area_mm2},
-      {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
-       m.max_principal_strain},
-      {"max_chord_force_n", "N", "greatest tension of a chord or cable", false, m.max_chord_force_n},
-      {"max_chord_strain", "", "greatest strain of a chord or cable, length over rest length - 1", false,
-       m.max_chord_strain},
-      {"mean_chord_strain", "", "mean strain of the chords and cables longer than at rest", false,
-       m.mean_chord_strain},
+  };
+  const std::vector<MetricRow> strength = strength_rows(m);
+  const std::vector<MetricRow> rest = {
       {"force_balance", "", "resultant of loads and reactions over the sum of their magnitudes", false,
        m.force_balance},
       {"moment_balance", "", "the same for moments about the centre of the nodes", false, m.moment_balance},
@@ -156,6 +183,9 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"slack_chords", "", "chords and cables without tension", true, count(m.slack_chords)},
       {"max_displacement_mm", "mm", "greatest displacement of a node", false, m.max_displacement_mm},
   };
+  rows.insert(rows.end(), strength.begin(), strength.end());
+  rows.insert(rows.end(), rest.begin(), rest.end());
+  return rows;
 }
 
 std::vector<MetricRow> leaflet_rows(const LeafletMetrics& l) {

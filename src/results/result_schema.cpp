@@ -349,7 +349,7 @@ std::string result_schema() {
               {"neighbours", neighbours()},
               {"undetermined_nodes", undetermined_nodes_schema()},
               {"branches", branches(), Need::Optional}},
-             "Result of one solve. Lengths in mm, forces in N, stresses in MPa, energies in mJ.");
+             "Result of one solve. Lengths in mm, forces in N, stresses in kPa, energies in mJ.");
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Coapt result";
   return json_text(schema, 2) + "\n";

@@ -18,6 +18,28 @@ Eigen::MatrixXd over_nodes(const Vector& of_vertices, Eigen::Index node_count) {
   return row;
 }
 
+// Stresses as papers print them, in kPa.
+void add_stresses(const Fields& fields, std::vector<VtpArray>& arrays) {
+  if (fields.cauchy_stress.cols() == 0) return;
+  arrays.push_back({"cauchy_stress_1_kpa", kKilopascals * fields.cauchy_stress.row(0), false});
+  arrays.push_back({"cauchy_stress_2_kpa", kKilopascals * fields.cauchy_stress.row(1), false});
+  arrays.push_back({"von_mises_stress_kpa", kKilopascals * fields.von_mises_stress.transpose(), false});
+  if (fields.first_piola_stress.cols() == 0) return;
+  arrays.push_back({"first_piola_stress_1_kpa", kKilopascals * fields.first_piola_stress.row(0), false});
+  arrays.push_back({"first_piola_stress_2_kpa", kKilopascals * fields.first_piola_stress.row(1), false});
+}
+
+// Strain and stress of the lines where some line has one: -1 for those that have none, whose strain is never
+// so low and whose stress, of a line that only pulls, never negative.
+void add_line_arrays(const Fields& fields, std::vector<VtpArray>& arrays) {
+  arrays.push_back({"line_force_n", fields.line_force.transpose(), false});
+  const auto add = [&arrays](const char* name, const Vector& values) {
+    if (!values.array().isNaN().all()) arrays.push_back({name, over_nodes(values, values.size()), false});
+  };
+  add("line_strain", fields.line_strain);
+  add("line_cauchy_stress_kpa", kKilopascals * fields.line_stress);
+}
+
 // Flags as a row of `count` numbers; 0 behind the last.
 Eigen::MatrixXd row_of(const std::vector<char>& flags, Eigen::Index count) {
   Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, count);
@@ -103,6 +125,7 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
     surface.triangle_arrays.push_back({"regime", regime, true});
     surface.triangle_arrays.push_back({"principal_stress_1_mpa", fields.principal_stress.row(0), false});
     surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
+    add_stresses(fields, surface.triangle_arrays);
   }
   if (model.fibres.cols() > 0) {
     surface.triangle_arrays.push_back(
@@ -118,7 +141,7 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
   surface.lines.resize(2, static_cast<Eigen::Index>(model.lines.size()));
   for (size_t k = 0; k < model.lines.size(); ++k)
     surface.lines.col(static_cast<Eigen::Index>(k)) << model.lines[k].a, model.lines[k].b;
-  if (!model.lines.empty()) surface.line_arrays = {{"line_force_n", fields.line_force.transpose(), false}};
+  if (!model.lines.empty()) add_line_arrays(fields, surface.line_arrays);
   surface.texts.push_back({"units", {"mm"}});
   return surface;
 }

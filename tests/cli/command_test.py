@@ -166,6 +166,8 @@ class CommandTest(CommandCase):
         self.assertAlmostEqual(heights["lbfgs"] / heights["newton"], 1, places=5)
         fields = re.findall(rb'DataArray [^>]*Name="([^"]+)"', (self.folder / "result" / "closed.vtp").read_bytes())
         self.assertTrue([name for name in fields if b"stress" in name], fields)
+        self.assertIn(b"cauchy_stress_1_kpa", fields)
+        self.assertNotIn(b"first_piola_stress_1_kpa", fields)
         across = self.square_of(sail.replace("[1, 0, 0]", "[0, 0, 1]"))
         self.assert_bad_input(coapt("solve", across), "direction", "triangle 0")
 

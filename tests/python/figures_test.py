@@ -53,6 +53,8 @@ def test_meshio_gets_the_shape_with_its_fields(tmp_path):
     assert np.allclose(again.point_data["displacement"], result.fields["displacement"])
     stress = again.cell_data["principal_stress"]
     assert np.allclose(stress[0], result.fields["principal_stress"]) and np.isnan(stress[1]).all()
+    assert np.allclose(again.cell_data["cauchy_stress"][0], result.fields["cauchy_stress"])
+    assert len(again.cell_data["line_stress"][1]) == len(result.lines)
 
 
 def test_nothing_but_to_meshio_needs_meshio(runs, monkeypatch):

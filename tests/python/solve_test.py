@@ -62,6 +62,31 @@ def test_a_file_a_dict_and_a_mesh_in_memory_give_the_same_bits(solved):
     assert np.array_equal(in_memory.x, solved.x)
 
 
+def test_stresses_as_papers_print_them(solved):
+    fields = solved.fields
+    s1, s2 = fields["cauchy_stress"].T
+    assert np.all(s1 >= s2) and solved.metrics["max_cauchy_stress_kpa"] == pytest.approx(1000 * s1.max())
+    assert np.allclose(fields["von_mises_stress"], np.sqrt(s1**2 - s1 * s2 + s2**2))
+    assert solved.metrics["max_von_mises_stress_kpa"] == pytest.approx(1000 * fields["von_mises_stress"].max())
+    assert "first_piola_stress" not in fields and "line_stress" not in fields
+    # An isotropic law of constant volume: sigma = l^2 S, P = l S in each principal direction.
+    asked = coapt.solve({**scene(), "output": {"first_piola_stress": True}}).fields
+    stretch, second = 1 + asked["principal_strain"], asked["principal_stress"]
+    assert np.allclose(asked["cauchy_stress"], stretch**2 * second) and np.allclose(asked["first_piola_stress"], stretch * second)
+
+
+def test_chords_have_stress_and_strain():
+    chain = coapt.solve(ROOT / "examples/03_catenary/scene.json")  # cross-section 10 mm2
+    # Of constant volume: the force over A/l. No membrane: no other stress.
+    fields = chain.fields
+    assert np.allclose(fields["line_stress"], fields["line_force"] / 10 * (1 + fields["line_strain"]))
+    assert chain.metrics["max_chord_stress_kpa"] == pytest.approx(1000 * fields["line_stress"].max())
+    assert chain.metrics["max_cauchy_stress_kpa"] is None and "cauchy_stress" not in fields
+    hem = {"type": "cable", "edges": "boundary", "tension": "1 mN"}
+    pull = coapt.minimize(*disc(4), [ELASTIC, PRESSURE, hem], fixed="boundary").fields
+    assert np.isnan(pull["line_stress"]).all() and np.isnan(pull["line_strain"]).all() and (pull["line_force"] > 0).all()
+
+
 def test_arguments_win_over_the_scene():
     result = coapt.solve(scene(), method="lbfgs", tol=1e-3, modes=2)
     assert result.document["solver"]["type"] == "lbfgs" and result.document["solver"]["tolerance"] == 1e-3

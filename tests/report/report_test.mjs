@@ -150,6 +150,16 @@ const tests = {
     assert.match(await slider.getAttribute("aria-valuetext"), /^result: converged/);
   },
 
+  async "opens on the Cauchy stress of closed.vtp, not on the gap"({ page, vtp }) {
+    assert.equal(await page.getByLabel("Colour by").evaluate(select => select.selectedOptions[0].textContent), "Greater principal Cauchy stress");
+    assert.equal(await page.locator("#legends .title").first().textContent(), "Greater principal Cauchy stress [kPa]");
+    const node = vtp.triangles[0], around = vtp.triangles.flatMap((corner, k) => corner === node ? [Math.floor(k / 3)] : []);
+    const mean = name => around.reduce((sum, t) => sum + vtp.cells[name][vtp.lineCount + t], 0) / around.length;
+    await pick(page, node);
+    near(await shownValue(page, "Greater principal Cauchy stress"), mean("cauchy_stress_1_kpa"), 4);
+    near(await shownValue(page, "Von Mises stress"), mean("von_mises_stress_kpa"), 4);
+  },
+
   async "picking a node shows its values in closed.vtp"({ page, vtp }) {
     const vertices = Math.max(...vtp.triangles) + 1;
     const touching = vtp.points.gap.findIndex((gap, k) => k < vertices && gap > 0 && gap < 1);
@@ -172,6 +182,13 @@ const tests = {
     await pick(page, vtp.lines[2 * force.indexOf(Math.max(...force))]);
     const forces = await page.locator("#values tr", { has: page.locator("th", { hasText: "Chord or cable" }) }).locator("td").allTextContents();
     near(String(Math.max(...forces.map(parseFloat))), metrics.max_chord_force_n, 5);
+    const stress = vtp.cells.line_cauchy_stress_kpa.slice(0, vtp.lineCount), greatest = Math.max(...stress);
+    near(String(greatest), metrics.max_chord_stress_kpa, 6);
+    await pick(page, vtp.lines[2 * stress.indexOf(greatest)]);
+    const told = await page.locator("#values tr", { has: page.locator("th", { hasText: "Chord or cable" }) }).locator("td").allTextContents();
+    const stresses = told.map(text => parseFloat(/Cauchy stress ([-0-9.e+]+) kPa/.exec(text)[1]));
+    near(String(Math.max(...stresses)), greatest, 4);
+    assert.ok(told.every(text => /strain -?[0-9.e+-]+/.test(text)), told.join("; "));
   },
 
   async "a click picks what lies there, and nothing beside it"({ page, vtp }) {

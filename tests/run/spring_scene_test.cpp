@@ -183,6 +183,7 @@ TEST_F(SpringScene, SaysNothingOfStress) {
     const RunReport done = run(scene, scene_solvers(), options);
     EXPECT_EQ(done.report.result.status, Status::Converged) << done.report.result.message;
     EXPECT_EQ(done.report.fields.principal_stress.cols(), 0);
+    EXPECT_EQ(done.report.fields.cauchy_stress.cols(), 0);
     EXPECT_TRUE(done.report.fields.regime.empty());
     EXPECT_EQ(done.report.fields.principal_strain.cols(), mesh_.triangle_count());
     EXPECT_FALSE(done.report.metrics.slack_area_mm2 || done.report.metrics.max_chord_force_n);

@@ -54,8 +54,9 @@ class Result(dict[str, Any]):
     faces: npt.NDArray[np.int32]  #: corners of each triangle, (m, 3)
     lines: npt.NDArray[np.int32]  #: ends of each chord and cable, (k, 2)
     fields: dict[str, npt.NDArray[Any]]  #: displacement (n, 3) [mm], principal_strain (m, 2), principal_stress (m, 2)
-    #: [MPa], regime (m,) 0 slack, 1 wrinkled, 2 taut, gap (m_v,) [mm], is_contact (m_v,), reference_distance (m_v,) [mm],
-    #: line_force (k,) [N]; those that the scene has
+    #: second Piola-Kirchhoff [MPa], cauchy_stress (m, 2) principal [MPa], von_mises_stress (m,) [MPa], first_piola_stress (m, 2) [MPa]
+    #: where the scene asks for it, regime (m,) 0 slack, 1 wrinkled, 2 taut, gap (m_v,) [mm], is_contact (m_v,), reference_distance (m_v,) [mm],
+    #: line_force (k,) [N], line_strain (k,), line_stress (k,) Cauchy [MPa], NaN for lines without; those that the scene has
     undetermined: npt.NDArray[np.int8]  #: of each node: 0 determined, 1 free by the certificate, 2 elsewhere in another equilibrium
     branches: dict[str, Any] | None  #: other equilibria near by, where `branches` looked for them: `message`, `equilibria`
     #: (energy, stability, metrics of each, this one first), `others` (range of each metric over the others), `spread`
@@ -89,7 +90,7 @@ class Result(dict[str, Any]):
         except ImportError as error:
             raise ImportError("to_meshio() needs the package meshio (Debian: python3-meshio)") from error
         blocks = [("triangle", self.faces), ("line", self.lines)]
-        at_vertices = {"gap", "is_contact", "reference_distance"}
+        at_vertices, at_lines = {"gap", "is_contact", "reference_distance"}, {"line_force", "line_strain", "line_stress"}
         point_data, cell_data = {}, {}
         for name, values in self.fields.items():
             values = values.astype(np.uint8) if values.dtype == bool else values
@@ -98,7 +99,7 @@ class Result(dict[str, Any]):
             elif name in at_vertices:
                 padding = np.full(self.x.shape[0] - self.vertex_count, np.nan if values.dtype.kind == "f" else 0)
                 point_data[name] = np.concatenate([values, padding.astype(values.dtype)])
-            elif name == "line_force":
+            elif name in at_lines:
                 cell_data[name] = [np.full(len(self.faces), np.nan), values]
             else:
                 rest = np.full((len(self.lines), *values.shape[1:]), np.nan if values.dtype.kind == "f" else -1)

@@ -66,6 +66,10 @@ struct MembraneState {
   Eigen::Vector2d stress = Eigen::Vector2d::Zero();  // principal second Piola-Kirchhoff, larger first [MPa]
   MembraneRegime regime = MembraneRegime::Slack;     // of a law that resists compression: what a tension
                                                      // field would be
+  Eigen::Vector2d cauchy = Eigen::Vector2d::Zero();  // principal Cauchy, larger first [MPa]
+  Eigen::Vector2d first_piola = Eigen::Vector2d::Zero();  // principal first Piola-Kirchhoff, larger first
+                                                          // [MPa], see membrane_state()
+  bool has_thickness = true;                              // else no stress is defined, and all are zero
 };
 
 // An orthonormal frame of the rest plane: the shape gradients w (row k: edge vector k+1), the columns of F,

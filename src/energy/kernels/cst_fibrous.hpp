@@ -13,7 +13,7 @@
 // where an exponential overflows.
 #pragma once
 
-#include "energy/kernels/cst.hpp"
+#include "energy/kernels/cst_state.hpp"
 #include "energy/laws/fibrous.hpp"
 #include "energy/term.hpp"
 #include "energy/term_kind.hpp"
@@ -94,9 +94,9 @@ struct CstFibrous {
   }
 
   static MembraneState state(const Rest& rest, const CstVector& x) {
-    const Response at = respond(rest, cst_strain(cst_frame(rest.shape, x)));
-    const CstPrincipal p = cst_principal({at.w.stress[0], at.w.stress[1], at.w.stress[2]});
-    return {{p.major, p.minor}, at.regime};
+    const CstStrain e = cst_strain(cst_frame(rest.shape, x));
+    const Response at = respond(rest, e);
+    return membrane_state(e, {at.w.stress[0], at.w.stress[1], at.w.stress[2]}, at.regime);
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {

@@ -9,7 +9,7 @@
 // Steigmann 1990. Never throws; infinite where an exponential overflows.
 #pragma once
 
-#include "energy/kernels/cst.hpp"
+#include "energy/kernels/cst_state.hpp"
 #include "energy/laws/isotropic.hpp"
 #include "energy/term.hpp"
 #include "energy/term_kind.hpp"
@@ -69,7 +69,7 @@ struct CstIsotropic {
   static MembraneState state(const Rest& rest, const CstVector& x) {
     const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.shape, x)));
     const Principal at = respond(rest, p);
-    return {{at.stress.s11, at.stress.s22}, at.regime};
+    return membrane_state({p.major, p.minor, 0}, at.stress, at.regime, volume_ratio(rest, p, at.regime));
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {
@@ -116,6 +116,16 @@ struct CstIsotropic {
   // its stiffness.
   static constexpr double kRoundOff = 1e-14;
   static constexpr double kThinnest = 1e-9;  // stretch below which a collapsed direction is kept finite
+
+  // Of the material, its wrinkles drawn out; 1 where the law says nothing of its thickness.
+  static double volume_ratio(const Rest& rest, const CstPrincipal& p, MembraneRegime regime) {
+    if constexpr (requires { rest.law.volume_ratio(1.0, 1.0); }) {
+      const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
+      if (!rest.relaxes || regime == MembraneRegime::Taut) return rest.law.volume_ratio(l1, l2);
+      if (regime == MembraneRegime::Wrinkled) return rest.law.volume_ratio(l1, free_width(rest.law, l1));
+    }
+    return 1;
+  }
 
   // The law in the frame of the principal strains, per volume.
   struct Principal {

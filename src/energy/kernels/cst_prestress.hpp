@@ -16,7 +16,7 @@
 // throws.
 #pragma once
 
-#include "energy/kernels/cst.hpp"
+#include "energy/kernels/cst_state.hpp"
 #include "energy/term.hpp"
 #include "energy/term_kind.hpp"
 
@@ -52,10 +52,10 @@ struct CstPrestress {
     return rest;
   }
 
-  static MembraneState state(const Rest& rest, const CstVector& /*x*/) {
-    if (rest.volume == 0) return {Eigen::Vector2d::Zero(), MembraneRegime::Taut};
-    return {Eigen::Vector2d(std::max(rest.warp, rest.weft), std::min(rest.warp, rest.weft)) / rest.volume,
-            MembraneRegime::Taut};
+  static MembraneState state(const Rest& rest, const CstVector& x) {
+    if (rest.volume == 0) return membrane_state(MembraneRegime::Taut);
+    return membrane_state(cst_strain(cst_frame(rest.shape, x)),
+                          {rest.warp / rest.volume, rest.weft / rest.volume, 0}, MembraneRegime::Taut);
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {

@@ -8,7 +8,7 @@
 // Source: Bonet & Wood 2008, chapter 6. Never throws.
 #pragma once
 
-#include "energy/kernels/cst.hpp"
+#include "energy/kernels/cst_state.hpp"
 #include "energy/term.hpp"
 #include "energy/term_kind.hpp"
 
@@ -64,8 +64,8 @@ struct CstStVK {
     const MembraneRegime regime = p.minor >= -1e-14 * shifted ? MembraneRegime::Taut
                                   : strain.major + shift > 0  ? MembraneRegime::Wrinkled
                                                               : MembraneRegime::Slack;
-    if (volume == 0) return {Eigen::Vector2d::Zero(), regime};
-    return {{p.major / volume, p.minor / volume}, regime};
+    if (volume == 0) return membrane_state(regime);
+    return membrane_state(e, {s.s11 / volume, s.s22 / volume, s.s12 / volume}, regime);
   }
 
   static double energy(const Rest& rest, const CstStrain& e) {

@@ -61,7 +61,8 @@ struct CstTensionField {
     const CstPrincipal p = cst_principal(cst_strain(cst_frame(rest.stvk.shape, x)));
     const MembraneRegime now = regime(rest, p);
     const CstStress s = blend(rest, p, now).stress;
-    return {{s.s11 / rest.stvk.volume, s.s22 / rest.stvk.volume}, now};
+    return membrane_state({p.major, p.minor, 0}, {s.s11 / rest.stvk.volume, s.s22 / rest.stvk.volume, 0},
+                          now);
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H) {

@@ -176,6 +176,10 @@ struct InvariantLaw {
     if (bulk > 0) return volume(l1, l2, thin2, balanced_volume(l1, l2, thin2)).invariant;
     return distortion((l1 - 1) * (l1 + 1), (l2 - 1) * (l2 + 1), thin2);
   }
+  // J of the volume: l1 l2 l3.
+  double volume_ratio(double l1, double l2) const {
+    return bulk > 0 ? balanced_volume(l1, l2, 1 / (l1 * l2 * l1 * l2)) : 1;
+  }
   double initial_young() const {
     const double mu = invariant.initial_shear_modulus();
     return bulk > 0 ? 9 * bulk * mu / (3 * bulk + mu) : 3 * mu;

@@ -40,6 +40,14 @@ function worded(field, value) {
   return Number.isFinite(value) ? withUnit(value, field.unit, 5) : field.none || "–";
 }
 
+// In words, those that it has.
+function valuesOfLine(data, shown, k) {
+  return data.line_values.flatMap(field => {
+    const values = valuesIn(data, field, shown.state);
+    return values && Number.isFinite(values[k]) ? [field.title + " " + withUnit(values[k], field.unit, 4)] : [];
+  });
+}
+
 // Pairs of name and value.
 function valuesAt(data, shown) {
   if (shown.node < 0) return [];
@@ -52,7 +60,7 @@ function valuesAt(data, shown) {
   const forces = data.line_force && valuesIn(data, data.line_force, shown.state), most = rows.length + 6;
   for (let k = 0; forces && k < data.lines.length / 2 && rows.length < most; ++k)
     if (data.lines[2 * k] === shown.node || data.lines[2 * k + 1] === shown.node)
-      rows.push(["Chord or cable " + k, withUnit(forces[k], data.line_force.unit, 5)]);
+      rows.push(["Chord or cable " + k, [withUnit(forces[k], data.line_force.unit, 5), ...valuesOfLine(data, shown, k)].join(", ")]);
   return rows;
 }
 

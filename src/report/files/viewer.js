@@ -13,7 +13,7 @@ function readData() {
     state.nodes = floats(state.nodes);
     for (const outline of state.outlines) outline.points = floats(outline.points);
   }
-  for (const field of data.fields) field.values = unpacked(field.values);
+  for (const field of [...data.fields, ...data.line_values]) field.values = unpacked(field.values);
   if (data.line_force) data.line_force = { ...data.line_force, values: unpacked(data.line_force.values), map: "force" };
   return data;
 }

@@ -104,6 +104,7 @@ Model build(const Scene& scene, const SceneGeometry& ground, const GivenTerms& g
   if (!defects.empty()) throw InputError(defects);
   warn_of_unsupported_parts(model, terms, prescribed.fixed);
 
+  model.wants_first_piola = scene.wants_first_piola;
   model.motion = motion_path(prescribed, model.X, scene.motion_steps);
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
   model.objective->use_threads(scene.solver.threads);

@@ -56,9 +56,10 @@ struct Model {
   Vector fibre_anisotropy;       // per triangle, see valve/fibre_field.hpp; empty like fibres
   std::vector<MembraneProperties> membrane;  // per triangle; empty without a membrane term
   std::vector<MembranePatch> membrane_patches;
-  double film_tension = 0;      // largest of the surface_tension terms [N/mm]
-  double applied_pressure = 0;  // largest pressure of the load terms [MPa]
-  double contact_range = 0;     // [mm]; 0 without a contact term
+  double film_tension = 0;         // largest of the surface_tension terms [N/mm]
+  double applied_pressure = 0;     // largest pressure of the load terms [MPa]
+  double contact_range = 0;        // [mm]; 0 without a contact term
+  bool wants_first_piola = false;  // stress among the fields
   std::unique_ptr<Objective> objective;
   MotionPath motion;
   Vector q0;

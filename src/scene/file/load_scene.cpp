@@ -338,6 +338,7 @@ Scene parsed(const std::string& text, const std::filesystem::path& path, bool ha
     if (output.has("folder"))
       scene.output_folder = (path.parent_path() / output.text("folder")).lexically_normal();
     if (output.has("frames")) scene.frame_interval = output.integer("frames");
+    scene.wants_first_piola = output.has("first_piola_stress") && output.flag("first_piola_stress");
     scene.writes_page = output.has("report") && output.flag("report");
   }
   check_generated(scene, file, reading);

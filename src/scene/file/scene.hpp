@@ -116,6 +116,7 @@ struct Scene {
   std::optional<std::filesystem::path> output_folder;   // relative to the scene's folder resolved
   int frame_interval = 0;                               // accepted iterates from frame to frame; 0: no frames
   bool writes_page = true;                              // report.html
+  bool wants_first_piola = false;                       // stress among the fields
   std::vector<InterventionSpec> interventions;          // in the order in which they are made
 };
 

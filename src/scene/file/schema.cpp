@@ -283,7 +283,12 @@ const ObjectSpec& scene_spec() {
                                 .kind = KeyKind::Flag,
                                 .fallback = "true",
                                 .doc = "Writes `report.html`, a page with the shape, all figures and the "
-                                       "convergence; false: neither the page nor the iterates for it."}}},
+                                       "convergence; false: neither the page nor the iterates for it."},
+                               {.name = "first_piola_stress",
+                                .kind = KeyKind::Flag,
+                                .fallback = "false",
+                                .doc = "Writes the first Piola-Kirchhoff (nominal) stress of the membrane "
+                                       "beside its Cauchy stress."}}},
            .doc = "Where results go."},
       }};
   return kSpec;
