@@ -7,8 +7,7 @@ inline constexpr int kConverged = 0;     // or: did what was asked
 inline constexpr int kNotConverged = 1;  // the result is written all the same
 inline constexpr int kBadInput = 2;      // arguments, scene, mesh, or a folder that cannot be written
 inline constexpr int kInternal = 3;      // a fault of the program
-// `solve`: converged, but the state is not stable, that could not be decided, or facets pass through each
-// other
+// `solve`: converged, but is_in_doubt() (results/result_warnings.hpp)
 inline constexpr int kInDoubt = 4;
 
 }  // namespace coapt::cli

@@ -23,13 +23,14 @@ std::vector<std::string> result_warnings(const Report& report) {
 }
 
 bool is_in_doubt(const Report& report) {
-  return report.metrics.intersections > 0 || !stability_doubt(report.result.certificate).empty();
+  return (report.has_collisions && report.metrics.intersections > 0) ||
+         !stability_doubt(report.result.certificate).empty();
 }
 
 Headline headline(const Report& report) {
   Headline line{report.result.message};
   if (report.result.status != Status::Converged) return line;
-  line.is_in_doubt = is_in_doubt(report);
+  line.is_in_doubt = is_in_doubt(report) || report.metrics.intersections > 0;
   if (const long pairs = report.metrics.intersections; pairs > 0)
     line.text += "; " + std::to_string(pairs) +
                  (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") + " through each other";

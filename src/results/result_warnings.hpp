@@ -12,8 +12,8 @@ namespace coapt {
 // near by; how many nodes have no determined place.
 std::vector<std::string> result_warnings(const Report& report);
 
-// Of an equilibrium: whether it is no closed shape to rely on, as facets pass through each other, or it is
-// not stable or that could not be decided.
+// Of an equilibrium: whether it is not stable, that could not be decided, or collisions were to keep facets
+// apart and did not.
 bool is_in_doubt(const Report& report);
 
 // The first line of a result.
@@ -21,7 +21,8 @@ struct Headline {
   // The message of the solve and, of an equilibrium, facets that pass through each other and whether it may
   // not be the only one.
   std::string text;
-  bool is_in_doubt = false;  // of an equilibrium: see is_in_doubt(), or whether it is the only one near by
+  // Of an equilibrium: see is_in_doubt(); any facets that pass through each other, or others near by.
+  bool is_in_doubt = false;
 };
 
 Headline headline(const Report& report);

@@ -33,6 +33,7 @@ struct Report {
   std::optional<Branches> branches;  // where they were looked for
   std::vector<std::string> warnings;
   bool has_frames = false;              // of an animation, in the result folder
+  bool has_collisions = false;          // the method was to keep facets apart (DynamicOptions::collisions)
   bool has_page = false;                // report.html is written
   std::vector<RecordedShape> way = {};  // to the result, for the page; empty without one
 };

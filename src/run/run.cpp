@@ -48,6 +48,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   report.scene_title = scene_title(scene);
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
+  report.has_collisions = setup.solver == "dynamic" && scene.solver.dynamic.collisions != Collisions::None;
   report.has_page = notes.has_page;
   report.has_frames = notes.has_frames;
   report.accuracy = notes.accuracy;

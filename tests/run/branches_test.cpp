@@ -144,6 +144,19 @@ TEST_F(BranchesOfAScene, SaysWhereTheyWereNotLookedFor) {
   EXPECT_NE(report.report.warnings[0].find("No other equilibria"), std::string::npos);
 }
 
+TEST(Headline, SaysThatFacetsPassThroughEachOther) {
+  Report report;
+  report.result.status = Status::Converged;
+  report.result.message = "converged";
+  EXPECT_FALSE(headline(report).is_in_doubt);
+  report.metrics.intersections = 151;
+  EXPECT_EQ(headline(report).text, "converged; 151 pairs of facets pass through each other");
+  EXPECT_TRUE(headline(report).is_in_doubt);
+  EXPECT_FALSE(is_in_doubt(report)) << "nothing was to keep them apart";
+  report.has_collisions = true;
+  EXPECT_TRUE(is_in_doubt(report));
+}
+
 TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
   Report report;
   report.result.message = "converged";
