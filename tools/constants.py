@@ -1,4 +1,4 @@
-"""Writes docs/constants.md: every heuristic constant of the energies and solvers, what it means and where it comes from.
+"""Writes docs/constants.md: every heuristic constant of the energies, the solvers and registration, what it means and where it comes from.
 
     constants.py            writes the page; --check only says whether it is up to date
 
@@ -13,13 +13,13 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/constants.md"
-FOLDERS = ("src/energy", "src/optim", "src/xpbd", "src/sensitivity")
+FOLDERS = ("src/energy", "src/optim", "src/xpbd", "src/sensitivity", "src/registration")
 NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t) "
                     r"(k[A-Z]\w* *=[^;]*);[ \t]*(?://[ \t]*(.*))?$", re.MULTILINE)
 BY_HAND = "set by hand"
 HEAD = """# Constants
 
-Every heuristic constant of the energies, solvers and sensitivities: numbers that a method needs and no formula gives. Written by
+Every heuristic constant of the energies, solvers, sensitivities and registration: numbers that a method needs and no formula gives. Written by
 `tools/constants.py` from the sources and `tools/constants.toml`; lengths, forces and stresses are relative to what the meaning names.
 *Set by hand* says that no measurement or publication is on record for the value: {by_hand} of {all}.
 """
