@@ -7,6 +7,7 @@
 #include "results/result_warnings.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace coapt {
 namespace {
@@ -21,6 +22,11 @@ std::string in_words(const MetricRow& row) {
   if (row.unit == "N" && name.ends_with("_n")) name.resize(name.size() - 2);
   if (row.unit == "kPa" && name.ends_with("_kpa")) name.resize(name.size() - 4);
   std::replace(name.begin(), name.end(), '_', ' ');
+  for (const std::string& person : {std::string("Cauchy"), std::string("Mises")}) {
+    std::string small = person;
+    small[0] = static_cast<char>(std::tolower(small[0]));
+    if (const size_t at = name.find(small); at != std::string::npos) name[at] = person[0];
+  }
   return name;
 }
 
