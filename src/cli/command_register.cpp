@@ -6,6 +6,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "registration/wanted_registration.hpp"
+#include "results/reference_results.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -65,26 +66,15 @@ nlohmann::ordered_json distances_json(const RegistrationDistances& distances) {
   return {{"to_target", one(distances.to_target)}, {"from_target", one(distances.from_target)}};
 }
 
-nlohmann::ordered_json registration_json(const RegisterArguments& arguments, const RegisteredMeshes& meshes) {
+nlohmann::ordered_json document(const RegisterArguments& arguments, const RegisteredMeshes& meshes) {
   const Registration& found = meshes.registration;
-  const Eigen::Matrix4d m = found.motion.matrix();
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (int r = 0; r < 4; ++r) rows.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
-  return {{"method", registration_method_name(found.method)},
-          {"moving", arguments.moving},
-          {"target", arguments.target},
-          {"transform", rows},
-          {"scale", found.motion.scale},
-          {"angle_deg", found.motion.angle_deg()},
-          {"translation_mm", moved_by(found.motion, meshes.moving.vertices)},
-          {"rms_mm", found.rms},
-          {"overlap", found.overlap},
-          {"pairs", found.pairs},
-          {"iterations", found.iterations},
-          {"free_directions", found.free_directions},
-          {"distances_before", distances_json(meshes.before)},
-          {"distances_after", distances_json(meshes.after)},
-          {"warnings", registration_doubts(found)}};
+  nlohmann::ordered_json json = registration_json(found, moved_by(found.motion, meshes.moving.vertices));
+  json["moving"] = arguments.moving;
+  json["target"] = arguments.target;
+  json["distances_before"] = distances_json(meshes.before);
+  json["distances_after"] = distances_json(meshes.after);
+  json["warnings"] = registration_doubts(found);
+  return json;
 }
 
 void write_map(const fs::path& path, const TriangleMesh& mesh, const Vector& distances) {
@@ -103,7 +93,7 @@ void write_files(const RegisterArguments& arguments, const RegisteredMeshes& mes
   write_mesh(folder / "moved.obj", moved);
   write_map(folder / "moved.vtp", moved, meshes.after.moving_vertices);
   write_map(folder / "target.vtp", meshes.target, meshes.after.target_vertices);
-  formats::write_durable(folder / "registration.json", registration_json(arguments, meshes).dump(2) + "\n");
+  formats::write_durable(folder / "registration.json", document(arguments, meshes).dump(2) + "\n");
 }
 
 void print_distances(const char* when, const RegistrationDistances& distances) {

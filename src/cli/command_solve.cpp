@@ -72,7 +72,7 @@ void print_reference(const ReferenceDistance& reference) {
       "reference registered", registration_method_name(registration.found.method),
       registration.found.motion.angle_deg(), registration.translation_mm, registration.found.motion.scale,
       registration.found.overlap,
-      (registration.to_reference_before.mean + registration.from_reference_before.mean) / 2);
+      both_directions(registration.to_reference_before, registration.from_reference_before).mean);
 }
 
 void print_certificate(const Certificate& certificate) {

@@ -17,16 +17,12 @@ constexpr size_t kShapeBytes = 2'000'000;  // of all shapes in the page; a node 
 
 // "orifice_area_mm2" in words: "orifice area".
 std::string in_words(const MetricRow& row) {
-  std::string name = row.name;
-  if (!row.unit.empty() && name.ends_with("_" + row.unit)) name.resize(name.size() - row.unit.size() - 1);
-  if (row.unit == "N" && name.ends_with("_n")) name.resize(name.size() - 2);
-  if (row.unit == "kPa" && name.ends_with("_kpa")) name.resize(name.size() - 4);
+  std::string name = row.name, unit = row.unit;
+  for (char& letter : unit) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
   std::replace(name.begin(), name.end(), '_', ' ');
-  for (const std::string& person : {std::string("Cauchy"), std::string("Mises")}) {
-    std::string small = person;
-    small[0] = static_cast<char>(std::tolower(small[0]));
-    if (const size_t at = name.find(small); at != std::string::npos) name[at] = person[0];
-  }
+  if (const size_t at = name.find("cauchy"); at != std::string::npos) name[at] = 'C';
+  if (const size_t at = name.find("mises"); at != std::string::npos) name[at] = 'M';
   return name;
 }
 

@@ -28,15 +28,38 @@ std::vector<std::array<int, 3>> facets(const Triangles& triangles) {
   return all;
 }
 
+struct BothWays {
+  SurfaceDistance there, back;  // from the solved surface to the reference, and from it
+};
+
+BothWays both_ways(const TriangleMesh& closed, const TriangleMesh& reference,
+                   const UncountedVertices& uncounted) {
+  return {surface_distance(closed, reference, uncounted),
+          surface_distance(reference, closed, {uncounted.to, uncounted.from})};
+}
+
+ReferenceDistance summary(const BothWays& both, const TriangleMesh& closed, const TriangleMesh& reference,
+                          const UncountedVertices& uncounted) {
+  const std::vector<int> left_out = either_of(uncounted.from, uncounted.to, closed.vertices.cols());
+  ReferenceDistance distance{figures(both.there), figures(both.back), {}, static_cast<int>(left_out.size())};
+  const bool is_same_mesh = reference.vertices.cols() == closed.vertices.cols() &&
+                            facets(reference.triangles) == facets(closed.triangles);
+  if (is_same_mesh) distance.same_vertex = apart(reference.vertices, closed.vertices, left_out);
+  return distance;
+}
+
 }  // namespace
 
-DistanceFigures both_directions(const ReferenceDistance& distance) {
-  const DistanceFigures &to = distance.to_reference, &from = distance.from_reference;
+DistanceFigures both_directions(const DistanceFigures& to, const DistanceFigures& from) {
   return {(to.mean + from.mean) / 2, std::max(to.p95, from.p95), std::max(to.max, from.max)};
 }
 
+DistanceFigures both_directions(const ReferenceDistance& distance) {
+  return both_directions(distance.to_reference, distance.from_reference);
+}
+
 DistanceFigures distance_between(const TriangleMesh& a, const TriangleMesh& b) {
-  return both_directions({figures(surface_distance(a, b)), figures(surface_distance(b, a)), {}, 0});
+  return both_directions(figures(surface_distance(a, b)), figures(surface_distance(b, a)));
 }
 
 TriangleMesh surface_at(const Model& model, const Points& x) {
@@ -47,15 +70,9 @@ TriangleMesh surface_at(const Model& model, const Points& x) {
 
 ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleMesh& reference,
                                      Vector& vertex_distances, const UncountedVertices& uncounted) {
-  const SurfaceDistance there = surface_distance(closed, reference, uncounted),
-                        back = surface_distance(reference, closed, {uncounted.to, uncounted.from});
-  vertex_distances = there.vertex_distances;
-  const std::vector<int> left_out = either_of(uncounted.from, uncounted.to, closed.vertices.cols());
-  ReferenceDistance distance{figures(there), figures(back), {}, static_cast<int>(left_out.size())};
-  const bool is_same_mesh = reference.vertices.cols() == closed.vertices.cols() &&
-                            facets(reference.triangles) == facets(closed.triangles);
-  if (is_same_mesh) distance.same_vertex = apart(reference.vertices, closed.vertices, left_out);
-  return distance;
+  const BothWays both = both_ways(closed, reference, uncounted);
+  vertex_distances = both.there.vertex_distances;
+  return summary(both, closed, reference, uncounted);
 }
 
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
@@ -63,27 +80,29 @@ std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fiel
   if (!model.closed_reference) return std::nullopt;
   const TriangleMesh closed = surface_at(model, fields.x);
   const UncountedVertices uncounted{free_nodes, {}};
-  ReferenceDistance as_given =
+  const ReferenceDistance as_given =
       reference_distance(closed, *model.closed_reference, fields.reference_distance, uncounted);
   if (!model.registration) return as_given;
   RegisteredReference registered;
   try {
     registered = registered_reference(model, closed);
   } catch (const InputError& error) {
-    as_given.doubts = {std::string(error.what()) + "; the distances are those of the reference as it lies."};
-    return as_given;
+    ReferenceDistance doubtful = as_given;
+    doubtful.doubts = {std::string(error.what()) + "; the distances are those of the reference as it lies."};
+    return doubtful;
   }
-  ReferenceDistance distance =
-      reference_distance(closed, registered.surface, fields.reference_distance, uncounted);
-  fields.registered_distance = surface_distance(registered.surface, closed).vertex_distances;
+  const BothWays both = both_ways(closed, registered.surface, uncounted);
+  ReferenceDistance distance = summary(both, closed, registered.surface, uncounted);
   AppliedRegistration applied{*registered.registration,
                               moved_by(registered.registration->motion, model.closed_reference->vertices),
                               as_given.to_reference, as_given.from_reference};
-  applied.found.motion.translation +=
-      model.origin - applied.found.motion.apply(Points(model.origin)) + applied.found.motion.translation;
+  RigidMotion& motion = applied.found.motion;
+  motion.translation += model.origin - motion.scale * (motion.rotation * model.origin);
   for (const std::string& doubt : registration_doubts(applied.found))
-    distance.doubts.push_back("reference.register: " + doubt);
+    distance.doubts.push_back("reference.register: " + doubt + ".");
   distance.registration = std::move(applied);
+  fields.reference_distance = both.there.vertex_distances;
+  fields.registered_distance = both.back.vertex_distances;
   fields.registered_reference = std::move(registered.surface);
   return distance;
 }

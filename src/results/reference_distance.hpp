@@ -35,6 +35,7 @@ struct ReferenceDistance {
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.
+DistanceFigures both_directions(const DistanceFigures& to, const DistanceFigures& from);
 DistanceFigures both_directions(const ReferenceDistance& distance);
 
 // The same between any two surfaces. Throws InputError when one of them has no area.

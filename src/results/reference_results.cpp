@@ -3,10 +3,7 @@
 #include "results/study_files.hpp"
 
 namespace coapt {
-namespace {
-
-OrderedJson registration_json(const AppliedRegistration& registration) {
-  const Registration& found = registration.found;
+OrderedJson registration_json(const Registration& found, double translation_mm) {
   const Eigen::Matrix4d m = found.motion.matrix();
   OrderedJson rows = OrderedJson::array();
   for (int r = 0; r < 4; ++r) rows.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
@@ -14,17 +11,13 @@ OrderedJson registration_json(const AppliedRegistration& registration) {
           {"transform", rows},
           {"scale", found.motion.scale},
           {"angle_deg", found.motion.angle_deg()},
-          {"translation_mm", registration.translation_mm},
+          {"translation_mm", translation_mm},
           {"rms_mm", found.rms},
           {"overlap", found.overlap},
           {"pairs", found.pairs},
           {"iterations", found.iterations},
-          {"free_directions", found.free_directions},
-          {"to_reference_before", distances_json(registration.to_reference_before)},
-          {"from_reference_before", distances_json(registration.from_reference_before)}};
+          {"free_directions", found.free_directions}};
 }
-
-}  // namespace
 
 OrderedJson reference_json(const ReferenceDistance& distance) {
   OrderedJson json = distances_json(both_directions(distance));
@@ -33,7 +26,12 @@ OrderedJson reference_json(const ReferenceDistance& distance) {
   json["left_out_nodes"] = distance.left_out;
   if (const auto& same = distance.same_vertex)
     json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
-  if (distance.registration) json["registration"] = registration_json(*distance.registration);
+  if (const auto& registration = distance.registration) {
+    OrderedJson& applied = json["registration"] =
+        registration_json(registration->found, registration->translation_mm);
+    applied["to_reference_before"] = distances_json(registration->to_reference_before);
+    applied["from_reference_before"] = distances_json(registration->from_reference_before);
+  }
   return json;
 }
 

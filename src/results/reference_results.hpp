@@ -12,6 +12,9 @@ namespace coapt {
 // the registration: the value of `distance_to_reference` of result.json.
 nlohmann::ordered_json reference_json(const ReferenceDistance& distance);
 
+// How a surface was registered, but for the distances: keys of registration.json and of result.json.
+nlohmann::ordered_json registration_json(const Registration& found, double translation_mm);
+
 // The registered reference in its new place, with `distance_to_result` at its vertices [mm]. Pre:
 // fields.registered_reference.
 VtpSurface registered_surface(const Model& model, const Fields& fields);

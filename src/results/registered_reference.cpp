@@ -4,6 +4,7 @@
 #include "registration/wanted_registration.hpp"
 
 namespace coapt {
+
 RegisteredReference registered_reference(const Model& model, const TriangleMesh& closed) {
   RegisteredReference reference{*model.closed_reference, std::nullopt};
   if (!model.registration) return reference;
@@ -14,6 +15,15 @@ RegisteredReference registered_reference(const Model& model, const TriangleMesh&
   }
   reference.surface.vertices = reference.registration->motion.apply(reference.surface.vertices);
   return reference;
+}
+
+std::optional<TriangleMesh> placed_reference(const Model& model, const TriangleMesh& closed) {
+  if (!model.closed_reference) return std::nullopt;
+  try {
+    return registered_reference(model, closed).surface;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace coapt

@@ -13,9 +13,12 @@ struct RegisteredReference {
   std::optional<Registration> registration;  // of the given surface onto the solved one
 };
 
-// As `reference.register` of the scene says. Throws InputError, with the name of that key, where nothing
+// As `reference.register` of the scene says. Throws InputError, naming the closed surface, where nothing
 // believable is found (register_surfaces.hpp, register_points.hpp) or the solved surface has no closed
 // boundary loop. Pre: model.closed_reference. closed: the model's surface, solved.
 RegisteredReference registered_reference(const Model& model, const TriangleMesh& closed);
+
+// The same surface alone; none without a reference, or where nothing believable is found.
+std::optional<TriangleMesh> placed_reference(const Model& model, const TriangleMesh& closed);
 
 }  // namespace coapt

@@ -34,8 +34,8 @@ MeshLevel solved_level(const Scene& scene, const SceneGeometry& ground, const So
   level.orifice_area_mm2 = metrics.orifice_area_mm2;
   level.max_chord_force_n = metrics.max_chord_force_n;
   level.closed = surface_at(model, fields.x);
-  if (model.closed_reference)
-    level.to_reference = distance_between(level.closed, registered_reference(model, level.closed).surface);
+  if (const auto reference = placed_reference(model, level.closed))
+    level.to_reference = distance_between(level.closed, *reference);
   return level;
 }
 

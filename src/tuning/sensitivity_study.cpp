@@ -123,10 +123,11 @@ class Study {
                        larger = surface_at(model_, x + change * motion);
     found.movement =
         (distance_between(smaller, here).mean + distance_between(larger, here).mean) / (2 * change);
-    if (!model_.closed_reference) return;
-    const TriangleMesh reference = registered_reference(model_, here).surface;  // stays with the first shape
+    const auto reference = placed_reference(model_, here);  // it stays with the first shape
+    if (!reference) return;
     found.error_change =
-        (distance_between(larger, reference).mean - distance_between(smaller, reference).mean) / (2 * change);
+        (distance_between(larger, *reference).mean - distance_between(smaller, *reference).mean) /
+        (2 * change);
   }
 
   bool is_cancelled() const { return setup_.observer && !setup_.observer({}, q_); }
@@ -135,8 +136,8 @@ class Study {
   static SensitivityRun measured(double factor, const Result& result, const Model& model,
                                  const TriangleMesh& surface) {
     SensitivityRun run{factor, result.status, result.residual, result.iterations};
-    if (model.closed_reference)
-      run.to_reference = distance_between(surface, registered_reference(model, surface).surface);
+    if (const auto reference = placed_reference(model, surface))
+      run.to_reference = distance_between(surface, *reference);
     return run;
   }
 

@@ -42,7 +42,8 @@ def test_what_cannot_be_believed_is_refused():
 
 @pytest.mark.parametrize("options, words", [({"method": "icp"}, "expected one of"), ({"trim": 1}, "from 0 to 0.9"),
                                             ({"method": "landmarks"}, "need each other"),
-                                            ({"landmarks": ([[0, 0, 0]],)}, "has 1 entries")])
+                                            ({"landmarks": ([[0, 0, 0]],)}, "expected a pair"), ({"landmarks": 5}, "expected a pair"),
+                                            ({"landmarks": (np.full((3, 3), np.nan), np.eye(3))}, "landmarks: holds")])
 def test_wrong_arguments_are_named(options, words):
     x, triangles = sheet()
     with pytest.raises(coapt.InputError, match=words):

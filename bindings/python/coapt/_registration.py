@@ -68,8 +68,6 @@ def register(V: npt.ArrayLike, F: npt.ArrayLike, target_V: npt.ArrayLike, target
         points = _arguments.points(vertices, name + "V", defects)
         count = points.shape[0] if points is not None else 2**31 - 1
         arrays += [points, _arguments.triangles(triangles, name + "F", count, defects)]
-        if points is not None and not np.isfinite(points).all():
-            defects.append(f"{name}V: holds a number that is not finite")
     chosen = method or ("landmarks" if landmarks is not None else "surface")
     if chosen not in METHODS:
         defects.append(f"method: is {method!r}; expected one of {', '.join(METHODS)}")
@@ -78,10 +76,13 @@ def register(V: npt.ArrayLike, F: npt.ArrayLike, target_V: npt.ArrayLike, target
     if isinstance(trim, bool) or not isinstance(trim, (int, float)) or not 0 <= trim <= 0.9:
         defects.append(f"trim: is {trim!r}; expected a number from 0 to 0.9")
     marks: list[Any] = [None, None]
-    if landmarks is not None:
+    if landmarks is not None and not (isinstance(landmarks, (tuple, list)) and len(landmarks) == 2):
+        defects.append("landmarks: expected a pair, those of V and those of the target")
+    elif landmarks is not None:
         marks = [_arguments.points(of, f"landmarks[{k}]", defects) for k, of in enumerate(landmarks)]
-        if len(marks) != 2:
-            defects.append(f"landmarks: has {len(marks)} entries; expected those of V and those of the target")
+    defects += [f"{name}: holds a number that is not finite"
+                for name, of in (("V", arrays[0]), ("target_V", arrays[2]), ("landmarks", marks[0]), ("landmarks", marks[1]))
+                if of is not None and not np.isfinite(of).all()]
     if defects:
         raise InputError(*defects)
     return Registration(**_core.register_surface(

@@ -291,9 +291,13 @@ void read_reference(const Parameters& values, double mesh_scale, Scene& scene, R
   scene.closed_surface_scale = length_scale(reference, mesh_scale, reading);
   if (!reference.has("register")) return;  // it is not one of the words
   const std::optional<RegistrationMethod> method = registration_method(reference.text("register"));
+  const auto has_defect_of = [&reading](const std::string& key) {  // as a file that was not found
+    return std::any_of(reading.defects.begin(), reading.defects.end(),
+                       [&key](const std::string& defect) { return defect.starts_with(key + ":"); });
+  };
   const bool by_landmarks = method == RegistrationMethod::Landmarks;
-  for (const char* key : {"landmarks", "reference_landmarks"})
-    if (reading.defects.empty() && reference.has(key) != by_landmarks)
+  for (const std::string key : {"landmarks", "reference_landmarks"})
+    if (reference.has(key) != by_landmarks && !has_defect_of(reference.where(key)))
       reading.defects.push_back(reference.where(key) + (by_landmarks
                                                             ? ": missing; \"register\": \"landmarks\" "
                                                               "needs the points of both"

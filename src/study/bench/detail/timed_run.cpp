@@ -32,10 +32,9 @@ TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveS
     const bool is_cancelled = result.status == Status::Cancelled;
     if (run.repeats == 0) {
       run.x = model.objective->positions(result.q);
-      if (model.closed_reference) {
-        const TriangleMesh closed = surface_at(model, run.x);
-        run.to_closed = distance_between(closed, registered_reference(model, closed).surface);
-      }
+      const TriangleMesh closed = surface_at(model, run.x);
+      if (const auto reference = placed_reference(model, closed))
+        run.to_closed = distance_between(closed, *reference);
     }
     if (run.repeats == 0 || is_cancelled || result.wall_s < run.result.wall_s) run.result = std::move(result);
     if (is_cancelled) break;
