@@ -1,0 +1,104 @@
+"""Valves and chords that the command makes."""
+import json
+import unittest
+
+from command_case import CommandCase, coapt
+
+
+class GenerateTest(CommandCase):
+    def test_generates_a_valve_on_a_measured_annulus(self):
+        scene = self.generate("mitral", "--triangles", 2500)
+        ring, tips = self.folder / "ring.mrk.json", self.folder / "tips.mrk.json"
+        for name, path in [("annulus", ring), ("papillary", tips)]:
+            self.assertEqual(coapt("export", scene, "--points", name, "-o", path).returncode, 0)
+        scene = self.generate("mitral", "--triangles", 625, "--annulus", ring, "--papillary", tips)
+        run = coapt("solve", scene)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        result = self.result()
+        self.assertTrue(result["converged"])
+        self.assertEqual(result["metrics"]["intersections"], 0)
+        self.assertIn("contact_barrier", scene.read_text())
+
+        points = [point["position"] for point in json.loads(ring.read_text())["markups"][0]["controlPoints"]]
+        table = self.folder / "ring.csv"
+        table.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in points))
+        self.generate("mitral", "--triangles", 300, "--annulus", table, "--anterior", 0, 50, 0, "--ventricle", 0, 0, -9)
+        mitral = lambda *options: coapt("generate", "mitral", "-o", self.folder / "x", *options)
+        table.write_text("".join(f"{x} {y} {z}\n" for x, y, z in points[:len(points) // 2]))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "the curve is open")
+        table.write_text("".join(f"{x / 10} {y / 10} {z / 10}\n" for x, y, z in points))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "positions in mm?")
+        table.write_text("".join(f"{x} {y} {z}\n" for x, y, z in points[::len(points) // 6]))
+        self.assert_bad_input(mitral("--annulus", table), "ring.csv", "at least 8")
+        self.assert_bad_input(mitral("--anterior", 0, 1, 0), "--annulus FILE")
+        self.assert_bad_input(coapt("generate", "disc", "--annulus", ring, "-o", self.folder / "x"), "mitral")
+
+    def test_generates_rough_valves(self):
+        for shape in ["mitral", "tricuspid"]:
+            with self.subTest(shape=shape):
+                scene = self.generate(shape, "--rough", 1, "--triangles", 300)
+                self.assertIn('"contact_barrier"', scene.read_text())
+                self.assertIn('"follower"', scene.read_text())
+                files = ["scene.json", "valve.json", "leaflets.obj"]
+                first = [(self.folder / name).read_bytes() for name in files]
+                self.generate(shape, "--rough", 1, "--triangles", 300)
+                self.assertEqual(first, [(self.folder / name).read_bytes() for name in files])
+                self.generate(shape, "--rough", 2, "--triangles", 300)
+                self.assertNotEqual(first, [(self.folder / name).read_bytes() for name in files])
+                self.assertIn("no defects", coapt("check", scene).stdout)
+        generate = lambda *options: coapt("generate", *options, "-o", self.folder / "x")
+        self.assert_bad_input(generate("tricuspid"), "--rough SEED")
+        self.assert_bad_input(generate("disc", "--rough", 1), "--rough", "disc")
+        self.assert_bad_input(generate("mitral", "--rough", 1, "--seed", 2), "--seed")
+        self.assert_bad_input(generate("tricuspid", "--rough", 1, "--model", "hammer-2008"), "--model")
+        self.assert_bad_input(generate("mitral", "--rough", 1, "--triangles", 100), "at least 250")
+
+    def test_generates_valves_of_springs(self):
+        for options in [["--membrane", "spring"], ["--model", "hammer-2008"], ["--model", "hammer-2011"]]:
+            with self.subTest(options[1]):
+                scene = self.generate("mitral", "--triangles", 400, "--contact", "none", *options)
+                run = coapt("check", scene)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                run = coapt("solve", scene)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                result = self.result()
+                self.assertGreater(result["counters"]["spring_elements"], 600)
+                self.assertEqual(result["counters"]["membrane_elements"], 0)
+                self.assertIsNone(result["metrics"]["slack_area_mm2"])
+                self.assertNotIn("regime", (self.folder / "result" / "closed.vtp").read_text(errors="replace"))
+        self.assertEqual(coapt("generate", "mitral", "--model", "hammer", "-o", self.folder / "x").returncode, 2)
+
+    def test_makes_chords_where_there_are_none(self):
+        self.generate("mitral", "--triangles", 625)
+        network = self.folder / "made" / "valve.json"
+        run = coapt("chords", self.folder / "valve.json", "-o", network, "--count", 8, "--levels", 2,
+                    "--zones", "free_edge", "rough", "--depth", 8)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("64 chords, 16 branch points", run.stdout)
+        chords = json.loads(network.read_text())["chords"]
+        self.assertEqual(sorted({c["material"] for c in chords}), ["primary", "secondary"])
+        self.assertEqual([len([c for c in chords if c["level"] == level]) for level in (1, 2)], [16, 48])
+        self.assertEqual(coapt("import", network, "-o", self.folder / "scene").returncode, 0)
+        run = coapt("solve", self.folder / "scene" / "scene.json")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+    def test_makes_chords_on_a_mesh_alone(self):
+        self.generate("mitral", "--triangles", 625)
+        mesh, network = self.folder / "leaflets.obj", self.folder / "made" / "valve.json"
+        tips = ["--tip", 16, 0, -24, "--tip", -16, 0, -24]
+        run = coapt("chords", mesh, "-o", network, "--scale", 0.8, *tips)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        valve, known = json.loads(network.read_text()), json.loads((self.folder / "valve.json").read_text())
+        self.assertEqual(sorted(valve["annulus"]), sorted(known["annulus"]))
+        self.assertEqual(sorted(valve["free_edge"]), sorted(known["free_edge"]))
+        self.assertEqual((len(valve["chords"]), valve["papillary"]), (24, [[16, 0, -24], [-16, 0, -24]]))
+        self.assert_bad_input(coapt("chords", mesh, "-o", network), "leaflets.obj", "papillary", "--tip")
+        self.assert_bad_input(coapt("chords", mesh, "-o", self.folder / "x.json", *tips), "another folder")
+        self.assert_bad_input(coapt("chords", mesh, "-o", network, "--count", 999, *tips), "free vertices")
+        for bad in ("nan", "1e400", "1e200"):
+            self.assert_bad_input(coapt("chords", mesh, "-o", network, "--tip", bad, 0, 0), "not finite")
+        self.assert_bad_input(coapt("chords", mesh, "-o", network, "--tip", 1, 2, 90, "--scale", -1), "scale")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[__file__])
