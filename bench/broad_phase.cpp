@@ -5,7 +5,7 @@
 //
 // valve: the generated mitral valve, open. sheets: two sheets one above the other at 0.3 edges, as when
 // closed. floor: a sheet over two triangles as large as itself.
-#include "energy/contact/box_hierarchy.hpp"
+#include "mesh/distance/box_hierarchy.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "support/meshes.hpp"
 #include "valve/generators/mitral.hpp"
@@ -66,8 +66,7 @@ bool are_near(const Bounds& a, const Bounds& b, double reach) {
 // Each is a function of the case that returns the number of pairs.
 class Hierarchy {
  public:
-  explicit Hierarchy(const Case& c)
-      : hierarchy_(c.mesh.vertices, c.mesh.triangles, c.mesh.triangle_count()) {}
+  explicit Hierarchy(const Case& c) : hierarchy_(centroids(c.mesh.vertices, c.mesh.triangles)) {}
   long operator()(const Case& c) {
     const std::vector<Bounds> of_triangles = c.bounds();
     hierarchy_.fit(of_triangles, of_nodes_);
@@ -195,7 +194,7 @@ BENCHMARK(search<HashGrid, Scene::Floor>)->Apply(small);
 void build_hierarchy(benchmark::State& state) {
   const TriangleMesh mesh = mesh_of(Scene::Sheets, static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    const BoxHierarchy hierarchy(mesh.vertices, mesh.triangles, mesh.triangle_count());
+    const BoxHierarchy hierarchy(centroids(mesh.vertices, mesh.triangles));
     benchmark::DoNotOptimize(&hierarchy);
   }
 }

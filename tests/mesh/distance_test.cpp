@@ -108,9 +108,9 @@ TEST(TriangleTree, FindsAllPairsOfNearBoxesAlsoAfterAMove) {
   for (const auto& [s, t] : tree.overlaps(tree))
     if (s < t) doubled.push_back({s, t});
   EXPECT_EQ(doubled, pairs_one_by_one(mesh, 0));
-  const Eigen::AlignedBox3d all(mesh.vertices.rowwise().minCoeff(), mesh.vertices.rowwise().maxCoeff());
+  const Bounds all{mesh.vertices.rowwise().minCoeff().array(), mesh.vertices.rowwise().maxCoeff().array()};
   EXPECT_EQ(tree.overlapping(all).size(), static_cast<size_t>(mesh.triangle_count()));
-  EXPECT_TRUE(tree.overlapping({Vec3(5, 5, 5), Vec3(6, 6, 6)}).empty());
+  EXPECT_TRUE(tree.overlapping(bounds_around(Vec3(5.5, 5.5, 5.5), 0.5)).empty());
 }
 
 TEST(TriangleTree, StaysShallowWhenAllTrianglesCoincide) {

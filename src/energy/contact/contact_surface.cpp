@@ -62,8 +62,6 @@ bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double sl
   return from <= to * (1 + 1e-12);
 }
 
-Bounds box_around(const Vec3& x, double width) { return {x.array() - 0.5 * width, x.array() + 0.5 * width}; }
-
 template <class Bound>
 Bound joined(Bound a, const Bound& b) {
   a.include(b);
@@ -81,7 +79,7 @@ ContactSurface::ContactSurface(const Points& rest, Triangles triangles, int memb
       around_(static_cast<size_t>(rest.cols())),
       own_vertices_(static_cast<size_t>(triangles_.cols())),
       own_edges_(static_cast<size_t>(triangles_.cols())),
-      hierarchy_(rest, triangles_, membrane_count) {
+      hierarchy_(centroids(rest, triangles_), membrane_count) {
   for (auto& [s, t] : excluded_)
     if (s > t) std::swap(s, t);
   std::sort(excluded_.begin(), excluded_.end());
@@ -159,14 +157,14 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
-  visit_pairs<Bounds>([&](int node) { return box_around(x.col(node), reach); }, overlap, visit);
+  visit_pairs<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, overlap, visit);
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
                                 const Visit& visit) const {
   visit_pairs<PartBounds>(
       [&](int node) {
-        return PartBounds{box_around(x.col(node), reach), moving.moves(node)};
+        return PartBounds{bounds_around(x.col(node), 0.5 * reach), moving.moves(node)};
       },
       [](const PartBounds& a, const PartBounds& b) { return (a.moves || b.moves) && overlap(a.at, b.at); },
       visit);
@@ -177,7 +175,8 @@ void ContactSurface::visit_swept(const Points& x, const Points& d, double reach,
   const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
   visit_pairs<SweptBounds>(
       [&](int node) {
-        return SweptBounds{box_around(x.col(node), reach), {d.col(node).array(), d.col(node).array()}};
+        return SweptBounds{bounds_around(x.col(node), 0.5 * reach),
+                           {d.col(node).array(), d.col(node).array()}};
       },
       [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit);
 }

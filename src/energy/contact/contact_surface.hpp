@@ -2,9 +2,9 @@
 // search for pairs of them.
 #pragma once
 
-#include "energy/contact/box_hierarchy.hpp"
 #include "energy/contact/pair_barrier.hpp"
 #include "energy/moving_part.hpp"
+#include "mesh/distance/box_hierarchy.hpp"
 
 #include <array>
 #include <functional>

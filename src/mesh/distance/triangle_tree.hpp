@@ -1,9 +1,7 @@
 // A tree of axis-aligned boxes over triangles: closest points and pairs of near triangles.
 #pragma once
 
-#include "core/types.hpp"
-
-#include <Eigen/Geometry>
+#include "mesh/distance/box_hierarchy.hpp"
 
 #include <array>
 #include <vector>
@@ -19,8 +17,6 @@ struct ClosestOnSurface {
 
 class TriangleTree {
  public:
-  using Box = Eigen::AlignedBox3d;
-
   // Copies positions and corners. O(n log n). Pre: positions are finite, corner indices in range.
   TriangleTree(const Points& points, const Triangles& triangles);
 
@@ -31,8 +27,8 @@ class TriangleTree {
   // The surface point closest to p. Pre: there is a triangle.
   ClosestOnSurface closest(const Vec3& p) const;
 
-  // Triangles whose box meets `box` (touching counts), in no particular order.
-  std::vector<int> overlapping(const Box& box) const;
+  // Triangles whose box meets this one (touching counts), in no particular order.
+  std::vector<int> overlapping(const Bounds& box) const;
 
   // Pairs of triangles whose boxes are within `margin` of each other along every axis, each pair once with
   // the smaller number first, in ascending order.
@@ -44,24 +40,11 @@ class TriangleTree {
   int triangle_count() const { return static_cast<int>(triangles_.cols()); }
 
  private:
-  // A leaf holds order_[begin, end). The children of an inner node are the next node and `right`.
-  struct Node {
-    Box box;
-    int begin = 0, end = 0;
-    int right = -1;  // -1: leaf
-    bool is_leaf() const { return right < 0; }
-  };
-
-  Box triangle_box(int triangle) const;
-  int build(int begin, int end, const Points& centres);
-  void collect(const TriangleTree& other, bool is_self, double margin,
-               std::vector<std::array<int, 2>>& pairs) const;
-
   Points points_;
   Triangles triangles_;
-  std::vector<int> order_;
-  std::vector<Box> boxes_;  // of the triangles, by number
-  std::vector<Node> nodes_;
+  std::vector<Bounds> boxes_;  // of the triangles, by number
+  BoxHierarchy hierarchy_;
+  std::vector<Bounds> node_boxes_;
 };
 
 }  // namespace coapt

@@ -58,9 +58,9 @@ class GapFinder {
   }
 
   double nearest_unmarked(int v, double size) const {
-    const Vec3 p = x_.col(v), half = Vec3::Constant(size);
+    const Vec3 p = x_.col(v);
     double nearest = kInfinity;
-    for (const int t : tree_.overlapping({p - half, p + half})) {
+    for (const int t : tree_.overlapping(bounds_around(p, size))) {
       const Eigen::Vector3i c = triangles_.col(t);
       if (is_marked(c[0]) || is_marked(c[1]) || is_marked(c[2])) continue;
       nearest = std::min(nearest, point_triangle_distance(p, x_.col(c[0]), x_.col(c[1]), x_.col(c[2])));

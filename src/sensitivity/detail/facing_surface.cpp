@@ -42,7 +42,7 @@ ClosestPoint FacingSurface::closest(const Vec3& p, const Vec3& direction) const 
   for (int widening = 0; widening < kWidenings; ++widening, reach *= kWidening) {
     ClosestOnSurface found;
     found.distance_squared = reach * reach;
-    for (const int t : tree_.overlapping({p - Vec3::Constant(reach), p + Vec3::Constant(reach)})) {
+    for (const int t : tree_.overlapping(bounds_around(p, reach))) {
       if (facet_normal(t).dot(direction) < 0) continue;
       const ClosestOnTriangle at = closest_on_triangle(p, corner(t, 0), corner(t, 1), corner(t, 2));
       if (at.distance_squared < found.distance_squared)

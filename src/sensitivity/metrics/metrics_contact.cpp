@@ -41,8 +41,8 @@ std::vector<std::vector<int>> neighbours_of(const Triangles& triangles, const Po
     std::vector<int>& found = all[v];
     for (const int first : ring[v])
       for (const int second : ring[static_cast<size_t>(first)]) found.push_back(second);
-    const Vec3 p = X.col(static_cast<Eigen::Index>(v)), half = Vec3::Constant(radius);
-    for (const int t : tree.overlapping({p - half, p + half}))
+    const Vec3 p = X.col(static_cast<Eigen::Index>(v));
+    for (const int t : tree.overlapping(bounds_around(p, radius)))
       for (const int corner : triangles.col(t))
         if ((X.col(corner) - p).norm() <= radius) found.push_back(corner);
     std::sort(found.begin(), found.end());
@@ -98,14 +98,13 @@ class Coaptation final : public Metric {
   std::vector<Touch> touches_at(const Points& x) const {
     std::vector<Touch> touches;
     const TriangleTree tree(x, triangles_);
-    const Vec3 half = Vec3::Constant(options_.range);
     for (int v = 0; v < static_cast<int>(neighbours_.size()); ++v) {
       const std::vector<int>& own = neighbours_[static_cast<size_t>(v)];
       if (own.empty()) continue;
       const Vec3 p = x.col(v);
       double least = options_.range;
       Touch nearest{v, -1, Vec3::Zero(), Vec3::Zero(), {0, 0}};
-      std::vector<int> near = tree.overlapping({p - half, p + half});
+      std::vector<int> near = tree.overlapping(bounds_around(p, options_.range));
       std::sort(near.begin(), near.end());
       for (const int t : near) {
         const Eigen::Vector3i c = triangles_.col(t);

@@ -1,4 +1,4 @@
-#include "energy/contact/box_hierarchy.hpp"
+#include "mesh/distance/box_hierarchy.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -6,25 +6,29 @@
 namespace coapt {
 namespace {
 
-constexpr int kLeafSize = 4;  // facets in a leaf
+constexpr int kLeafSize = 4;  // triangles in a leaf
 
 }  // namespace
 
-BoxHierarchy::BoxHierarchy(const Points& x, const Triangles& triangles, int first_part)
-    : order_(static_cast<size_t>(triangles.cols())) {
-  std::iota(order_.begin(), order_.end(), 0);
+Points centroids(const Points& x, const Triangles& triangles) {
   Points centres(3, triangles.cols());
   for (int t = 0; t < triangles.cols(); ++t)
     centres.col(t) = (x.col(triangles(0, t)) + x.col(triangles(1, t)) + x.col(triangles(2, t))) / 3;
-  const int count = static_cast<int>(triangles.cols());
-  if (first_part == 0 || first_part == count) {
-    if (count > 0) build(0, count, centres, first_part == 0);
+  return centres;
+}
+
+BoxHierarchy::BoxHierarchy(const Points& centres, Eigen::Index first_part)
+    : order_(static_cast<size_t>(centres.cols())) {
+  std::iota(order_.begin(), order_.end(), 0);
+  const int count = static_cast<int>(centres.cols()), first = static_cast<int>(first_part);
+  if (first == 0 || first == count) {
+    if (count > 0) build(0, count, centres, first == 0);
     return;
   }
   nodes_.push_back({0, count, -1, false});
-  build(0, first_part, centres, false);
+  build(0, first, centres, false);
   nodes_[0].right = static_cast<int>(nodes_.size());
-  build(first_part, count, centres, true);
+  build(first, count, centres, true);
 }
 
 void BoxHierarchy::build(int begin, int end, const Points& centres, bool is_second_part) {
