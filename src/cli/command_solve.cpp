@@ -1,7 +1,7 @@
-#include "cli/checkpointing.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/solve_checkpoint.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/components.hpp"
@@ -29,7 +29,7 @@ struct SolveArguments {
   std::optional<int> damped_steps;
   bool has_no_report = false;
   BranchSearch branches = {.starts = 0};
-  CheckpointArguments checkpoint;
+  SolveCheckpointArguments checkpoint;
 };
 
 // " (other equilibria: 8.16 to 10.20)" for a metric; nothing where there are none.
@@ -170,11 +170,11 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
   std::optional<double> accuracy_mm;
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
   SolverTable solvers = all_solvers();
-  std::optional<Checkpointing> checkpointing;
+  std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
-    checkpointing.emplace(arguments.checkpoint, identity(scene, options, accuracy_mm));
-    solvers = checkpointing->recorded(solvers);
-    options.observer = checkpointing->recorded(options.observer);
+    checkpoint.emplace(arguments.checkpoint, identity(scene, options, accuracy_mm));
+    solvers = checkpoint->recorded(solvers);
+    options.observer = checkpoint->recorded(options.observer);
   }
   RunReport report =
       accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
@@ -183,7 +183,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
   search_branches(scene, all_solvers(), again, arguments.branches, report);
   end_progress();
   print_summary(report);
-  if (checkpointing) checkpointing->finish(arguments.scene);
+  if (checkpoint) checkpoint->finish(arguments.scene);
   const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
   const Result& result = report.report.result;
   if (!is_reached || result.status != Status::Converged) return kNotConverged;
@@ -221,7 +221,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
                            ->check(CLI::Range(1, 1000000000));
   add_path_option(*command, arguments->damped_steps);
   add_branch_options(*command, arguments->branches);
-  add_checkpoint_arguments(*command, arguments->checkpoint);
+  add_solve_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
   command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
     listen_for_interrupts();

@@ -1,10 +1,11 @@
+#include "cli/checkpoint_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/tune_checkpoint.hpp"
 #include "core/error.hpp"
+#include "core/timing.hpp"
 #include "formats/json/units.hpp"
 #include "formats/text.hpp"
 #include "tuning/chord_tuning.hpp"
@@ -30,11 +31,72 @@ const std::map<std::string, FitSides> kSides = {
 
 struct TuneArguments : StudyArguments {
   ChordTuningOptions tuning;
-  TuneCheckpointArguments checkpoint;
+  CheckpointArguments checkpoint;
   std::string target, grouping = "chord", sides = "both", only, bounds, noise, determined, step;
   double distance_weight = -1, change_weight = -1, total_seconds = 0;  // below 0, or 0: not given
   bool prints_json = false;
 };
+
+// Keeps one tuning in a file while it goes on, and gives it what an earlier session kept.
+class TuneCheckpoint {
+ public:
+  // Sets `keep` and `known` of the options, which must not outlive this object; defects go to theirs: a file
+  // that is not of this tuning, one that is there already.
+  TuneCheckpoint(const CheckpointArguments& arguments, const std::filesystem::path& scene,
+                 ChordTuningOptions& options, const RunOptions& run, bool is_quiet);
+  TuneCheckpoint(const TuneCheckpoint&) = delete;
+  TuneCheckpoint& operator=(const TuneCheckpoint&) = delete;
+
+  // Call it when the results are written: removes the file of a tuning that went to its end, and says on the
+  // standard output how one that was cut short goes on.
+  void finish(const ChordTuning& found, const std::string& scene);
+
+ private:
+  void write();
+
+  CheckpointFile file_;
+  Identity identity_;
+  ChordTuningRecord known_, last_;
+  double every_, written_s_ = 0;
+  bool is_quiet_;
+};
+
+TuneCheckpoint::TuneCheckpoint(const CheckpointArguments& arguments, const std::filesystem::path& scene,
+                               ChordTuningOptions& options, const RunOptions& run, bool is_quiet)
+    : file_(arguments, "tuning", "tune"), every_(arguments.every), is_quiet_(is_quiet) {
+  if (!arguments.is_wanted()) return;
+  if (const auto defect = file_.defect()) options.defects.push_back(*defect);
+  try {
+    identity_ = chord_tuning_identity(load_scene(scene), options, run);
+    if (!arguments.resumed.empty()) {
+      known_ = read_chord_tuning_checkpoint(arguments.resumed, identity_);
+      options.known = &known_;
+    }
+  } catch (const InputError& found) {
+    options.defects.insert(options.defects.end(), found.defects().begin(), found.defects().end());
+    return;
+  }
+  if (options.known != nullptr && !is_quiet_)
+    std::printf("resumed after %zu trials in %.3g s\n", known_.tuning.history.size(), known_.tuning.seconds);
+  last_ = known_;
+  options.keep = [this](const ChordTuningRecord& record) {
+    last_ = record;
+    if (wall_seconds() - written_s_ >= every_) write();
+  };
+}
+
+void TuneCheckpoint::write() {
+  file_.keep([&](const auto& path) { write_chord_tuning_checkpoint(path, identity_, last_); });
+  written_s_ = wall_seconds();
+}
+
+void TuneCheckpoint::finish(const ChordTuning& found, const std::string& scene) {
+  if (last_.tuning.history.empty()) return;  // nothing was kept
+  const TuningStatus status = found.tuning.status;
+  if (status == TuningStatus::Converged || status == TuningStatus::Stalled) return file_.remove();
+  write();
+  if (!is_quiet_) file_.print_how_to_go_on(scene);
+}
 
 // "-20%" or "-0.2".
 std::optional<double> share_of(const std::string& text) {
@@ -229,7 +291,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--determined", arguments->determined,
                       "Greatest standard deviation of a length that counts as determined (default: 0.05 mm)");
   command->add_flag("--json", arguments->prints_json, "Print tuning.json instead of the table");
-  add_tune_checkpoint_arguments(*command, arguments->checkpoint);
+  add_checkpoint_arguments(*command, arguments->checkpoint, "tuning", 10);
   command->callback([arguments, &exit_code] { run_command(*arguments, exit_code); });
 }
 

@@ -7,10 +7,10 @@
 #include "sensitivity/determinacy.hpp"
 #include "sensitivity/metrics/surface_residuals.hpp"
 #include "sensitivity/tuning.hpp"
+#include "solve/work_identity.hpp"
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -108,18 +108,14 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
                         const BoundedMinimiserTable& minimisers, const ChordTuningOptions& options,
                         const RunOptions& run);
 
-// What two sessions of one tuning have in common, as text by name: scene with its files, target, weights,
-// groups, bounds, tolerance. Method and limits may differ.
-std::map<std::string, std::string> chord_tuning_identity(const Scene& scene,
-                                                         const ChordTuningOptions& options,
-                                                         const RunOptions& run);
+// What two sessions of one tuning have in common: scene with its files, target, weights, groups, bounds,
+// tolerance. Method and limits may differ.
+Identity chord_tuning_identity(const Scene& scene, const ChordTuningOptions& options, const RunOptions& run);
 
 // As write_checkpoint() and read_checkpoint() do with a run.
-void write_chord_tuning_checkpoint(const std::filesystem::path& path,
-                                   const std::map<std::string, std::string>& identity,
+void write_chord_tuning_checkpoint(const std::filesystem::path& path, const Identity& identity,
                                    const ChordTuningRecord& record);
-ChordTuningRecord read_chord_tuning_checkpoint(const std::filesystem::path& path,
-                                               const std::map<std::string, std::string>& identity);
+ChordTuningRecord read_chord_tuning_checkpoint(const std::filesystem::path& path, const Identity& identity);
 
 // The text of tuning.json. Numbers that are not finite or not known are null.
 std::string chord_tuning_json(const ChordTuning& found);

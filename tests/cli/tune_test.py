@@ -135,7 +135,7 @@ class TuneTest(CommandCase):
         self.assert_bad_input(coapt("tune", scene, "-o", self.folder / "out", *options, "--checkpoint", kept),
                               "is there already")
         self.assert_bad_input(coapt("tune", scene, *options, "--resume", kept, "--bounds", "-10%..10%"),
-                              "another bounds")
+                              "another pair of bounds (-0.2 to 0.2 there, -0.1 to 0.1 here)")
         run = coapt("tune", scene, "-o", self.folder / "out", *options, "--resume", kept, timeout=300)
         self.assertIn("resumed after", run.stdout)
         found = self.read()

@@ -37,7 +37,7 @@ void judge(const ChordTuningRecord& record) {
 }
 
 std::string sealed(const std::string& kind, std::string_view body) {
-  return kind + " 1 " + fingerprint(body) + "\n" + std::string(body);
+  return kind + " 2 " + fingerprint(body) + "\n" + std::string(body);
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ TEST_F(Checkpoint, RefusesOneThatIsDamagedOrCutOffAnywhere) {
   EXPECT_NE(refusal(folder_, whole + "x").find("damaged or cut off"), std::string::npos);
   EXPECT_NE(refusal(folder_, "{}").find("is no checkpoint"), std::string::npos);
   std::string other = whole;
-  other.replace(other.find(" 1 "), 3, " 2 ");
-  EXPECT_NE(refusal(folder_, other).find("of format 2"), std::string::npos);
+  other.replace(other.find(" 2 "), 3, " 3 ");
+  EXPECT_NE(refusal(folder_, other).find("of format 3"), std::string::npos);
   EXPECT_THROW(read_checkpoint(folder_.path() / "none", kOwn), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path(), kOwn, RunRecord()), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path() / "no" / "file", kOwn, RunRecord()), InputError);
@@ -87,7 +87,7 @@ TEST_F(Checkpoint, RefusesWhatNoRunLeavesThoughItsChecksumIsGood) {
   const std::string whole = read(file_);
   const Json good = Json::from_cbor(whole.substr(whole.find('\n') + 1));
   const auto resealed = [](const std::string& body) {
-    return "coapt checkpoint 1 " + fingerprint(body) + "\n" + body;
+    return "coapt checkpoint 2 " + fingerprint(body) + "\n" + body;
   };
   const auto refusal_with = [&](const std::string& key, const Json& value) {
     Json json = good;
