@@ -32,20 +32,20 @@ std::string_view status_name(Status status);  // "converged", "iteration_limit",
 
 struct StopRule {
   double tolerance = 1e-6;         // on the relative residual
-  int max_iterations = 100000;     // of the solver, over all rounds and steps
-  double max_seconds = kInfinity;  // wall time
+  int max_iterations = 100000;     // of the solver, over all outer iterations and steps
+  double max_seconds = kInfinity;  // wall time [s]
 };
 
 // One accepted iterate.
 struct Iteration {
   int iteration = 0;
-  int round = 0;         // outer renewal or continuation step
-  double energy = 0;     // of the potential that the solver minimises [force x length]
-  double residual = 0;   // relative, of that potential
-  double step = 0;       // largest change of an unknown [length]
-  double seconds = 0;    // wall time since the start
-  double time = 0;       // simulated since the start, of a method that follows the motion of masses [s]
-  long evaluations = 0;  // of the gradient so far
+  int outer_iteration = 0;  // outer renewal or continuation step
+  double energy = 0;        // of the potential that the solver minimises [force x length]
+  double residual = 0;      // relative, of that potential
+  double step = 0;          // largest change of an unknown [length]
+  double seconds = 0;       // wall time since the start
+  double time = 0;          // simulated since the start, of a method that follows the motion of masses [s]
+  long evaluations = 0;     // of the gradient so far
 };
 
 // Sees every accepted iterate; returning false cancels the run, which keeps that iterate.
@@ -67,7 +67,7 @@ class Solver {
   virtual std::string_view name() const = 0;
 
   // Whether the method works from the exact out-of-balance force and needs the energy only to compare a
-  // step with its start. Others get a load without potential in rounds, each with a true potential.
+  // step with its start. Others get a load without potential in outer iterations, each with a true potential.
   virtual bool follows_path() const { return false; }
 
   // Whether the method raises and releases the limits of Objective::limit_stress() itself.
@@ -133,9 +133,9 @@ struct Result {
   double energy = 0;    // potential energy [force x length]
   double residual = 0;  // relative, exact loads, measured by the objective after the solver returned
   int iterations = 0;
-  std::string route;     // how a load without potential was treated, for the user; empty = there was none
-  int rounds = 0;        // outer renewals of such a load
-  int damped_steps = 0;  // along a damped path, those at the full problem included
+  std::string route;         // how a load without potential was treated, for the user; empty = there was none
+  int outer_iterations = 0;  // outer renewals of such a load
+  int damped_steps = 0;      // along a damped path, those at the full problem included
 
   // Of a damped path: steps at the full problem whose shape is unstable without dampers, so that the ways of
   // neighbours part there; -1 where nobody looked, as where no certificate is asked for.
@@ -151,7 +151,7 @@ struct Result {
 };
 
 // Runs a solver on a problem: follows the prescribed motion, renews loads without a potential until the
-// exact residual is small, and judges the outcome by the objective's residual alone. Throws InputError,
+// exact residual is small, and measures the outcome by the objective's residual alone. Throws InputError,
 // before anything is done, when a term limits steps and the solver does not honour it.
 Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const Observer& observer = {});
 
@@ -164,16 +164,20 @@ enum class Globalisation {
 struct XpbdBody;
 struct XpbdOptions;
 
-// What solvers may be told; each takes what concerns it.
-struct SolverOptions {
+// What a user may choose of the methods; each takes what concerns it.
+struct MethodOptions {
   int memory = 12;                                          // pairs that lbfgs keeps
   bool is_preconditioned = false;                           // lbfgs: the factorised Hessian as start metric
   Globalisation globalisation = Globalisation::LineSearch;  // newton
-  FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
   DynamicOptions dynamic = {};
+  std::shared_ptr<const XpbdOptions> xpbd = {};  // null: its defaults
+};
+
+// And what the build and the body give them.
+struct SolverOptions : MethodOptions {
+  FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
   std::function<TriangleMesh()> surface =
       {};  // at rest, over all nodes; asked for by collisions of `dynamic`
-  std::shared_ptr<const XpbdOptions> xpbd = {};  // null: its defaults
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
   std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
 };

@@ -35,27 +35,21 @@ SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name)
 // What the scene says of the method, and what the method may ask of the body that it moves.
 SolverOptions solver_options(const SolverSpec& spec, const std::vector<TermSpec>& terms,
                              const FactorisationFactory& factorisation, const Model& model) {
-  SolverOptions options;
-  options.memory = spec.memory;
-  options.is_preconditioned = spec.is_preconditioned;
-  options.globalisation = spec.globalisation;
+  SolverOptions options{static_cast<const MethodOptions&>(spec)};
   options.factorisation = factorisation;
-  options.dynamic = spec.dynamic;
   if (options.dynamic.collision_distance == 0 && model.mesh.triangle_count() > 0)
     options.dynamic.collision_distance =
         kCollisionDistance * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
   options.surface = [&model] { return TriangleMesh{model.X, model.mesh.triangles, {}, {}}; };
   options.masses = [&model, density = spec.density] { return lumped_masses(model, density); };
-  options.xpbd = spec.xpbd;
   options.xpbd_body = [&model, terms] { return xpbd_body(model, terms); };
   return options;
 }
 
 StopRule stop_rule(const Scene& scene, const RunOptions& options) {
-  StopRule stop;
-  stop.tolerance = options.tolerance.value_or(scene.solver.tolerance);
-  stop.max_iterations = scene.solver.max_iterations;
-  const double seconds = options.max_seconds.value_or(scene.solver.max_seconds);
+  StopRule stop = static_cast<const StopRule&>(scene.solver);
+  stop.tolerance = options.tolerance.value_or(stop.tolerance);
+  const double seconds = options.max_seconds.value_or(stop.max_seconds);
   stop.max_seconds = seconds > 0 ? seconds : kInfinity;
   if (!(stop.tolerance > 0 && stop.tolerance <= 1))
     throw InputError("--tolerance: must be above 0 and at most 1, a residual relative to the largest force");

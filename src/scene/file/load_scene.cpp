@@ -239,7 +239,7 @@ SolverSpec solver_from(const Parameters& values) {
   solver.type = values.text("type");
   solver.tolerance = values.number("tolerance");
   solver.max_iterations = values.integer("max_iterations");
-  solver.max_seconds = values.number_or("max_seconds", 0);
+  solver.max_seconds = values.number_or("max_seconds", kInfinity);
   solver.memory = values.integer("memory");
   solver.is_preconditioned = values.flag("preconditioned");
   solver.globalisation =

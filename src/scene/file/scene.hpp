@@ -80,22 +80,14 @@ struct InterventionSpec {
   Parameters parameters;
 };
 
-struct SolverSpec {
+struct SolverSpec : MethodOptions, StopRule {
   std::string type = "newton";
-  double tolerance = 1e-6;  // on the relative residual
-  int max_iterations = 100000;
-  double max_seconds = 0;                                   // 0 = no limit [s]
-  int memory = 12;                                          // pairs of lbfgs
-  bool cascade = false;                                     // coarser meshes first
-  bool is_preconditioned = false;                           // lbfgs
-  Globalisation globalisation = Globalisation::LineSearch;  // newton
-  std::string factorisation = "auto";                       // name in the table of the build
+  bool cascade = false;                // coarser meshes first
+  std::string factorisation = "auto";  // name in the table of the build
   Continuation continuation;
-  int threads = 1;  // that assemble the Hessian
-  DynamicOptions dynamic;
-  double density = 1.06e-9;                 // of membrane and lines, for methods that move masses [t/mm3]
-  std::shared_ptr<const XpbdOptions> xpbd;  // null: its defaults
-  int modes = 0;                            // smallest eigenvalues in the certificate
+  int threads = 1;           // that assemble the Hessian
+  double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
+  int modes = 0;             // smallest eigenvalues in the certificate
 };
 
 struct Scene {
