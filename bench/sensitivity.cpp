@@ -1,8 +1,8 @@
 // The generated valve as an inner loop meets it: a chord is shortened by 0.1 mm, solved again from the last
 // shape, and the energy differentiated by all chord lengths at once; beside one solve from the open state.
 // With contact by a barrier and follower pressure, to a residual of 1e-8.
-//   warm       set() and settle(), the check of the branch included; gradient:1 with the derivatives
-//   gradient   derivatives() at a settled shape by all chord lengths; numbers:1 by papillary tips, annulus,
+//   warm       set() and solve(), the check of the branch included; gradient:1 with the derivatives
+//   gradient   derivatives() at a solved shape by all chord lengths; numbers:1 by papillary tips, annulus,
 //              thickness and pressure too; numbers:2 by the rest position of each vertex too
 //   cold_ms    CPU time of the solve from the open state, measured once in the same run
 #include "sensitivity/metrics/metrics_state.hpp"
@@ -101,7 +101,7 @@ void report(benchmark::State& state, const Solved& valve, const Tracked& tracked
 void warm(benchmark::State& state) {
   const Solved& valve = solved(static_cast<int>(state.range(0)));
   Tracked tracked(valve);
-  tracked.equilibrium.settle();
+  tracked.equilibrium.solve();
   const Vector start = tracked.equilibrium.value();
   const auto energy = make_strain_energy("energy", tracked.objective);
   long solves = 0, steps = 0, slow = 0;
@@ -110,14 +110,14 @@ void warm(benchmark::State& state) {
     Vector value = start;
     if (solves % 2 == 0) value[chord = (chord + 7) % static_cast<int>(start.size())] -= kChange;
     tracked.equilibrium.set(value);
-    const Settling settled = tracked.equilibrium.settle();
-    if (settled.status != Status::Converged) state.SkipWithError("not converged");
+    const WarmSolve solved = tracked.equilibrium.solve();
+    if (solved.status != Status::Converged) state.SkipWithError("not converged");
     if (state.range(1) != 0)
       benchmark::DoNotOptimize(tracked.equilibrium.derivatives(*energy).gradient.data());
     ++solves;
-    steps += settled.iterations;
-    most = std::max(most, settled.iterations);
-    slow += settled.is_quick ? 0 : 1;
+    steps += solved.iterations;
+    most = std::max(most, solved.iterations);
+    slow += solved.is_quick ? 0 : 1;
   }
   report(state, valve, tracked);
   state.counters["steps"] = static_cast<double>(steps) / static_cast<double>(std::max(1L, solves));
@@ -130,7 +130,7 @@ void gradient(benchmark::State& state) {
   Tracked tracked(valve);
   if (state.range(1) == 1) tracked.add_the_rest(valve);
   if (state.range(1) == 2) tracked.add_rest_shape(valve);
-  tracked.equilibrium.settle();
+  tracked.equilibrium.solve();
   const auto energy = make_strain_energy("energy", tracked.objective);
   for (auto _ : state) benchmark::DoNotOptimize(tracked.equilibrium.derivatives(*energy).gradient.data());
   report(state, valve, tracked);

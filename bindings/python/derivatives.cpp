@@ -1,4 +1,4 @@
-// Values and exact derivatives at a settled shape, without the interpreter lock.
+// Values and exact derivatives at a solved shape, without the interpreter lock.
 #include "equilibrium.hpp"
 
 #include <pybind11/stl.h>
@@ -60,7 +60,7 @@ py::array matrix_array(const Eigen::MatrixXd& matrix) {
   return array;
 }
 
-// At the present shape, settled or not.
+// At the present shape, solved or not.
 py::array evaluate(Followed& self, const Figures& figures) {
   const std::vector<const Metric*> metrics = metrics_of(self, figures);
   Vector values(static_cast<Eigen::Index>(metrics.size()));

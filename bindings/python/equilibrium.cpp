@@ -1,4 +1,4 @@
-// Equilibria that are followed: made from a scene, changed, settled again.
+// Equilibria that are followed: made from a scene, changed, solved again.
 #include "equilibrium.hpp"
 
 #include "cli/solvers.hpp"
@@ -46,9 +46,9 @@ std::shared_ptr<Followed> follow(const Input& input, const std::vector<std::stri
   return followed;
 }
 
-py::object lost_branch_of(const Settling& settling) {
-  if (!settling.lost_branch) return py::none();
-  const LostBranch& lost = *settling.lost_branch;
+py::object lost_branch_of(const WarmSolve& warm) {
+  if (!warm.lost_branch) return py::none();
+  const LostBranch& lost = *warm.lost_branch;
   py::dict dict;
   dict["distance"] = lost.distance;
   dict["jump"] = lost.jump;
@@ -90,20 +90,20 @@ py::dict outcome_of(const Report& report, double seconds) {
   return dict;
 }
 
-py::dict settle(Followed& followed) {
-  const Settling settling = followed.at_work([&] {
-    Settling report = followed.equilibrium().settle();
+py::dict warm_solve(Followed& followed) {
+  const WarmSolve warm = followed.at_work([&] {
+    WarmSolve report = followed.equilibrium().solve();
     followed.keep_shape();
     return report;
   });
-  py::dict dict = outcome_of(settling, settling.seconds);
-  dict["is_quick"] = settling.is_quick;
-  dict["predicted"] = settling.predicted;
-  dict["travel"] = settling.travel;
-  dict["jump"] = settling.jump;
-  dict["lost_branch"] = lost_branch_of(settling);
-  dict["anchor"] = anchor_check_of(settling.anchor);
-  dict["switched"] = switch_list(settling.switched);
+  py::dict dict = outcome_of(warm, warm.seconds);
+  dict["is_quick"] = warm.is_quick;
+  dict["predicted"] = warm.predicted;
+  dict["travel"] = warm.travel;
+  dict["jump"] = warm.jump;
+  dict["lost_branch"] = lost_branch_of(warm);
+  dict["anchor"] = anchor_check_of(warm.anchor);
+  dict["switched"] = switch_list(warm.switched);
   return dict;
 }
 
@@ -229,7 +229,7 @@ void define_equilibrium(py::module_& module) {
   };
   type.def(
           "add", [](Followed& self, const std::string& name) { self.add({name}); }, py::arg("name"))
-      .def("settle", &settle)
+      .def("solve", &warm_solve)
       .def("check_anchor", &check_anchor)
       .def("anchor_here", &anchor_here)
       .def(

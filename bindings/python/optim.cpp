@@ -40,11 +40,14 @@ Observer observer_of(py::handle callback, Failure& failure, const Model& model) 
 }
 
 void define_optim(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(Iteration, iteration, round, energy, residual, step, seconds, time, evaluations);
+  PYBIND11_NUMPY_DTYPE_EX(Iteration, iteration, "iteration", outer_iteration, "round", energy, "energy",
+                          residual, "residual", step, "step", seconds, "seconds", time, "time", evaluations,
+                          "evaluations");
   const auto field = [](auto member) { return [member](const Iterate& it) { return it.at.*member; }; };
   py::class_<Iterate>(module, "Iterate", "One accepted iterate of a run, as a callback sees it.")
       .def_property_readonly("iteration", field(&Iteration::iteration), "Number of the iterate, from 0.")
-      .def_property_readonly("round", field(&Iteration::round), "Renewal of a load, or step of a path.")
+      .def_property_readonly("round", field(&Iteration::outer_iteration),
+                             "Renewal of a load, or step of a path.")
       .def_property_readonly("energy", field(&Iteration::energy), "Of the potential that is minimised [mJ].")
       .def_property_readonly("residual", field(&Iteration::residual),
                              "Greatest out-of-balance force over the greatest load or reaction.")

@@ -8,7 +8,7 @@ from coapt import metrics
 
 scene = coapt.generate_mitral("valve", triangles=200)
 eq = coapt.Equilibrium(scene, ["annulus.ring"], tol=1e-10)
-assert eq.settle().success
+assert eq.solve().success
 ring = eq.x[eq.sets["annulus"]]
 width = np.linalg.norm(ring[:, None] - ring, axis=2).max()
 figures = {"orifice [mm2]": metrics.orifice_area(eq, blur=1.5), "chord force [N]": metrics.line_force_norm(eq, "chords")}
@@ -17,13 +17,13 @@ figures = {"orifice [mm2]": metrics.orifice_area(eq, blur=1.5), "chord force [N]
 rows = []
 for factor in np.linspace(1.06, 0.86, 6):
     eq["annulus.ring"] = [factor, factor, 1, 0]
-    settling = eq.settle()
-    assert settling.success, settling.message
+    warm = eq.solve()
+    assert warm.success, warm.message
     row = [factor * width]
     for metric in figures.values():
         value, gradient = eq.value_and_grad(metric)
         row += [value, gradient[:2].sum() / width]
-    rows.append([*row, settling.iterations])
+    rows.append([*row, warm.iterations])
 table = np.array(rows)
 print("size [mm]  " + "   ".join(f"{name}  per mm" for name in figures) + "   steps")
 for row in table:

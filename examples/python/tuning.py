@@ -26,12 +26,12 @@ print(f"{len(first)} chords in {groups.shape[1]} groups")
 
 truth = np.random.default_rng(1).uniform(0.85, 1.0, groups.shape[1])
 imaged["chords.lengths"] = groups @ truth
-assert imaged.settle().success
+assert imaged.solve().success
 V, F = imaged.x[:imaged.vertex_count], imaged.faces
 
 # %% Fit: residuals are the distances of the vertices from that surface.
 eq = coapt.Equilibrium(scene, ["chords.lengths"], tol=1e-8)
-eq.settle()
+eq.solve()
 residuals = metrics.distance_residuals(eq, V, F)
 distance, slope = coapt.objective(eq, residuals)
 warnings.simplefilter("ignore", coapt.LostBranchWarning)  # first steps are long: folds of the leaflets may lie otherwise

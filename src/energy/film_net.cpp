@@ -116,7 +116,7 @@ Vector node_areas(const FilmNet& net, const Points& x) {
 
 }  // namespace
 
-void settle_net(const FilmNet& net, int coordinate, Points& x) {
+void relax_net(const FilmNet& net, int coordinate, Points& x) {
   balance(net, equal_weights(net), coordinate, x);
 }
 

@@ -16,7 +16,7 @@ struct FilmNet {
 
 // Puts the free nodes into the middle of their neighbours along one coordinate, as equal force densities
 // would (Schek 1974); an edge counts once for each of its triangles. Where nothing holds the net x stays.
-void settle_net(const FilmNet& net, int coordinate, Points& x);
+void relax_net(const FilmNet& net, int coordinate, Points& x);
 
 // Makes the area less, up to eight times: each time the nodes go where the Dirichlet energy of the shape as
 // it is is least (Pinkall and Polthier 1993), until that gains little. No triangle is let shrink to next to

@@ -208,7 +208,7 @@ Points NormalMotion::smooth_start(const Points& x) const {
       net.is_free.col(static_cast<Eigen::Index>(node)) =
           places_[static_cast<size_t>(place_[node])].is_free != 0;
   Points smooth = x;
-  for (int coordinate = 0; coordinate < 3; ++coordinate) settle_net(net, coordinate, smooth);
+  for (int coordinate = 0; coordinate < 3; ++coordinate) relax_net(net, coordinate, smooth);
   lessen_area(net, smooth);
   return smooth;
 }

@@ -19,7 +19,7 @@ namespace {
 }
 
 // The frame that a file states: where the reader has not found it, in the text of its header.
-void settle_space(std::string_view bytes, const std::string& file, MeshFile& read) {
+void resolve_space(std::string_view bytes, const std::string& file, MeshFile& read) {
   constexpr size_t kHeader = 4096;
   const std::string_view head = bytes.substr(0, kHeader);
   if (read.space.empty() && head.find("SPACE=RAS") != std::string_view::npos) read.space = "RAS";
@@ -57,7 +57,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   if (!read) refuse_extension(path);
   const std::string bytes = formats::read_whole(path);
   MeshFile file = read(bytes, path.string());
-  settle_space(bytes, path.string(), file);
+  resolve_space(bytes, path.string(), file);
   for (std::string& name : file.mesh.region_names) name = formats::as_utf8(std::move(name));
   return file;
 }

@@ -11,9 +11,9 @@
 namespace coapt {
 namespace {
 
-constexpr int kMaxRounds = 100;            // renewals of a load without potential
-constexpr int kMaxRoundsWithoutGain = 12;  // of them in a row that better nothing
-constexpr double kMotionTolerance = 1e-2;  // residual at which an intermediate position is left
+constexpr int kMaxOuterIterations = 100;            // renewals of a load without potential
+constexpr int kMaxOuterIterationsWithoutGain = 12;  // of them in a row that better nothing
+constexpr double kMotionTolerance = 1e-2;           // residual at which an intermediate position is left
 constexpr double kBranchTolerance = 1e-4;  // and an intermediate load, which has to stay on its branch
 constexpr int kLeastPath = 3;              // steps of a path on which a change of branch can be told
 constexpr int kMostStiffenings = 5;        // of a contact that proves too soft
@@ -26,7 +26,7 @@ void set_scales(const Continuation& continuation, double t, Objective& objective
 
 // How the path is walked back where a step may have left its branch. The references must outlive it.
 PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
-                     int& rounds) {
+                     int& outer_iterations) {
   Objective& objective = problem.objective;
   const auto pose = [&](double t) {
     set_scales(problem.continuation, t, objective);
@@ -46,7 +46,8 @@ PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& sto
           },
           [&](Vector& q) {
             std::string note;
-            const Status status = solve_rounds(solver, objective, q, monitor, stop.tolerance, rounds, note);
+            const Status status =
+                run_outer_iterations(solver, objective, q, monitor, stop.tolerance, outer_iterations, note);
             return !ends_the_run(status) && objective.true_residual(q) <= stop.tolerance;
           }};
 }
@@ -75,12 +76,12 @@ Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) 
   return outcome;
 }
 
-Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-                    int& rounds, std::string& note) {
+Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
+                            double tolerance, int& outer_iterations, std::string& note) {
   if (!objective.has_circulatory_force() || solver.follows_path()) {
     for (int stiffening = 0;; ++stiffening) {
       if (objective.has_circulatory_force()) objective.set_path_anchor(q);
-      monitor.begin_round(monitor.round() + 1, tolerance);
+      monitor.begin_outer_iteration(monitor.outer_iteration() + 1, tolerance);
       const Status status = solver.minimize(objective, q, monitor);
       if (ends_the_run(status) || stiffening == kMostStiffenings || !objective.escalate_stiffness(q))
         return status;
@@ -90,7 +91,7 @@ Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& mo
   double best_residual = kInfinity, gained_residual = kInfinity;
   double last_residual = kInfinity, contraction = kNaN;
   int without_gain = 0;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxOuterIterations; ++round) {
     objective.lag_circulatory_force(q);
     const double residual = objective.true_residual(q);
     without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
@@ -102,9 +103,10 @@ Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& mo
     if (round > 0) contraction = residual / last_residual;
     last_residual = residual;
     if (residual <= tolerance) return Status::Converged;
-    if (without_gain >= kMaxRoundsWithoutGain) break;
-    ++rounds;
-    monitor.begin_round(monitor.round() + 1, std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
+    if (without_gain >= kMaxOuterIterationsWithoutGain) break;
+    ++outer_iterations;
+    monitor.begin_outer_iteration(monitor.outer_iteration() + 1,
+                                  std::max(0.5 * tolerance, 0.1 * std::min(residual, 1.0)));
     const Status status = solver.minimize(objective, q, monitor);
     if (ends_the_run(status)) return status;
   }
@@ -124,7 +126,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
   const int steps = std::max(
       {1, has_motion ? problem.motion.steps : 1, continuation.load_steps, continuation.stiffness_steps});
   const double on_the_way = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
-  BranchWatch branches(path_means(solver, problem, stop, monitor, result.rounds));
+  BranchWatch branches(path_means(solver, problem, stop, monitor, result.outer_iterations));
   Outcome outcome;
   Move move;
   bool is_blocked = false, has_arrived = true;
@@ -143,8 +145,9 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
       }
       set_scales(continuation, t, objective);
       const bool is_last = has_arrived && step == steps;
-      outcome.status = solve_rounds(solver, objective, result.q, monitor,
-                                    is_last ? stop.tolerance : on_the_way, result.rounds, outcome.note);
+      outcome.status =
+          run_outer_iterations(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_the_way,
+                               result.outer_iterations, outcome.note);
     } while (!has_arrived && !ends_the_run(outcome.status));
     if (is_blocked || ends_the_run(outcome.status)) break;
     if (steps < kLeastPath) continue;
@@ -157,7 +160,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
       break;
     }
   }
-  // A run that was cut short is judged, with the full load, and kept, where it had got to.
+  // A run that was cut short is measured, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
   if (is_blocked) return blocked_motion(move, objective, result.q);
   outcome.is_on_the_way = step < steps || !has_arrived;

@@ -16,9 +16,9 @@ struct Outcome {
 };
 
 // Follows the prescribed motion and the continuation to the full problem, from result.q. Each step is solved:
-// at once where the loads have a potential or the solver works from the exact force, else in rounds. Of the
-// result it changes q, rounds and branch_changes. A run that is cut short stays where it had got to, with all
-// loads and the full stiffness.
+// at once where the loads have a potential or the solver works from the exact force, else in outer
+// iterations. Of the result it changes q, outer_iterations and branch_changes. A run that is cut short stays
+// where it had got to, with all loads and the full stiffness.
 Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                          Result& result);
 
@@ -28,11 +28,11 @@ bool ends_the_run(Status status);
 // What there is to say where the prescribed motion goes no further.
 Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q);
 
-// Solves at the full problem from q, in rounds of the monitor's. A load without potential is renewed until
-// the exact residual is small, where the solver does not work from the exact force: each round minimises the
-// potential around the last equilibrium, and the remainder contracts geometrically where it settles. rounds:
-// how many renewals, added. note: what there is to say where it does not settle.
-Status solve_rounds(Solver& solver, Objective& objective, Vector& q, Monitor& monitor, double tolerance,
-                    int& rounds, std::string& note);
+// Solves at the full problem from q, in outer iterations of the monitor's. A load without potential is
+// renewed until the exact residual is small, where the solver does not work from the exact force: each round
+// minimises the potential around the last equilibrium, and the remainder contracts geometrically where it
+// converges. outer_iterations: how many, added. note: what there is to say where it does not converge.
+Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
+                            double tolerance, int& outer_iterations, std::string& note);
 
 }  // namespace coapt

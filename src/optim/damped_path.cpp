@@ -40,8 +40,8 @@ class DampedPath {
     while (!has_ended() && !is_at_rest());
     objective.scale(1, 1);
     if (!has_ended()) {
-      outcome_.status = solve_rounds(solver_, objective, result_.q, monitor_, stop_.tolerance, result_.rounds,
-                                     outcome_.note);
+      outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, stop_.tolerance,
+                                             result_.outer_iterations, outcome_.note);
     } else {
       outcome_.is_on_the_way = true;
       if (outcome_.note.empty())
@@ -52,7 +52,7 @@ class DampedPath {
 
  private:
   bool is_loaded() const { return problem_.continuation.is_loaded; }
-  bool has_ended() const { return is_blocked_ || is_lost_ || ends_the_run(outcome_.status); }
+  bool has_ended() const { return is_blocked_ || has_failed_ || ends_the_run(outcome_.status); }
   double load() const {
     if (is_loaded()) return 1;
     return std::min(1.0, static_cast<double>(result_.damped_steps) / problem_.continuation.damped_steps);
@@ -88,13 +88,13 @@ class DampedPath {
     if (is_blocked_) return;
     objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
     if (is_loaded()) monitor_.limit_iterations(kMostInStep);
-    outcome_.status =
-        solve_rounds(solver_, objective, result_.q, monitor_, kStepTolerance, result_.rounds, outcome_.note);
+    outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, kStepTolerance,
+                                           result_.outer_iterations, outcome_.note);
     const bool is_slow = outcome_.status == Status::IterationLimit && monitor_.has_reached_limit();
     if (is_slow) outcome_.status = Status::Stalled;
     monitor_.lift_limit();
     objective.damp({}, {});
-    is_lost_ = is_slow || (is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost);
+    has_failed_ = is_slow || (is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost);
     if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();
   }
 
@@ -138,7 +138,7 @@ class DampedPath {
   double moved_ = 0;             // of the prescribed motion
   double residual_ = kInfinity;  // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
-  bool is_blocked_ = false, is_lost_ = false;
+  bool is_blocked_ = false, has_failed_ = false;
   std::unique_ptr<Factorisation> factor_;
   SparseMatrix hessian_;
   long pattern_version_ = -1;  // that factor_ has analysed

@@ -13,8 +13,8 @@ namespace coapt {
 // ever decide where the path leads: in 1 of 80 solves (docs/decisions/019). With
 // continuation.is_loaded the path begins at the full problem, with ten times the damping: for the shape that
 // a coarser mesh gives, which may be near several equilibria of the finer one. Of the result it changes q,
-// rounds, damped_steps and, where the problem has a factorisation for its certificate, unstable_steps. A run
-// that is cut short stays where it had got to, with all loads.
+// outer_iterations, damped_steps and, where the problem has a factorisation for its certificate,
+// unstable_steps. A run that is cut short stays where it had got to, with all loads.
 Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                            Result& result);
 

@@ -24,7 +24,7 @@ constexpr double kFewKept = 0.3;  // share of a promised decrease below which a 
 using Replacement = std::function<bool(LinePoint& to)>;
 
 // Finds a step that satisfies the strong-curvature and sufficient-decrease (Wolfe) conditions; where the
-// change of energy drowns in round-off, the sufficient decrease is judged by the slopes alone
+// change of energy drowns in round-off, the sufficient decrease is measured by the slopes alone
 // (approximate Wolfe condition of Hager & Zhang 2005). Infinite energies are backed away from.
 //   from: the current point with its slope < 0 along `direction`; step 0.
 //   first: the first step to try, > 0.

@@ -64,10 +64,10 @@ double Monitor::energy_noise(double energy) const {
   return kEnergyNoise * std::abs(energy) + kWorkNoise * objective_.largest_force() * extent_;
 }
 
-void Monitor::begin_round(int round, double tolerance) {
-  round_ = round;
+void Monitor::begin_outer_iteration(int number, double tolerance) {
+  outer_iteration_ = number;
   tolerance_ = tolerance;
-  is_first_of_round_ = true;
+  is_first_of_outer_iteration_ = true;
   time_before_ = trace_.empty() ? 0 : trace_.back().time;
   best_energy_ = best_residual_ = kInfinity;
   last_gain_ = last_residual_gain_ = iterations_;
@@ -76,12 +76,12 @@ void Monitor::begin_round(int round, double tolerance) {
 std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vector& g, double time) {
   // Forces whose squares overflow cannot be measured either.
   if (!std::isfinite(energy) || !std::isfinite(g.squaredNorm())) return Status::NonFinite;
-  if (!is_first_of_round_) ++iterations_;
-  is_first_of_round_ = false;
+  if (!is_first_of_outer_iteration_) ++iterations_;
+  is_first_of_outer_iteration_ = false;
 
   Iteration now;
   now.iteration = iterations_;
-  now.round = round_;
+  now.outer_iteration = outer_iteration_;
   now.energy = energy;
   now.residual = objective_.relative_residual(q, g);
   now.step = last_.size() == q.size() && q.size() > 0 ? (q - last_).lpNorm<Eigen::Infinity>() : 0;
@@ -117,7 +117,8 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
     best_energy_ = std::min(best_energy_, energy);
     best_residual_ = std::min(best_residual_, now.residual);
   }
-  if (watch_ != nullptr && watch_->is_lost(objective_, q, now.residual)) return Status::NoEquilibrium;
+  if (watch_ != nullptr && watch_->has_no_equilibrium(objective_, q, now.residual))
+    return Status::NoEquilibrium;
   if (iterations_ - last_gain_ >= kPatience) return Status::Stalled;
   // A force without potential can drive a shape in circles for ever: its work along the path always falls.
   if (objective_.has_circulatory_force() && iterations_ - last_residual_gain_ >= kPathPatience)

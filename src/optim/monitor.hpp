@@ -42,14 +42,14 @@ class Monitor {
   double tolerance() const { return tolerance_; }  // of this round, on the relative residual
 
   // --- for solve() -------------------------------------------------------------------------------------
-  // Asked at each accepted iterate whether the run is lost. It must outlive the run.
+  // Asked at each accepted iterate whether the run has no equilibrium to find. It must outlive the run.
   void set_watch(EquilibriumWatch* watch) { watch_ = watch; }
-  void begin_round(int round, double tolerance);
+  void begin_outer_iteration(int number, double tolerance);
   // Ends minimisations after so many more iterations than now; what the whole run may take still holds.
   void limit_iterations(int count) { most_iterations_ = iterations_ + count; }
   bool has_reached_limit() const { return iterations_ >= most_iterations_; }
   void lift_limit() { most_iterations_ = std::numeric_limits<int>::max(); }
-  int round() const { return round_; }
+  int outer_iteration() const { return outer_iteration_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
   double seconds() const { return wall_seconds() - start_; }
@@ -62,10 +62,10 @@ class Monitor {
   const Observer& observer_;
   double tolerance_;
   double start_;
-  int round_ = 0;
+  int outer_iteration_ = 0;
   double time_before_ = 0;  // simulated, before this round [s]
   int iterations_ = 0, most_iterations_ = std::numeric_limits<int>::max();
-  bool is_first_of_round_ = true;
+  bool is_first_of_outer_iteration_ = true;
   double best_energy_ = kInfinity, best_residual_ = kInfinity;  // of this round
   int last_gain_ = 0, last_residual_gain_ = 0;                  // iterations of the last improvements
   bool cancelled_ = false;

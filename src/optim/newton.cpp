@@ -23,7 +23,7 @@ constexpr int kKrylovVectors = 20;               // of GMRES with the exact tang
 
 // Iterates in a row near an equilibrium that better neither the energy nor the residual, before the rest is
 // left to round-off. Towards a flat minimum, as after a saddle, 34 were seen; far from one the monitor
-// judges.
+// decides.
 constexpr int kIdlePatience = 40;
 constexpr double kNearEnough = 1e-6;
 constexpr double kBetter = 0.9;  // of the least residual so far
@@ -44,7 +44,7 @@ constexpr double kPartReach = 0.0125;
 constexpr double kOverloaded = 3;                            // residual of a start that asks for it
 constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;  // widest and least rounding
 constexpr double kSharpen = 0.3;                             // fall of the rounding
-constexpr double kSettled = 0.03;                            // residual at which it falls
+constexpr double kSharpenBelow = 0.03;                       // residual at which it falls
 
 class Newton {
  public:
@@ -100,15 +100,15 @@ class Newton {
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
 
-  // Where elements lie beyond the limits of their laws the limits follow. Where the iterates have settled the
+  // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium the
   // limits follow to the end, and go.
   void raise_limits() {
     while (objective_.has_stress_limits()) {
       const double excess = objective_.raise_stress_limits(at_.q);
-      const bool is_settled = objective_.relative_residual(at_.q, at_.g) < kSettled;
-      if (is_settled && excess < kExact) objective_.release_stress_limits();
+      const bool is_near = objective_.relative_residual(at_.q, at_.g) < kSharpenBelow;
+      if (is_near && excess < kExact) objective_.release_stress_limits();
       if (excess > 0) evaluate();
-      if (!is_settled) return;
+      if (!is_near) return;
     }
   }
 
@@ -124,17 +124,17 @@ class Newton {
            });
   }
 
-  // Why to stop at this iterate, if so. Narrows the kinks, step by step, when the iterates have settled for
-  // those there are: from then on the energy is another one, which the trace has as another round.
+  // Why to stop at this iterate, if so. Narrows the kinks, step by step, near an equilibrium for
+  // those there are: from then on the energy is another one, which the trace has as another outer iteration.
   std::optional<Status> accept() {
     while (true) {
       const auto status = monitor_.accept(at_.q, at_.energy, at_.g);
       if (rounding_ == 0 || (status && *status != Status::Converged)) return status;
-      if (objective_.relative_residual(at_.q, at_.g) > std::max(kSettled, monitor_.tolerance()))
+      if (objective_.relative_residual(at_.q, at_.g) > std::max(kSharpenBelow, monitor_.tolerance()))
         return status;
       rounding_ = rounding_ * kSharpen < kLeastRounding ? 0 : rounding_ * kSharpen;
       objective_.round_kinks(rounding_);
-      monitor_.begin_round(monitor_.round() + 1, monitor_.tolerance());
+      monitor_.begin_outer_iteration(monitor_.outer_iteration() + 1, monitor_.tolerance());
       least_energy_ = least_residual_ = kInfinity;
       evaluate();
     }
@@ -245,7 +245,7 @@ class Newton {
 
   // Where a step misses its promise, often a few ends and junctions of chords and pairs in contact bear
   // nearly all of the force: they are brought into balance by themselves, all others held, before the step is
-  // judged (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
+  // measured (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
   // at `to` then keeps enough of what was promised.
   bool balance_worst_parts(LinePoint& to) {
     PhaseTimer timer(monitor_.phases(), "parts");

@@ -62,8 +62,8 @@ bool feels_no_force(const Result& result) {
 }
 
 // The verdict is the objective's, whatever the solver thinks.
-void judge(const Outcome& outcome, const Solver& solver, const Problem& problem, const StopRule& stop,
-           Monitor& monitor, Result& result) {
+void conclude(const Outcome& outcome, const Solver& solver, const Problem& problem, const StopRule& stop,
+              Monitor& monitor, Result& result) {
   Objective& objective = problem.objective;
   std::string note = outcome.note;
   result.status = outcome.status;
@@ -130,7 +130,7 @@ Status turn_and_minimize(Solver& solver, Objective& objective, Vector& q, Monito
   for (int turn = 0; turn < kMostTurns && status != Status::NoEquilibrium && status != Status::Cancelled &&
                      !monitor.is_out_of_time() && objective.turn_films(q);
        ++turn) {
-    monitor.begin_round(monitor.round() + 1, stop.tolerance);
+    monitor.begin_outer_iteration(monitor.outer_iteration() + 1, stop.tolerance);
     status = solver.minimize(objective, q, monitor);
   }
   return status;
@@ -153,7 +153,7 @@ std::optional<Vector> span_again(Solver& solver, const Problem& problem, const S
   if (!spanned) return std::nullopt;
   Vector film = objective.unknowns(*spanned);
   objective.turn_films(film);
-  monitor.begin_round(monitor.round() + 1, stop.tolerance);
+  monitor.begin_outer_iteration(monitor.outer_iteration() + 1, stop.tolerance);
   const Status first = solver.minimize(objective, film, monitor);
   if (turn_and_minimize(solver, objective, film, monitor, stop, first) != Status::Converged)
     return std::nullopt;
@@ -163,37 +163,37 @@ std::optional<Vector> span_again(Solver& solver, const Problem& problem, const S
 // Where the run stands after a way that led nowhere.
 void stand_again(const StopRule& stop, Monitor& monitor, Result& result) {
   Vector g;  // noise is measured where the run stands again
-  monitor.begin_round(monitor.round() + 1, stop.tolerance);
+  monitor.begin_outer_iteration(monitor.outer_iteration() + 1, stop.tolerance);
   monitor.accept(result.q, monitor.gradient(result.q, g), g);
   result.iterations = monitor.iterations();
 }
 
 // Goes on from an unstable equilibrium to a stable one. It remains the answer where both ways from it lead to
 // none, nor does a film that is spanned anew.
-void settle_down(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
-                 Result& result) {
-  int lost = 0;
-  for (int attempt = 0; attempt < kMostAttempts && lost < 2; ++attempt) {
+void reach_stable(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
+                  Result& result) {
+  int without_equilibrium = 0;
+  for (int attempt = 0; attempt < kMostAttempts && without_equilibrium < 2; ++attempt) {
     Result unstable = result;
     if (!leave_unstable(problem.objective, attempt, monitor, result)) break;
     Outcome outcome;
-    outcome.status = solve_rounds(solver, problem.objective, result.q, monitor, stop.tolerance, result.rounds,
-                                  outcome.note);
+    outcome.status = run_outer_iterations(solver, problem.objective, result.q, monitor, stop.tolerance,
+                                          result.outer_iterations, outcome.note);
     if (outcome.status == Status::NoEquilibrium) {
-      ++lost;
+      ++without_equilibrium;
       result = std::move(unstable);
       stand_again(stop, monitor, result);
       continue;
     }
-    lost = 0;
+    without_equilibrium = 0;
     if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
-    judge(outcome, solver, problem, stop, monitor, result);
+    conclude(outcome, solver, problem, stop, monitor, result);
   }
-  if (lost == 0) return;
+  if (without_equilibrium == 0) return;
   if (auto film = span_again(solver, problem, stop, monitor, result.q)) {
     result.q = std::move(*film);
-    judge({Status::Converged, "an unstable one was left for films spanned between their supports anew"},
-          solver, problem, stop, monitor, result);
+    conclude({Status::Converged, "an unstable one was left for films spanned between their supports anew"},
+             solver, problem, stop, monitor, result);
     return;
   }
   stand_again(stop, monitor, result);
@@ -333,9 +333,9 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
     result.route = solver.follows_path()
                        ? "exact force, with its work along the path as merit"
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
-                             std::to_string(result.rounds) + " rounds";
-  judge(found.outcome, solver, problem, stop, monitor, result);
-  if (!found.is_only_unstable) settle_down(solver, problem, stop, monitor, result);
+                             std::to_string(result.outer_iterations) + " rounds";
+  conclude(found.outcome, solver, problem, stop, monitor, result);
+  if (!found.is_only_unstable) reach_stable(solver, problem, stop, monitor, result);
 
   result.evaluations = {objective.counts().value - counts_before.value,
                         objective.counts().gradient - counts_before.gradient,

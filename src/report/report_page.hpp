@@ -50,9 +50,9 @@ struct PageTable {
 
 struct PagePoint {
   double x = 0, y = 0;
-  bool stopped_early = false;  // drawn hollow and crossed: the run did not reach what was wanted
-  std::string label = {};      // of the point, in its tooltip; may be empty
-  bool begins_round = false;   // an upright line: from here on another function is minimised
+  bool stopped_early = false;           // drawn hollow and crossed: the run did not reach what was wanted
+  std::string label = {};               // of the point, in its tooltip; may be empty
+  bool begins_outer_iteration = false;  // an upright line: from here on another function is minimised
 };
 
 struct PageSeries {

@@ -185,11 +185,11 @@ PageSection convergence(const Report& report) {
   const std::vector<NamedReport> named = {{report.solver, &report}};
   section.blocks = {residual_plot(named, false), residual_plot(named, true)};
   const auto& trace = report.result.trace;
-  if (trace.front().round != trace.back().round)
+  if (trace.front().outer_iteration != trace.back().outer_iteration)
     section.blocks.emplace_back(
         PageText{"Dotted upright lines: from there on another energy is minimised, because loads or supports "
                  "went on, a barrier became stiffer, kinks became sharper, or pressure was renewed."});
-  if (report.result.rounds > 0)
+  if (report.result.outer_iterations > 0)
     section.blocks.emplace_back(
         PageText{"The residual of an iterate is that of the potential of its round; the "
                  "verdict is that of the exact loads."});
@@ -276,10 +276,11 @@ PagePlot residual_plot(const std::vector<NamedReport>& reports, bool against_tim
     series.name = each.name;
     const std::vector<Iteration>& trace = each.report->result.trace;
     for (size_t k = 0; k < trace.size(); ++k)
-      series.points.push_back({.x = against_time ? trace[k].seconds : trace[k].iteration,
-                               .y = trace[k].residual,
-                               .label = "iterate " + std::to_string(trace[k].iteration),
-                               .begins_round = k > 0 && trace[k].round != trace[k - 1].round});
+      series.points.push_back(
+          {.x = against_time ? trace[k].seconds : trace[k].iteration,
+           .y = trace[k].residual,
+           .label = "iterate " + std::to_string(trace[k].iteration),
+           .begins_outer_iteration = k > 0 && trace[k].outer_iteration != trace[k - 1].outer_iteration});
   }
   plot.levels = {{reports.front().report->tolerance, "tolerance"}};
   return plot;

@@ -144,7 +144,7 @@ OrderedJson certificate() {
         flag("all loads have a potential; else the Hessian is the symmetric part of the tangent")},
        {"smallest_pivot_ratio", number("of the Cholesky factor of a strict minimum, smallest over largest")},
        {"doubt", described({{"type", OrderedJson::array({"string", "null"})}},
-                           "why a converged state may not be stable; null: it is, or was not judged")},
+                           "why a converged state may not be stable; null: it is, or was not checked")},
        {"zero_modes", count_or_null("zero-energy modes, free directions of single nodes left out")},
        {"negative_modes", count_or_null("modes along which the energy falls, or the work of the symmetric "
                                         "part of the tangent")},

@@ -99,7 +99,7 @@ OrderedJson certificate_json(const Model& model, const Result& result) {
   for (const FreePart& part : certificate.free_parts)
     parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
   OrderedJson lowest = nullptr;
-  if (stability.is_tangent_judged)
+  if (stability.is_tangent_checked)
     lowest = {{"real", number(stability.lowest.real())}, {"imaginary", number(stability.lowest.imag())}};
   OrderedJson json = {
       {"summary", summary(certificate)},
@@ -110,7 +110,7 @@ OrderedJson certificate_json(const Model& model, const Result& result) {
       {"doubt", doubt.empty() ? OrderedJson(nullptr) : OrderedJson(doubt)},
       {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
       {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
-      {"unstable_modes", counted(stability.is_tangent_judged ? stability.unstable_modes : -1)},
+      {"unstable_modes", counted(stability.is_tangent_checked ? stability.unstable_modes : -1)},
       {"lowest_eigenvalue", lowest},
       {"free_directions", counted(is_judged ? stability.free_directions : -1)},
       {"loose_nodes", counted(is_judged ? stability.loose_nodes : -1)},
@@ -185,7 +185,7 @@ OrderedJson undetermined_json(const Certificate& certificate, const std::optiona
 OrderedJson potential_changes_json(const std::vector<Iteration>& trace) {
   OrderedJson json = OrderedJson::array();
   for (size_t k = 1; k < trace.size(); ++k)
-    if (trace[k].round != trace[k - 1].round) json.push_back(trace[k].iteration);
+    if (trace[k].outer_iteration != trace[k - 1].outer_iteration) json.push_back(trace[k].iteration);
   return json;
 }
 
@@ -194,8 +194,8 @@ std::string trace_csv(const Result& result) {
   out.precision(10);
   out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations,time_s\n";
   for (const Iteration& it : result.trace)
-    out << it.iteration << ',' << it.round << ',' << it.energy << ',' << it.residual << ',' << it.step << ','
-        << it.seconds << ',' << it.evaluations << ',' << it.time << '\n';
+    out << it.iteration << ',' << it.outer_iteration << ',' << it.energy << ',' << it.residual << ','
+        << it.step << ',' << it.seconds << ',' << it.evaluations << ',' << it.time << '\n';
   return out.str();
 }
 
@@ -269,7 +269,7 @@ std::string result_json(const Model& model, const Report& report) {
       {"certificate", certificate_json(model, result)},
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
-      {"rounds", result.rounds},
+      {"rounds", result.outer_iterations},
       {"damped_steps", result.damped_steps},
       {"potential_changes", potential_changes_json(result.trace)},
       {"branch_changes", branch_changes_json(result.branch_changes)},

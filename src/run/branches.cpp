@@ -1,8 +1,8 @@
 #include "run/branches.hpp"
 
+#include "core/random_source.hpp"
 #include "run/run_parts.hpp"
 #include "solve/solve_scene.hpp"
-#include "valve/generators/random_source.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -49,21 +49,21 @@ Points TrackedEquilibrium::predicted_change(const Place& from, const Vector& to)
   return objective_.fixed().select(prescribed() - from.x, predicted);
 }
 
-// Back at a settled shape, with its numbers.
+// Back at a solved shape, with its numbers.
 void TrackedEquilibrium::take_up(const Place& place) {
   assign(place.value);
   objective_.prescribe(place.x);
   q_ = place.q;
   kinks_.reset();
   is_tangent_ready_ = false;
-  is_settled_ = true;
-  settled_value_ = place.value;
+  is_solved_ = true;
+  solved_value_ = place.value;
   residual_at(q_);
   ready_tangent();
 }
 
 void TrackedEquilibrium::anchor_here() {
-  require_settled();
+  require_solved();
   anchor_ = Place{q_, positions(), value(), system_.negative_modes()};
   steps_since_anchor_check_ = 0;
 }
@@ -83,7 +83,7 @@ void TrackedEquilibrium::anchor_at(const Vector& value, const Vector& q) {
 }
 
 AnchorCheck TrackedEquilibrium::check_anchor() {
-  require_settled();
+  require_solved();
   ready_tangent();
   AnchorCheck check;
   const Place now{q_, positions(), value(), system_.negative_modes()};
@@ -94,9 +94,9 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   const auto go = [this](const Place& from, const Place& to, double& distance) {
     take_up(from);
     assign(to.value);
-    const Settling settled = move_to(from, predicted_change(from, to.value));
-    if (settled.status == Status::Converged) distance = held_distance(to.x);
-    return settled.status;
+    const WarmSolve solved = move_to(from, predicted_change(from, to.value));
+    if (solved.status == Status::Converged) distance = held_distance(to.x);
+    return solved.status;
   };
   try {
     check.status = go(now, anchor, check.back);
@@ -119,7 +119,7 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   return check;
 }
 
-void TrackedEquilibrium::check_anchor_in_time(Settling& report) {
+void TrackedEquilibrium::check_anchor_in_time(WarmSolve& report) {
   if (!anchor_) {
     anchor_ = Place{q_, positions(), value(), system_.negative_modes()};
     return;

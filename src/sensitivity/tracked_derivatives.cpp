@@ -67,7 +67,7 @@ Points TrackedEquilibrium::predict(const Vector& change, double tolerance) {
 }
 
 Vector TrackedEquilibrium::pull_back(const Eigen::Ref<const Points>& weights) {
-  require_settled();
+  require_solved();
   ready_tangent();
   const Points x = positions(), none = Points::Zero(3, x.cols());
   const Vector b = objective_.unknowns(objective_.fixed().select(none, weights));
@@ -96,7 +96,7 @@ Vector TrackedEquilibrium::pull_back(const Eigen::Ref<const Points>& weights) {
 }
 
 Derivatives TrackedEquilibrium::derivatives(const Metric& metric) {
-  require_settled();
+  require_solved();
   const Points x = positions();
   Points by_x(3, x.cols());
   Derivatives result;
@@ -109,13 +109,13 @@ Derivatives TrackedEquilibrium::derivatives(const Metric& metric) {
 }
 
 const std::vector<Switch>& TrackedEquilibrium::kinks() {
-  require_settled();
+  require_solved();
   if (!kinks_) kinks_ = kinks_at(objective_, positions());
   return *kinks_;
 }
 
 Points TrackedEquilibrium::response(const Vector& change) {
-  require_settled();
+  require_solved();
   if (change.size() != number_count_)
     throw InputError("response: " + std::to_string(change.size()) + " numbers were given; there are " +
                      std::to_string(number_count_));

@@ -42,8 +42,8 @@ size_t TrackedEquilibrium::add(std::unique_ptr<Parameter> parameter) {
   if (!defects.empty()) throw InputError(defects);
   first_.push_back(number_count_);
   number_count_ += static_cast<int>(parameter->value().size());
-  settled_value_.conservativeResize(number_count_);
-  settled_value_.tail(parameter->value().size()) = parameter->value();
+  solved_value_.conservativeResize(number_count_);
+  solved_value_.tail(parameter->value().size()) = parameter->value();
   parameters_.push_back(std::move(parameter));
   return parameters_.size() - 1;
 }
@@ -74,8 +74,8 @@ void TrackedEquilibrium::require_sound(const Vector& value) const {
 
 void TrackedEquilibrium::set(const Vector& value) {
   require_sound(value);
-  // While the terms are still those of the settled shape: what the prediction needs of them.
-  if (is_settled_) ready_tangent();
+  // While the terms are still those of the solved shape: what the prediction needs of them.
+  if (is_solved_) ready_tangent();
   assign(value);
 }
 
@@ -106,35 +106,35 @@ void TrackedEquilibrium::ready_tangent() {
   is_nodal_ready_ = false;
 }
 
-void TrackedEquilibrium::require_settled() const {
-  if (!is_settled_ || settled_value_ != value())
+void TrackedEquilibrium::require_solved() const {
+  if (!is_solved_ || solved_value_ != value())
     throw InputError(
-        "equilibrium: derivatives are those of a settled shape; call settle() first, and see "
+        "equilibrium: derivatives are those of a solved shape; call solve() first, and see "
         "that it converged");
 }
 
 // A term of the caller's may throw anywhere on the way: the numbers are then those that were asked for, and
-// nothing is settled.
-Settling TrackedEquilibrium::settle() {
+// nothing is solved.
+WarmSolve TrackedEquilibrium::solve() {
   const Vector wanted = value();
   try {
-    return settle_at(wanted);
+    return solve_at(wanted);
   } catch (...) {
-    is_settled_ = is_tangent_ready_ = false;
+    is_solved_ = is_tangent_ready_ = false;
     assign(wanted);
     throw;
   }
 }
 
 // Pre: the numbers are `now`.
-Settling TrackedEquilibrium::settle_at(const Vector& now) {
+WarmSolve TrackedEquilibrium::solve_at(const Vector& now) {
   const double start = wall_seconds();
-  Place from{q_, positions(), settled_value_, system_.negative_modes()};
-  const bool is_followed = is_settled_ && is_tangent_ready_;
+  Place from{q_, positions(), solved_value_, system_.negative_modes()};
+  const bool is_followed = is_solved_ && is_tangent_ready_;
   const Points none = Points::Zero(3, from.x.cols());
   const Points predicted =
       is_followed ? predicted_change(from, now) : objective_.fixed().select(prescribed() - from.x, none);
-  Settling report = move_to(from, predicted);
+  WarmSolve report = move_to(from, predicted);
   if (report.status == Status::Converged && is_followed && options_.checks_branch)
     report.lost_branch = check_branch(from, report);
   if (report.lost_branch)
@@ -153,11 +153,11 @@ Settling TrackedEquilibrium::settle_at(const Vector& now) {
 }
 
 // From a shape to that of the present values.
-Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted) {
-  Settling report;
-  is_settled_ = is_tangent_ready_ = false;
+WarmSolve TrackedEquilibrium::move_to(const Place& from, const Points& predicted) {
+  WarmSolve report;
+  is_solved_ = is_tangent_ready_ = false;
   kinks_.reset();
-  settled_value_ = value();
+  solved_value_ = value();
   if (!move_quickly(predicted, report)) {
     report.is_quick = false;
     objective_.prescribe(from.x);
@@ -167,8 +167,8 @@ Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted)
     SolverOptions method;
     method.factorisation = options_.factorisation;
     const Result result =
-        solve(*make_newton(method), problem,
-              {options_.tolerance, options_.max_iterations, options_.max_seconds}, options_.observer);
+        coapt::solve(*make_newton(method), problem,
+                     {options_.tolerance, options_.max_iterations, options_.max_seconds}, options_.observer);
     q_ = result.q;
     report.status = result.status;
     report.iterations = result.iterations;
@@ -179,8 +179,8 @@ Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted)
   report.predicted = greatest(predicted);
   report.travel = greatest(moved);
   report.jump = greatest(moved - predicted);
-  is_settled_ = report.status == Status::Converged;
-  if (is_settled_) {
+  is_solved_ = report.status == Status::Converged;
+  if (is_solved_) {
     try {
       ready_tangent();
     } catch (const InputError& error) {
@@ -192,7 +192,7 @@ Settling TrackedEquilibrium::move_to(const Place& from, const Points& predicted)
 
 // Newton's method with the exact tangent from the predicted shape. False: it did not converge; q_ is then
 // anywhere.
-bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report) {
+bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report) {
   const Points x = positions();
   if (objective_.step_limit(x, predicted, 1) < 1) return false;
   objective_.prescribe(x + predicted);
@@ -231,7 +231,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, Settling& report)
 
 // A jump far beyond the prediction, or other signs of the eigenvalues, are put to the test: the change is
 // undone, and a shape that does not come back has changed branches.
-std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, const Settling& report) {
+std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, const WarmSolve& report) {
   const double extent = objective_.extent(q_);
   const bool has_jumped = report.jump > std::max(kSuspicious * report.predicted, kNoise * extent);
   const int negative = system_.negative_modes();
@@ -244,7 +244,7 @@ std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, co
   } catch (const InputError&) {
   }  // from where it stands, then
   assign(from.value);
-  const Settling back = move_to(now, objective_.fixed().select(home, predicted));
+  const WarmSolve back = move_to(now, objective_.fixed().select(home, predicted));
   const double distance = held_distance(from.x);
   take_up(now);
   if (back.status != Status::Converged || distance > std::max(kNotBack * report.jump, kNoise * extent))

@@ -3,9 +3,9 @@
 //
 //   TrackedEquilibrium equilibrium(objective, q);                    // q: unknowns at or near an equilibrium
 //   equilibrium.add(make_line_lengths("chords", term, groups, LengthMeasure::Length));
-//   Settling first = equilibrium.settle();                           // judged by the objective's residual
+//   WarmSolve first = equilibrium.solve();                           // judged by the objective's residual
 //   equilibrium.set(equilibrium.value() + change);
-//   Settling again = equilibrium.settle();                           // warm: a few Newton steps
+//   WarmSolve again = equilibrium.solve();                           // warm: a few Newton steps
 //   Derivatives d = equilibrium.derivatives(metric);                 // value and dJ/d(every number)
 //
 // All numbers of all parameters stand in one vector, parameter after parameter in the order of add(). x is
@@ -13,7 +13,7 @@
 //
 // Derivatives hold where the energy is twice differentiable at the equilibrium: not where a chord without
 // smoothing becomes taut, a membrane leaves a regime of its tension field, or the closest features of a
-// contact change. settle() says what has done so, derivatives() what stands there, switches() what is about
+// contact change. solve() says what has done so, derivatives() what stands there, switches() what is about
 // to. The exact tangent is used, not symmetric under pressure on free edges, contact included. Contact by a
 // barrier keeps its stiffness and ranges.
 //
@@ -42,7 +42,7 @@ struct TrackingOptions {
   double max_seconds = kInfinity;
   bool checks_branch = true;
   int anchor_steps = 20;   // warm steps from one comparison with the anchor to the next; 0: none is made
-  Observer observer = {};  // sees the shape at every step; returning false ends settle() with Cancelled, and
+  Observer observer = {};  // sees the shape at every step; returning false ends solve() with Cancelled, and
                            // jacobian() with an InputError
 };
 
@@ -54,7 +54,7 @@ struct LostBranch {
   int negative_before = 0, negative_after = 0;  // eigenvalues of the symmetric part of the tangent
 };
 
-// The present numbers and those of the anchor by two ways: step by step, as they were settled, and all at
+// The present numbers and those of the anchor by two ways: step by step, as they were solved, and all at
 // once. Where the shapes differ, steps that each looked harmless have led to another branch of equilibria.
 struct AnchorCheck {
   Status status = Status::Stalled;  // Converged: both ways could be gone at once
@@ -65,7 +65,7 @@ struct AnchorCheck {
   std::string message;
 };
 
-struct Settling {
+struct WarmSolve {
   Status status = Status::Stalled;  // Converged: the objective's exact residual is below the tolerance
   std::string message;              // one sentence
   double residual = 0;
@@ -76,7 +76,7 @@ struct Settling {
   double jump = 0;       // greatest distance of a node from the linear prediction [length]
   std::optional<LostBranch> lost_branch;
   std::optional<AnchorCheck> anchor;  // where it was time for one
-  // What has another state than in the shape that was settled before: on the way between the two derivatives
+  // What has another state than in the shape that was solved before: on the way between the two derivatives
   // have a kink. Empty for the first shape, and for one that did not converge.
   std::vector<Switch> switched;
   double seconds = 0;  // wall time, the check of the branch included
@@ -107,26 +107,26 @@ class TrackedEquilibrium {
   int number_count() const { return number_count_; }
 
   Vector value() const;
-  // Changes the terms; prescribed nodes move with the next settle(). Throws InputError for a wrong size and
+  // Changes the terms; prescribed nodes move with the next solve(). Throws InputError for a wrong size and
   // with the defects of all parameters; then nothing has changed.
   void set(const Vector& value);
 
   // Solves for the present values: linear prediction, then Newton's method with the exact tangent and steps
   // that contact admits; where that does not converge, the whole method from the shape before. A shape that
   // did not converge is kept, and status says so; also one at which a term threw.
-  Settling settle();
+  WarmSolve solve();
 
-  // The anchor: the shape that was settled first, or this one from now on. Pre: settled.
+  // The anchor: the shape that was solved first, or this one from now on. Pre: solved.
   void anchor_here();
   // Another one: numbers, and unknowns at or near their equilibrium. Throws InputError for wrong sizes.
   void anchor_at(const Vector& value, const Vector& q);
-  // Two warm solves; the shape is then what it was. Pre: settled.
+  // Two warm solves; the shape is then what it was. Pre: solved.
   AnchorCheck check_anchor();
 
   const Vector& unknowns() const { return q_; }
   Points positions() const { return objective_.positions(q_); }
 
-  // --- derivatives at the last settled shape: Pre of all: settle() gave Converged, and no set() since. Each
+  // --- derivatives at the last solved shape: Pre of all: solve() gave Converged, and no set() since. Each
   // throws InputError where that is not so, or where the tangent is singular (no factor, or a linear system
   // that does not solve to 1e-6). -----------------------------------------------------------------------
   Derivatives derivatives(const Metric& metric);
@@ -157,7 +157,7 @@ class TrackedEquilibrium {
   std::vector<Switch> switches(const Vector& change);
 
  private:
-  struct Place {  // where a settled shape is
+  struct Place {  // where a solved shape is
     Vector q;
     Points x;
     Vector value;
@@ -169,17 +169,17 @@ class TrackedEquilibrium {
   Points prescribed() const;  // positions with prescribed nodes where the parameters want them
   void ready_tangent();       // assembled at q_, with a factor that will do
   void require_sound(const Vector& value) const;
-  void require_settled() const;
+  void require_solved() const;
   void require_wanted() const;
   void check_solved(double residual, double tolerance) const;
   Vector partial(const Metric& metric, const Points& x) const;
   Points force_change(const Points& x, const Vector& change);  // -(dg), prescribed motion included
   Points predict(const Vector& change, double tolerance);      // to this residual of the linear system
-  Settling settle_at(const Vector& now);
-  Settling move_to(const Place& from, const Points& predicted);
-  bool move_quickly(const Points& predicted, Settling& report);
-  std::optional<LostBranch> check_branch(const Place& from, const Settling& report);
-  void check_anchor_in_time(Settling& report);
+  WarmSolve solve_at(const Vector& now);
+  WarmSolve move_to(const Place& from, const Points& predicted);
+  bool move_quickly(const Points& predicted, WarmSolve& report);
+  std::optional<LostBranch> check_branch(const Place& from, const WarmSolve& report);
+  void check_anchor_in_time(WarmSolve& report);
   Points predicted_change(const Place& from, const Vector& to);
   void take_up(const Place& place);
   double held_distance(const Points& x) const;
@@ -191,13 +191,13 @@ class TrackedEquilibrium {
   std::vector<int> first_;
   int number_count_ = 0;
   Vector q_;
-  Vector settled_value_;                      // numbers at the last settle()
-  std::optional<ElementStates> states_;       // of the shape settled last
+  Vector solved_value_;                       // numbers at the last solve()
+  std::optional<ElementStates> states_;       // of the shape solved last
   std::optional<std::vector<Switch>> kinks_;  // of this shape, once they were looked for
   std::optional<Place> anchor_;
   int steps_since_anchor_check_ = 0;
   double adjoint_residual_ = 0;
-  bool is_settled_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
+  bool is_solved_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
   TangentSystem system_;
   NodalTangent nodal_;
   Vector g_;

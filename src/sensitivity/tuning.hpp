@@ -96,7 +96,7 @@ enum class TuningStatus {
   SolveLimit,
   TimeLimit,
   Cancelled,
-  NoStart  // the start did not settle
+  NoStart  // the start did not converge
 };
 std::string_view tuning_status_name(TuningStatus status);  // "converged", "stalled", "solve_limit", ...
 

@@ -1,9 +1,9 @@
 // S15: collision detection. Pairs whose answer is known without rounding, as they are made backwards from it:
 // all coordinates lie on a grid that numbers of 53 bits hold. And any scene: how far contact lets it go.
 #include "core/number_text.hpp"
+#include "core/random_source.hpp"
 #include "energy/contact/collision_detection.hpp"
 #include "mesh/distance/triangle_distance.hpp"
-#include "stress/draw.hpp"
 #include "stress/scenes/built_in.hpp"
 #include "stress/subject.hpp"
 
@@ -31,20 +31,25 @@ double step_of(const Query& query) {
                           : edge_edge_step(query.x, query.d, 1, kKept);
 }
 
-PairCorners on_grid(Draw& draw) {
+Vec3 on_grid_point(RandomSource& draw) {  // in [-1, 1]^3, whole multiples of 1/1024
+  const int x = draw.whole(-1024, 1024), y = draw.whole(-1024, 1024), z = draw.whole(-1024, 1024);
+  return Vec3(x, y, z) / 1024;
+}
+
+PairCorners on_grid(RandomSource& draw) {
   PairCorners x;
-  for (int k = 0; k < 4; ++k) x.col(k) = draw.on_grid();
+  for (int k = 0; k < 4; ++k) x.col(k) = on_grid_point(draw);
   return x;
 }
 
 // Where sides touch: inside both, a corner on an edge, a corner on a corner.
-PairCorners touching(Draw& draw, int first) {
+PairCorners touching(RandomSource& draw, int first) {
   enum { Inside, Edge, Corner };
-  const int where = draw.integer(Inside, Corner);
+  const int where = draw.whole(Inside, Corner);
   PairCorners y = on_grid(draw);
-  const int k = where == Corner ? 0 : draw.integer(1, 63);
+  const int k = where == Corner ? 0 : draw.whole(1, 63);
   if (first == 1) {
-    const int l = where == Inside ? draw.integer(0, 64 - k) : 0;
+    const int l = where == Inside ? draw.whole(0, 64 - k) : 0;
     y.col(0) = ((64 - k - l) * y.col(1) + k * y.col(2) + l * y.col(3)) / 64;
   } else {
     const Vec3 point = ((64 - k) * y.col(0) + k * y.col(1)) / 64;
@@ -53,26 +58,28 @@ PairCorners touching(Draw& draw, int first) {
   return y;
 }
 
-Query arriving(Draw& draw, int first, const PairCorners& y, PairCorners d) {
+Query arriving(RandomSource& draw, int first, const PairCorners& y, PairCorners d) {
   Query query;
   query.first = first;
-  query.collides_at = draw.integer(1, 64) / 64.0;
+  query.collides_at = draw.whole(1, 64) / 64.0;
   query.d = std::move(d);
   query.x = y - query.collides_at * query.d;
   return query;
 }
 
-Query colliding(Draw& draw, int first) { return arriving(draw, first, touching(draw, first), on_grid(draw)); }
+Query colliding(RandomSource& draw, int first) {
+  return arriving(draw, first, touching(draw, first), on_grid(draw));
+}
 
 // Triangles and edges that are a point or lie on a line, when they touch or all the time.
-Query without_extent(Draw& draw, int first) {
+Query without_extent(RandomSource& draw, int first) {
   PairCorners y = touching(draw, first), d = on_grid(draw);
-  const bool is_point = draw.integer(0, 1) == 0;
+  const bool is_point = draw.whole(0, 1) == 0;
   const int other = first == 1 ? 2 : 1;  // the corner that makes a line of a point
   const Vec3 place = y.col(3), end = y.col(other);
   y.colwise() = place;
   if (!is_point) y.col(other) = end;
-  if (draw.integer(0, 1) == 0) {
+  if (draw.whole(0, 1) == 0) {
     for (int k = 0; k < first; ++k) d.col(k) = d.col(0).eval();
     for (int k = first; k < 4; ++k) d.col(k) = d.col(3).eval();
   }
@@ -80,17 +87,17 @@ Query without_extent(Draw& draw, int first) {
 }
 
 // One side stays at z >= h, the other at z <= 0, and at the start their distance is h.
-Query sliding(Draw& draw, int first) {
+Query sliding(RandomSource& draw, int first) {
   Query query;
   query.first = first;
   query.collides_at = kInfinity;
-  const double h = std::exp2(-draw.integer(0, 16));
+  const double h = std::exp2(-draw.whole(0, 16));
   PairCorners end = on_grid(draw);
   query.x = on_grid(draw);
   for (int k = 0; k < 4; ++k) {
     const double sign = k < first ? 1 : -1, least = k < first ? h : 0;
-    query.x(2, k) = least + sign * h * draw.integer(0, 64) / 64;
-    end(2, k) = least + sign * h * draw.integer(0, 64) / 64;
+    query.x(2, k) = least + sign * h * draw.whole(0, 64) / 64;
+    end(2, k) = least + sign * h * draw.whole(0, 64) / 64;
   }
   query.x.col(0) = Vec3(query.x(0, 3), query.x(1, 3), h);
   query.x(2, 3) = 0;
@@ -100,10 +107,10 @@ Query sliding(Draw& draw, int first) {
 
 // Axes renamed, 1e20 times as large or small, or far away: in powers of two and whole numbers, nothing is
 // rounded.
-Query elsewhere(Draw& draw, Query query) {
-  for (int turns = draw.integer(0, 2); turns > 0; --turns)
+Query elsewhere(RandomSource& draw, Query query) {
+  for (int turns = draw.whole(0, 2); turns > 0; --turns)
     for (PairCorners* rows : {&query.x, &query.d}) *rows = rows->colwise().reverse().eval();
-  const int choice = draw.integer(0, 3);
+  const int choice = draw.whole(0, 3);
   const double factor = choice == 1 ? std::exp2(66) : choice == 2 ? std::exp2(-66) : 1;
   query.x *= factor;
   query.d *= factor;
@@ -111,13 +118,13 @@ Query elsewhere(Draw& draw, Query query) {
   return query;
 }
 
-using QueryMaker = Query (*)(Draw&, int first);
+using QueryMaker = Query (*)(RandomSource&, int first);
 
 std::vector<Query> queries(QueryMaker make, int first) {
-  Draw draw(17);
+  RandomSource draw(17);
   std::vector<Query> all;
   for (int k = 0; k < kQueries; ++k)
-    all.push_back(elsewhere(draw, make(draw, first == 0 ? draw.integer(1, 2) : first)));
+    all.push_back(elsewhere(draw, make(draw, first == 0 ? draw.whole(1, 2) : first)));
   return all;
 }
 
@@ -152,12 +159,12 @@ StressOutcome collisions_found(QueryMaker make, int first, double most_false) {
 // --- On any scene --------------------------------------------------------------------------------------
 
 // Nodes at random, together and one by one, near and far.
-Points random_move(Draw& draw, const FixedMask& fixed, double extent) {
+Points random_move(RandomSource& draw, const FixedMask& fixed, double extent) {
   Points d = Points::Zero(3, fixed.cols());
-  const double size = extent * std::exp2(-draw.integer(0, 12)), together = draw.integer(0, 1);
-  const Vec3 common = draw.on_grid();
+  const double size = extent * std::exp2(-draw.whole(0, 12)), together = draw.whole(0, 1);
+  const Vec3 common = on_grid_point(draw);
   for (Eigen::Index node = 0; node < d.cols(); ++node)
-    d.col(node) = size * (together * common + (together > 0 ? 0.1 : 1.0) * draw.on_grid());
+    d.col(node) = size * (together * common + (together > 0 ? 0.1 : 1.0) * on_grid_point(draw));
   return fixed.select(0, d.array()).matrix();
 }
 
@@ -170,7 +177,7 @@ StressOutcome moved_as_far_as_contact_lets(StressSubject& subject) {
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no barrier that promises anything"};
   const StressOptions& options = subject.bench.options();
   const double start = wall_seconds();
-  Draw draw(23);
+  RandomSource draw(23);
   int moves = 0, shortened = 0;
   long worst = 0;
   for (; moves < kMoves && wall_seconds() - start < options.row_seconds; ++moves) {

@@ -1,9 +1,9 @@
 // S21: between accepted states the energy never rises. Random scenes of a few triangles, many of them beyond
 // what can be solved, and any scene whose energy is one and the same from start to end.
 #include "core/error.hpp"
+#include "core/random_source.hpp"
 #include "formats/whole_file.hpp"
 #include "results/results.hpp"
-#include "stress/draw.hpp"
 #include "stress/energy_checker.hpp"
 #include "stress/scenes/built_in.hpp"
 #include "stress/scenes/small_scene.hpp"
@@ -18,9 +18,9 @@ constexpr unsigned kSeed = 4711;
 
 SmallScene random_scene(int number) {
   constexpr int kBytes = 96;  // more than a scene asks for
-  Draw draw(kSeed + static_cast<unsigned>(number));
+  RandomSource draw(kSeed + static_cast<unsigned>(number));
   std::string bytes;
-  for (int k = 0; k < kBytes; ++k) bytes += static_cast<char>(draw.integer(0, 255));
+  for (int k = 0; k < kBytes; ++k) bytes += static_cast<char>(draw.whole(0, 255));
   return small_scene(bytes);
 }
 

@@ -1,5 +1,5 @@
 // S17: runs that are stopped, by hand or by the clock, and taken up again.
-#include "stress/draw.hpp"
+#include "core/random_source.hpp"
 #include "stress/subject.hpp"
 
 #include <algorithm>
@@ -63,9 +63,9 @@ std::vector<StressRow> interrupt_rows(const SubjectPointer& subject) {
   };
   std::vector<StressRow> rows = {cancelled("at the start", 0, true), cancelled("half-way", 0.5, true),
                                  cancelled("near the end", 0.9, false)};
-  Draw draw(kSeed);
+  RandomSource draw(kSeed);
   for (int k = 0; k < kMoments; ++k) {
-    const int percent = draw.integer(1, 99);
+    const int percent = draw.whole(1, 99);
     rows.push_back(
         cancelled("after " + std::to_string(percent) + " % of the iterations", 0.01 * percent, k == 0));
   }

@@ -47,7 +47,7 @@ void add_result(const RunReport& run, OrderedJson& json) {
   json["energy_mj"] = number_json(result.energy);
   json["stability"] = std::string(stability_name(result.certificate.stability.verdict));
   json["iterations"] = result.iterations;
-  json["rounds"] = result.rounds;
+  json["rounds"] = result.outer_iterations;
   json["simulated_s"] = number_json(simulated_s(result));
   json["evaluations"] = {{"value", result.evaluations.value},
                          {"gradient", result.evaluations.gradient},

@@ -62,10 +62,10 @@ TuningStart approach_target(const PreparedTuning& ready, const Model& model, con
   // No chord is changed before the leaflets are where the target is.
   drawn.springs->set_stiffness(model.applied_pressure / kGiving.front());
   const auto equilibrium = make_at_value(q);
-  const Settling settled = equilibrium->settle();
+  const WarmSolve solved = equilibrium->solve();
   q = equilibrium->unknowns();
-  add({.value = value, .status = settled.status, .iterations = settled.iterations});
-  if (settled.status != Status::Converged) return found;
+  add({.value = value, .status = solved.status, .iterations = solved.iterations});
+  if (solved.status != Status::Converged) return found;
 
   const auto method = built_in_minimisers().at("gauss_newton")();
   for (const double giving : kGiving) {

@@ -104,8 +104,8 @@ class Study {
     tracking.observer = setup_.observer;
     equilibrium_ = std::make_unique<TrackedEquilibrium>(*model_.objective, q_, std::move(tracking));
     equilibrium_->add(std::make_unique<SceneDerivatives>(ground_, std::move(neighbours), kDerivativeShare));
-    if (const Settling settled = equilibrium_->settle(); settled.status != Status::Converged)
-      throw InputError("the first solution is no equilibrium any more: " + settled.message);
+    if (const WarmSolve solved = equilibrium_->solve(); solved.status != Status::Converged)
+      throw InputError("the first solution is no equilibrium any more: " + solved.message);
   }
 
   // From the derivative of the shape by the factor of one parameter. Pre: track() has not thrown.

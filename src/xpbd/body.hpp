@@ -71,7 +71,7 @@ struct XpbdBody {
   std::vector<std::array<int, 2>> excluded;
 
   // Whether the constraints are the energies of the scene, all of them and exactly: what comes to rest under
-  // them, with the scene's forces, is an equilibrium of the scene as far as the sweeps settle.
+  // them, with the scene's forces, is an equilibrium of the scene as far as the sweeps converge.
   bool is_exact = false;
 
   double pressure = 0;       // that acts on the membrane, its size [force/length^2]; 0: none

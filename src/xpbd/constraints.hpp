@@ -109,8 +109,8 @@ struct AreaConstraint {
   }
 };
 
-// C = A with the compliance A/sigma of the moment: its multiplier settles at the tension sigma, whatever the
-// area.
+// C = A with the compliance A/sigma of the moment: its multiplier converges to the tension sigma, whatever
+// the area.
 struct FilmConstraint {
   static constexpr int kNodes = 3;
   std::array<int, 3> nodes{};
@@ -123,7 +123,7 @@ struct FilmConstraint {
 };
 
 // A triangle of any energy W that is never negative: C = sqrt(2 W) with the compliance 1, so that where the
-// sweeps settle the forces are those of W.
+// sweeps converge the forces are those of W.
 struct TriangleEnergyConstraint {
   static constexpr int kNodes = 3;
   std::array<int, 3> nodes{};
@@ -145,7 +145,7 @@ struct TriangleEnergyConstraint {
 };
 
 // A line of any law F(l): C and compliance are those of the tangent to the law at the distance l of the
-// moment, C = F/F', alpha = 1/F', so that where the sweeps settle the multiplier is the force of the law.
+// moment, C = F/F', alpha = 1/F', so that where the sweeps converge the multiplier is the force of the law.
 // Below its length a line that only pulls goes on with the last slope that it had: that lets go of what it
 // held too much, and never pushes.
 struct LineConstraint {

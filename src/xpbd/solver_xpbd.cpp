@@ -18,7 +18,8 @@ constexpr int kRestingSteps = 50;      // in a row
 constexpr double kLittle = 0.01;       // of the longest move: an advance not worth another
 constexpr int kMostAdvances = 8;       // by planes placed anew, in which a step gets as far as it can
 
-constexpr const char* kUnsettled = "; the sweeps have not converged: more iterations or a shorter time_step";
+constexpr const char* kNotConverged =
+    "; the sweeps have not converged: more iterations or a shorter time_step";
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -102,7 +103,7 @@ class SolverXpbd final : public Solver {
     Status status = Status::Stalled;
     time_ = 0;
     for (const Phase& phase : phases(start)) {
-      if (time_ > 0) monitor.begin_round(monitor.round() + 1, monitor.tolerance());
+      if (time_ > 0) monitor.begin_outer_iteration(monitor.outer_iteration() + 1, monitor.tolerance());
       status = follow({system, forces, collisions, objective, monitor}, phase, q);
       if (status != Status::Converged && status != Status::Stalled) break;
     }
@@ -215,7 +216,7 @@ class SolverXpbd final : public Solver {
       if (resting < kRestingSteps) continue;
       is_at_rest_ = true;
       say("at rest after ");
-      if (body_->is_exact && options_.stiffness == XpbdStiffness::Material) remark_ += kUnsettled;
+      if (body_->is_exact && options_.stiffness == XpbdStiffness::Material) remark_ += kNotConverged;
       return Status::Stalled;
     }
     say("still moving after ");

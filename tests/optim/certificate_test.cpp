@@ -264,10 +264,10 @@ TEST_P(Solvers, S8SayAtOnceThatNothingIsToBeDone) {
     Stability verdict;
   };
   for (const Case& c :
-       {Case{"fully slack", {0, 2}, 1.5, 0, "no force acts", Stability::NothingToJudge},
+       {Case{"fully slack", {0, 2}, 1.5, 0, "no force acts", Stability::NothingToCheck},
         Case{"zero load", {0, 2}, 0.9, 0, "equilibrium already", Stability::StrictMinimum},
-        Case{"all fixed", {0, 1, 2}, 0.9, 1, "no coordinate is free", Stability::NothingToJudge},
-        Case{"all fixed and slack", {0, 1, 2}, 1.5, 0, "no coordinate is free", Stability::NothingToJudge}}) {
+        Case{"all fixed", {0, 1, 2}, 0.9, 1, "no coordinate is free", Stability::NothingToCheck},
+        Case{"all fixed and slack", {0, 1, 2}, 1.5, 0, "no coordinate is free", Stability::NothingToCheck}}) {
     Objective objective = rope.objective(c.held, c.rest_length, c.force);
     const Result result = solved(objective, objective.unknowns(rope.X), GetParam());
     EXPECT_EQ(result.status, Status::Converged) << c.what << ": " << result.message;

@@ -222,7 +222,7 @@ TEST(RoundedKinks, LeadToTheSharpEquilibrium) {
   for (size_t k = 1; k < result.trace.size(); ++k) {
     const Iteration &before = result.trace[k - 1], &now = result.trace[k];
     const double rise = now.energy - before.energy, noise = 1e-12 * std::abs(before.energy) + 1e-13;
-    if (now.round == before.round) {
+    if (now.outer_iteration == before.outer_iteration) {
       EXPECT_LE(rise, noise) << "iterate " << now.iteration;
     } else {
       ++rounds;  // the same shape under sharper kinks
@@ -274,9 +274,9 @@ TEST(Trace, BeginsARoundWhereATermStiffens) {
   ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
   EXPECT_NEAR(found.x(0, 0), 0.01, 1e-9);  // stiffened twice
   const std::vector<Iteration>& trace = found.result.trace;
-  EXPECT_EQ(trace.back().round, trace.front().round + 2);
+  EXPECT_EQ(trace.back().outer_iteration, trace.front().outer_iteration + 2);
   for (size_t k = 1; k < trace.size(); ++k)
-    if (trace[k].round == trace[k - 1].round) {
+    if (trace[k].outer_iteration == trace[k - 1].outer_iteration) {
       EXPECT_LT(trace[k].energy, trace[k - 1].energy + 1e-12);
     } else {
       EXPECT_GT(trace[k].energy, trace[k - 1].energy);

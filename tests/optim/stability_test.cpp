@@ -33,8 +33,8 @@ struct Tangent {
         lower.insert(row, column) = symmetric(row, column);
     lower.makeCompressed();
     const SkewProduct product = [this](const Vector& v, Vector& out) { out += skew * v; };
-    return judge_stability(lower, skew.isZero(1e-14) ? SkewProduct() : product,
-                           std::vector<bool>(static_cast<size_t>(symmetric.rows()), false), zero, options);
+    return classify_stability(lower, skew.isZero(1e-14) ? SkewProduct() : product,
+                              std::vector<bool>(static_cast<size_t>(symmetric.rows()), false), zero, options);
   }
   double lowest() const {
     return Eigen::EigenSolver<Eigen::MatrixXd>(symmetric + skew).eigenvalues().real().minCoeff();
@@ -105,14 +105,14 @@ TEST_P(TwoCoordinates, PayNothingNewWhereTheSymmetricPartIsDefinite) {
   const StabilityReport report = hidden(follower(0.01, 0.2, 3), GetParam()).report();
   EXPECT_EQ(report.verdict, Stability::StrictMinimum);
   EXPECT_EQ(report.factorisations, 1);
-  EXPECT_FALSE(report.is_tangent_judged);
+  EXPECT_FALSE(report.is_tangent_checked);
 }
 
 TEST(Stability, OfAnEnergyIsThatOfItsHessian) {
   const StabilityReport report = hidden(follower(-0.01, 0.2, 0), 60).report();
   EXPECT_EQ(report.verdict, Stability::Saddle);
   EXPECT_EQ(report.negative_modes, 1);
-  EXPECT_FALSE(report.is_tangent_judged);
+  EXPECT_FALSE(report.is_tangent_checked);
 }
 
 // Nothing is said that was not found: without Spectra a large tangent stays open.

@@ -66,12 +66,12 @@ TEST_P(GradientOnly, ReachesNewtonsValveToAMillionthOfAMillimetre) {
   EXPECT_LT(distance, 1e-6);
   EXPECT_EQ(found.result.evaluations.hessian, 0);
   if (takes_rounds) {
-    EXPECT_GT(found.result.rounds, 1);
+    EXPECT_GT(found.result.outer_iterations, 1);
     EXPECT_EQ(found.result.route,
               "potential of the surface closed by a fan, remainder held dead and renewed in " +
-                  std::to_string(found.result.rounds) + " rounds");
+                  std::to_string(found.result.outer_iterations) + " rounds");
   } else {
-    EXPECT_EQ(found.result.rounds, 0);
+    EXPECT_EQ(found.result.outer_iterations, 0);
     EXPECT_EQ(found.result.route, "exact force, with its work along the path as merit");
   }
 }

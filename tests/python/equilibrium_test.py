@@ -32,7 +32,7 @@ def restored(request):
     if "fresh" in request.fixturenames:
         eq, start = request.getfixturevalue("fresh")
         eq.value = start
-        assert eq.settle().success
+        assert eq.solve().success
 
 
 def target(eq):
@@ -61,7 +61,7 @@ def test_parameters_have_their_shapes_and_come_back_to_the_bit(eq):
     before = eq.value
     eq.value = before
     assert np.array_equal(eq.value, before)
-    eq.value_and_grad(MeanSquare())  # still settled: nothing has changed
+    eq.value_and_grad(MeanSquare())  # still solved: nothing has changed
 
 
 def test_places_are_those_of_the_input():
@@ -73,7 +73,7 @@ def test_places_are_those_of_the_input():
     assert eq["chords.lengths"].shape == (len(eq.lines["chords"]),) and (eq["chords.lengths"] > 1).all()
     moved = eq["annulus.positions"] + [0, 0, 0.05]
     eq["annulus.positions"] = moved
-    assert eq.settle().success
+    assert eq.solve().success
     assert np.allclose(eq.x[annulus], moved, atol=1e-12) and np.array_equal(eq["annulus.positions"], moved)
 
 
@@ -86,7 +86,7 @@ def test_positions_are_read_only_views_that_stay_what_they_were(fresh):
     with pytest.raises(ValueError, match="read-only"):
         eq.faces[0] = 1
     eq["chords.length"] = 0.98
-    assert eq.settle().success
+    assert eq.solve().success
     assert np.array_equal(before, kept) and np.abs(eq.x - kept).max() > 1e-3
 
 
@@ -99,12 +99,12 @@ def test_a_warm_solve_is_a_few_steps():
         changed[chord] -= 0.1
         for value in (changed, start):
             eq.value = value
-            settling = eq.settle()
-            assert settling.success and settling.status == coapt.Status.CONVERGED and settling.residual <= 1e-8
-            assert settling.is_quick and settling.lost_branch is None
-            steps.append(settling.iterations)
-            assert "converged" in settling.message
-            travel.append((settling.travel, settling.predicted))
+            warm = eq.solve()
+            assert warm.success and warm.status == coapt.Status.CONVERGED and warm.residual <= 1e-8
+            assert warm.is_quick and warm.lost_branch is None
+            steps.append(warm.iterations)
+            assert "converged" in warm.message
+            travel.append((warm.travel, warm.predicted))
     assert np.min(np.max(travel, axis=0)) > 0.01
     assert np.median(steps) <= 5 and max(steps) < 15, steps  # more where a kink is on the way
 
@@ -120,7 +120,7 @@ def test_derivatives_are_those_of_differences(fresh):
 
     def at(h):
         eq.value = start + h * direction
-        assert eq.settle().success
+        assert eq.solve().success
         return eq.evaluate(own)
 
     differences = slope(at, step)
@@ -169,7 +169,7 @@ def test_kinks_are_told_without_being_asked_for(eq):
     scene = scene_file().with_name("sharp.json")
     scene.write_text(scene_file().read_text().replace('"type": "cable",', '"type": "cable", "smoothing": 0,'))
     sharp = coapt.Equilibrium(scene, ["chords.lengths"], tol=1e-9)
-    assert sharp.settle().success
+    assert sharp.solve().success
     ends, lengths = sharp.lines["chords"], sharp["chords.lengths"]
     apart = np.linalg.norm(sharp.x[ends[:, 0]] - sharp.x[ends[:, 1]], axis=1)
     is_slack = apart < 0.999 * lengths
@@ -183,15 +183,15 @@ def test_kinks_are_told_without_being_asked_for(eq):
     assert found(sharp.kinks()) == []
     lengths[slack] = apart[slack]
     sharp["chords.lengths"] = lengths
-    assert sharp.settle().success
+    assert sharp.solve().success
     assert found(sharp.kinks()) == [("slack", "taut", True)]
     with pytest.warns(coapt.KinkWarning, match="chords, element .*: stands between slack and taut"):
         sharp.value_and_grad(metrics.strain_energy(sharp))
 
     lengths[slack] = 0.97 * apart[slack]
     sharp["chords.lengths"] = lengths
-    settling = sharp.settle()
-    assert settling.success and found(settling.switched)[0][1:] == ("taut", True)
+    warm = sharp.solve()
+    assert warm.success and found(warm.switched)[0][1:] == ("taut", True)
     assert found(sharp.kinks()) == []
 
 
@@ -201,7 +201,7 @@ def test_several_threads_give_the_same_bits():
     def work(k):
         eq = followed()
         eq["chords.length"] = 0.99
-        assert eq.settle().success
+        assert eq.solve().success
         results[k] = eq.x.copy(), *eq.value_and_grad(MeanSquare())
 
     work(2)
@@ -217,7 +217,7 @@ def test_several_threads_give_the_same_bits():
 def test_one_object_serves_one_call_at_a_time(eq):
     class Nosy(MeanSquare):
         def value(self, x):
-            eq.settle()
+            eq.solve()
             return 0.0
 
     with pytest.raises(coapt.InputError, match="another call is at work"):
@@ -249,7 +249,7 @@ def test_ctrl_c_ends_a_solve_that_may_go_on(tmp_path):
     assert time.monotonic() - start < 60
 
 
-def test_ctrl_c_during_settle_leaves_a_shape_to_go_on_from(fresh):
+def test_ctrl_c_during_solve_leaves_a_shape_to_go_on_from(fresh):
     eq, start = fresh
     places = []
 
@@ -257,7 +257,7 @@ def test_ctrl_c_during_settle_leaves_a_shape_to_go_on_from(fresh):
         places.append(frame.f_code.co_name)
         raise KeyboardInterrupt
 
-    def is_settled():
+    def is_solved():
         try:
             eq.value_and_grad(MeanSquare())
         except coapt.InputError:
@@ -272,17 +272,17 @@ def test_ctrl_c_during_settle_leaves_a_shape_to_go_on_from(fresh):
             eq["chords.length"] = 0.97 if k % 2 else 1.0
             with contextlib.suppress(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, 2e-3)
-                eq.settle()
+                eq.solve()
                 signal.setitimer(signal.ITIMER_REAL, 0)
-            if "settle" in places and not is_settled():  # a signal at its very end finds the work done
+            if "solve" in places and not is_solved():  # a signal at its very end finds the work done
                 break
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, former)
-    assert "settle" in places and np.isfinite(eq.x).all()
-    with pytest.raises(coapt.InputError, match=r"settle\(\)"):
+    assert "solve" in places and np.isfinite(eq.x).all()
+    with pytest.raises(coapt.InputError, match=r"solve\(\)"):
         eq.value_and_grad(MeanSquare())
-    assert eq.settle().success
+    assert eq.solve().success
 
 
 def test_ctrl_c_ends_a_jacobian_between_two_of_its_linear_systems():
@@ -324,17 +324,17 @@ def test_a_snap_is_a_lost_branch(tmp_path):
     eq = coapt.Equilibrium({"mesh": {"file": tmp_path / "pyramid.obj"}, "boundary": [{"nodes": "boundary", "fix": True}],
                             "terms": [ELASTIC, {**PRESSURE, "name": "push", "side": "front", "value": "1 Pa"}]},
                            ["push.pressure"], tol=1e-9)
-    assert eq.settle().success and eq.x[0, 2] > 1.4
+    assert eq.solve().success and eq.x[0, 2] > 1.4
     lost = []
     for _ in range(40):
         eq["push.pressure"] = 1.3 * eq["push.pressure"]
-        settling = eq.settle()
-        assert settling.success
-        lost.append(settling.lost_branch)
+        warm = eq.solve()
+        assert warm.success
+        lost.append(warm.lost_branch)
         if eq.x[0, 2] < 0:
             break
     assert eq.x[0, 2] < 0 and not any(lost[:-1])
-    assert lost[-1].distance > 1 and "another branch" in settling.message
+    assert lost[-1].distance > 1 and "another branch" in warm.message
     # Its anchor, the first shape, is on the branch that it left.
     here = np.array(eq.x)
     check = eq.check_anchor()
@@ -392,13 +392,23 @@ def test_every_defect_of_a_new_one_is_said_in_one_pass(tmp_path):
         coapt.generate_mitral(tmp_path, triangles=7)
 
 
-def test_derivatives_want_a_settled_shape(fresh):
+def test_derivatives_want_a_solved_shape(fresh):
     eq, _ = fresh
     other = coapt.Equilibrium(scene_file(), ["chords.length"])
-    with pytest.raises(coapt.InputError, match=r"settle\(\)"):
+    with pytest.raises(coapt.InputError, match=r"solve\(\)"):
         other.value_and_grad(MeanSquare())
     with pytest.raises(coapt.InputError, match="made for another equilibrium"):
         eq.value_and_grad(metrics.strain_energy(other))
     eq["chords.length"] = 0.99
-    with pytest.raises(coapt.InputError, match=r"settle\(\)"):
+    with pytest.raises(coapt.InputError, match=r"solve\(\)"):
         eq.value_and_grad(MeanSquare())
+
+
+def test_former_names_still_work_and_say_so(fresh):
+    eq, _ = fresh
+    with pytest.warns(DeprecationWarning, match=r"Equilibrium\.solve"):
+        assert eq.settle().success
+    with pytest.warns(DeprecationWarning, match="WarmSolve"):
+        assert coapt.Settling is coapt.WarmSolve
+    with pytest.raises(AttributeError, match="no_such_name"):
+        coapt.no_such_name

@@ -48,7 +48,7 @@ def test_ring_sweep(run):
     ring, step, values = eq["annulus.ring"], 1e-5, []
     for sign in (1, -1):
         eq["annulus.ring"] = ring + sign * step * np.array([1, 1, 0, 0])
-        assert eq.settle().success
+        assert eq.solve().success
         values.append([eq.evaluate(metric) for metric in found["figures"].values()])
     assert np.subtract(*values) / (2 * step * width) == pytest.approx(table[-1, [2, 4]], rel=1e-4)
 

@@ -20,19 +20,19 @@ WEIGHT = {"type": "load_field", "name": "weight", "direction": [0.3, 0, -1], "fo
 
 def followed(terms, parameters=PARAMETERS, **options):
     eq = coapt.Equilibrium.of(V, F, terms, parameters, fixed="boundary", scene=SETS, tol=1e-11, **options)
-    assert eq.settle().success
+    assert eq.solve().success
     return eq
 
 
 def expect_exact_derivatives(eq, step=2e-3):
-    """By every number, of metrics of ours and one of one's own, against differences of settled shapes."""
+    """By every number, of metrics of ours and one of one's own, against differences of solved shapes."""
     own = [metrics.strain_energy(eq), metrics.node_position(eq, MIDDLE, [0.2, -0.3, 1.0]), MeanSquare(count=30)]
     start, exact = eq.value, eq.jacobian(own)
 
     def at(direction):
         def shape(h):
             eq.value = start + h * direction
-            assert eq.settle().success
+            assert eq.solve().success
             return eq.evaluate(own)
         return shape
 
@@ -41,7 +41,7 @@ def expect_exact_derivatives(eq, step=2e-3):
         found = slope(at(direction), step)
         assert np.abs(exact @ direction - found).max() <= 1e-6 * np.abs(exact * scale).max(), (k, exact @ direction, found)
     eq.value = start
-    assert eq.settle().success and np.abs(exact).max(axis=1).min() > 1e-3
+    assert eq.solve().success and np.abs(exact).max(axis=1).min() > 1e-3
 
 
 def test_a_mesh_in_memory_is_followed_as_that_of_a_file_is(tmp_path):
@@ -52,7 +52,7 @@ def test_a_mesh_in_memory_is_followed_as_that_of_a_file_is(tmp_path):
     scene = {"mesh": {"file": tmp_path / "square.obj"}, "boundary": [{"nodes": "boundary", "fix": True}],
              "terms": terms, **SETS}
     of_file = coapt.Equilibrium(scene, PARAMETERS, tol=1e-11)
-    assert of_file.settle().success
+    assert of_file.solve().success
     eq = followed(terms)
     assert eq.parameters == PARAMETERS and eq.available == of_file.available
     assert np.array_equal(eq.x, of_file.x) and eq.x[:, 2].max() > 0.1
@@ -66,7 +66,7 @@ def test_an_energy_of_ones_own_has_exact_derivatives_beside_ours(kind):
     assert np.abs(eq.x - alone.x).max() > 0.01
     expect_exact_derivatives(eq)
     eq["load_pressure.pressure"] = 1.02 * eq["load_pressure.pressure"]
-    warm = eq.settle()
+    warm = eq.solve()
     assert warm.success and warm.is_quick and warm.iterations <= 5
 
 
@@ -89,7 +89,7 @@ def test_a_scene_of_a_file_takes_ones_own_energy_too():
 
     eq = coapt.Equilibrium(scene_file(), ["leaflets.stiffness"], terms=[Pull()], tol=1e-10)
     bare = coapt.Equilibrium(scene_file(), ["leaflets.stiffness"], tol=1e-10)
-    assert eq.settle().success and bare.settle().success
+    assert eq.solve().success and bare.solve().success
     assert 1e-3 < np.abs(eq.x[:60] - bare.x[:60]).max() < 5
     again = coapt.Equilibrium(scene_file(), terms=[Pull()], x0=eq.x, tol=1e-10)
     assert again.first.iterations <= 1 and np.abs(again.x[:60] - eq.x[:60]).max() < 1e-4
@@ -98,7 +98,7 @@ def test_a_scene_of_a_file_takes_ones_own_energy_too():
 def test_objectives_find_the_number_that_made_a_shape():
     eq = followed([ELASTIC, Springs(V, F), PRESSURE], ["cst_stvk.stiffness"])
     eq.value = [1.3]
-    assert eq.settle().success
+    assert eq.solve().success
     residuals = metrics.distance_residuals(eq, eq.x, eq.faces)
     fun, jac = coapt.objective(eq, residuals)
     fit = scipy.optimize.least_squares(fun, [1.0], jac=jac, bounds=(0.5, 2), xtol=1e-9)
@@ -121,7 +121,7 @@ def test_dead_loads_are_parameters(what):
 
         def height(h):
             eq["weight.forces"] = forces + h * (np.arange(36) == inner)[:, None] * [0, 0, 1e-3]
-            assert eq.settle().success
+            assert eq.solve().success
             return eq.x[14, 2]
         assert slope(height, 0.1) == pytest.approx(1e-3 * gradient[inner, 2], rel=1e-6)
         assert gradient[inner, 2] > 0.1 and not gradient[0].any()  # a held node moves nothing
@@ -148,24 +148,24 @@ def test_what_a_term_raises_reaches_the_caller_and_leaves_the_numbers_that_were_
     wanted = start + np.where(start == 0, 0.02, 0.01 * start)
     metric = MeanSquare(count=30)
     eq.value = wanted
-    assert eq.settle().success
+    assert eq.solve().success
     expected = eq.value_and_grad(metric)
     raised = 0
     for calls in range(1, 60, 4):
         term.left = 0
         eq.value = start
-        assert eq.settle().success
+        assert eq.solve().success
         eq.value = wanted
         term.left = calls
         try:
-            eq.settle()
+            eq.solve()
         except ArithmeticError as error:
             assert error is term.error
             raised += 1
-            with pytest.raises(coapt.InputError, match=r"settle\(\)"):
+            with pytest.raises(coapt.InputError, match=r"solve\(\)"):
                 eq.value_and_grad(metric)
         term.left = 0
-        assert np.array_equal(eq.value, wanted) and eq.settle().success
+        assert np.array_equal(eq.value, wanted) and eq.solve().success
         value, gradient = eq.value_and_grad(metric)
         assert value == pytest.approx(expected[0], rel=1e-9) and gradient == pytest.approx(expected[1], rel=1e-6, abs=1e-9)
     assert raised >= 2
@@ -177,7 +177,7 @@ def test_a_term_cannot_call_the_equilibrium_that_it_is_part_of():
 
         def value(self, x):
             if self.eq is not None:
-                self.eq.settle()
+                self.eq.solve()
             return super().value(x)
 
     term = Nosy(V, F)
@@ -185,9 +185,9 @@ def test_a_term_cannot_call_the_equilibrium_that_it_is_part_of():
     term.eq = eq
     eq.value = eq.value * 1.01
     with pytest.raises(coapt.InputError, match="another call is at work"):
-        eq.settle()
+        eq.solve()
     term.eq = None
-    assert eq.settle().success
+    assert eq.solve().success
 
 
 def without_hessian():

@@ -21,13 +21,13 @@ def restored(eq):
     start = eq.value
     yield
     eq.value = start
-    assert eq.settle().success
+    assert eq.solve().success
 
 
 def counted(eq, monkeypatch):
     calls = []
-    settle = eq.settle
-    monkeypatch.setattr(eq, "settle", lambda: calls.append(1) or settle())
+    solve = eq.solve
+    monkeypatch.setattr(eq, "solve", lambda: calls.append(1) or solve())
     return calls
 
 
@@ -50,7 +50,7 @@ def test_least_squares_finds_the_parameters_of_a_shape(eq):
     start = eq.value
     truth = start + [-0.04, 0.3, -0.2, 0.4]
     eq.value = truth
-    assert eq.settle().success
+    assert eq.solve().success
     V, F = eq.x[:eq.vertex_count], eq.faces
     residuals = metrics.distance_residuals(eq, V, F)
     fun, jac = coapt.objective(eq, residuals)
@@ -70,8 +70,8 @@ def test_minimize_goes_downhill_within_bounds(eq):
 
 
 def test_a_shape_that_does_not_converge_is_no_number(eq, monkeypatch):
-    failed = coapt.Settling(False, coapt.Status.ITERATION_LIMIT, "it did not", 1.0, 9, 0.1)
-    monkeypatch.setattr(eq, "settle", lambda: failed)
+    failed = coapt.WarmSolve(False, coapt.Status.ITERATION_LIMIT, "it did not", 1.0, 9, 0.1)
+    monkeypatch.setattr(eq, "solve", lambda: failed)
     fun, jac = coapt.objective(eq, [MeanSquare(), MeanSquare()])
     assert fun(eq.value).tolist() == [np.inf, np.inf]
     assert coapt.objective(eq, MeanSquare()).fun(eq.value) == np.inf
@@ -80,14 +80,14 @@ def test_a_shape_that_does_not_converge_is_no_number(eq, monkeypatch):
 
 
 def test_a_lost_branch_is_warned_of(eq, monkeypatch):
-    settle = eq.settle
+    solve = eq.solve
 
     def lost():
-        settled = settle()
+        solved = solve()
         branch = coapt.LostBranch(1.0, 2.0, 0, 1)
-        return coapt.Settling(True, settled.status, "another branch", settled.residual, 1, 0.1, lost_branch=branch)
+        return coapt.WarmSolve(True, solved.status, "another branch", solved.residual, 1, 0.1, lost_branch=branch)
 
-    monkeypatch.setattr(eq, "settle", lost)
+    monkeypatch.setattr(eq, "solve", lost)
     with pytest.warns(coapt.LostBranchWarning, match="another branch"):
         coapt.objective(eq, MeanSquare()).fun(eq.value)
 
@@ -111,7 +111,7 @@ def losses(eq):
 
     def at(numbers):
         eq.value = numbers
-        assert eq.settle().success
+        assert eq.solve().success
         return (eq.x[:60] ** 2).sum() * 1e-3, eq.evaluate(own[0]), eq.evaluate(own) @ [0.5, 2.0]
 
     return own, at

@@ -19,7 +19,7 @@ def scene_file(triangles=TRIANGLES) -> pathlib.Path:
 
 def followed(parameters=PARAMETERS, tol=2e-11, triangles=TRIANGLES) -> coapt.Equilibrium:
     eq = coapt.Equilibrium(scene_file(triangles), parameters, tol=tol)
-    assert eq.settle().success
+    assert eq.solve().success
     return eq
 
 

@@ -60,8 +60,9 @@ TEST(ReportPage, APlotMarksRunsThatStoppedEarly) {
 TEST(ReportPage, APlotShowsKinInOneColourAndWhereARoundBegins) {
   PagePlot plot{.title = "Error", .x = {"time [s]"}, .y = {"error [mm]"}};
   for (const int group : {4, 4, 2})
-    plot.series.push_back(
-        {.name = "line", .points = {{1, 2}, {.x = 2, .y = 1, .begins_round = group == 2}}, .group = group});
+    plot.series.push_back({.name = "line",
+                           .points = {{1, 2}, {.x = 2, .y = 1, .begins_outer_iteration = group == 2}},
+                           .group = group});
   const std::string html = report_page(page_with(plot));
   EXPECT_EQ(count(html, "<g class=\"series s4\">"), 1u);
   EXPECT_EQ(count(html, "<g class=\"series s4 d1\">"), 1u);  // dashed, and other marks

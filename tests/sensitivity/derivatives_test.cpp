@@ -84,8 +84,8 @@ class Shapes {
     const auto known = values_.find(s);
     if (known != values_.end()) return known->second;
     valve_.equilibrium.set(start_ + s * direction_);
-    const Settling settled = valve_.equilibrium.settle();
-    EXPECT_EQ(settled.status, Status::Converged) << settled.message;
+    const WarmSolve solved = valve_.equilibrium.solve();
+    EXPECT_EQ(solved.status, Status::Converged) << solved.message;
     Vector values(static_cast<Eigen::Index>(metrics_.size()));
     for (size_t k = 0; k < metrics_.size(); ++k)
       values[static_cast<Eigen::Index>(k)] = metrics_[k]->evaluate(valve_.equilibrium.positions(), nullptr);
@@ -107,7 +107,7 @@ double step_without_kinks(TrackedEquilibrium& equilibrium, const Vector& directi
 }
 
 void expect_differences_for_every_pair(TrackedValve& valve) {
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   const Vector start = valve.equilibrium.value();
   std::vector<Derivatives> exact;
@@ -127,7 +127,7 @@ void expect_differences_for_every_pair(TrackedValve& valve) {
       EXPECT_LT(exact[k].residual, 1e-10);
     }
     valve.equilibrium.set(start);
-    ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+    ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   }
 }
 
@@ -164,7 +164,7 @@ TEST(Derivatives, OfMetricsByPositionsAgreeWithDifferences) {
 TEST(Derivatives, ForwardAndAdjointSystemsAgree) {
   TrackedValve valve;
   valve.add_common();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   Points weights = Points::Zero(3, valve.objective.node_count());
   weights.leftCols(valve.scene.triangles.maxCoeff() + 1).setRandom();
   const Vector pulled = valve.equilibrium.pull_back(weights);
@@ -180,7 +180,7 @@ TEST(Derivatives, ForwardAndAdjointSystemsAgree) {
 TEST(Derivatives, OfManyMetricsAreThoseOfEach) {
   TrackedValve valve(tissue_valve_terms(), closed_by(tissue_valve_terms()));
   valve.add_others();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   Metrics metrics = all_metrics(valve, plane_target());
   ASSERT_LT(metrics.size(), static_cast<size_t>(valve.equilibrium.number_count()));
   const size_t count = metrics.size();
@@ -204,7 +204,7 @@ TEST(Derivatives, OfAJacobianEndWhereTheObserverSaysNo) {
   TrackedValve valve({.tolerance = kTrackingTolerance,
                       .observer = [&](const Iteration&, const Vector&) { return goes_on || ++asked < 3; }});
   valve.add_common();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   std::vector<const Metric*> all;
   for (const auto& metric : metrics) all.push_back(metric.get());
@@ -218,7 +218,7 @@ TEST(Derivatives, OfAJacobianEndWhereTheObserverSaysNo) {
 TEST(Derivatives, GaussNewtonProductIsThatOfTheJacobian) {
   TrackedValve valve;
   valve.add_common();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   std::vector<const Metric*> some;
   for (const size_t k : {0, 5, 7, 8}) some.push_back(metrics[k].get());
@@ -232,7 +232,7 @@ TEST(Derivatives, GaussNewtonProductIsThatOfTheJacobian) {
 TEST(Derivatives, CovarianceIsThatOfTheDerivatives) {
   TrackedValve valve;
   valve.add_common();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Metrics metrics = all_metrics(valve, plane_target());
   const int n = valve.equilibrium.number_count();
   // Two numbers that vary together, by hand.

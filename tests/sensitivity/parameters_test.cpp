@@ -57,10 +57,10 @@ struct LoadedLine {
   TrackedEquilibrium equilibrium;
 };
 
-// Of the place of a node and of the elastic energy, by every number, against differences of settled shapes.
+// Of the place of a node and of the elastic energy, by every number, against differences of solved shapes.
 void expect_exact(LoadedLine& line) {
   TrackedEquilibrium& equilibrium = line.equilibrium;
-  ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(equilibrium.solve().status, Status::Converged);
   const Vector start = equilibrium.value();
   const auto place = make_node_position("place", {2}, Vec3(0.3, -0.5, 1));
   const auto energy = make_strain_energy("energy", line.objective);
@@ -68,14 +68,14 @@ void expect_exact(LoadedLine& line) {
   for (Eigen::Index number = 0; number < start.size(); ++number) {
     const auto at = [&](double s) {
       equilibrium.set(start + s * Vector::Unit(start.size(), number));
-      EXPECT_EQ(equilibrium.settle().status, Status::Converged);
+      EXPECT_EQ(equilibrium.solve().status, Status::Converged);
       const Points x = equilibrium.positions();
       return Eigen::Vector2d(place->evaluate(x, nullptr), energy->evaluate(x, nullptr));
     };
     const Eigen::Vector2d slope = slope_of(at, 1e-4);
     EXPECT_LT((exact.col(number) - slope).norm(), 1e-6 * exact.norm()) << number;
     equilibrium.set(start);
-    ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+    ASSERT_EQ(equilibrium.solve().status, Status::Converged);
   }
   EXPECT_GT(exact.norm(), 0.1);
 }
@@ -86,7 +86,7 @@ TEST(DeadLoad, ItsFactorHasExactDerivatives) {
   EXPECT_EQ(line.equilibrium.value(), Vector::Ones(1));
   expect_exact(line);
   line.equilibrium.set(Vector::Constant(1, 0.5));
-  ASSERT_EQ(line.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(line.equilibrium.solve().status, Status::Converged);
   const Points halved = dynamic_cast<LoadDead&>(line.weight()).forces();
   EXPECT_EQ(halved, Points(0.5 * LoadedLine::forces()(Eigen::all, {0, 2, 3})));
 }

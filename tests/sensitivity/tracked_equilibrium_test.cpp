@@ -16,11 +16,11 @@
 namespace coapt {
 namespace {
 
-TEST(TrackedEquilibrium, SettlesInFiveStepsAfterATenthOfAMillimetreOnAChord) {
+TEST(TrackedEquilibrium, ConvergesInFiveStepsAfterATenthOfAMillimetreOnAChord) {
   TrackedValve valve({.tolerance = 1e-8});
   EnergyTerm& chords = valve.term("chords");
   valve.equilibrium.add(make_line_lengths("lengths", chords, single_lines(chords), LengthMeasure::Length));
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Vector start = valve.equilibrium.value();
   double greatest_travel = 0;
   for (int chord = 0; chord < start.size(); chord += 5) {
@@ -28,12 +28,12 @@ TEST(TrackedEquilibrium, SettlesInFiveStepsAfterATenthOfAMillimetreOnAChord) {
     changed[chord] -= 0.1;
     for (const Vector& value : {changed, start}) {
       valve.equilibrium.set(value);
-      const Settling settled = valve.equilibrium.settle();
-      ASSERT_EQ(settled.status, Status::Converged) << settled.message;
-      EXPECT_TRUE(settled.is_quick) << "chord " << chord;
-      EXPECT_LE(settled.iterations, 5) << "chord " << chord;
-      EXPECT_FALSE(settled.lost_branch.has_value()) << "chord " << chord;
-      greatest_travel = std::max(greatest_travel, settled.travel);
+      const WarmSolve solved = valve.equilibrium.solve();
+      ASSERT_EQ(solved.status, Status::Converged) << solved.message;
+      EXPECT_TRUE(solved.is_quick) << "chord " << chord;
+      EXPECT_LE(solved.iterations, 5) << "chord " << chord;
+      EXPECT_FALSE(solved.lost_branch.has_value()) << "chord " << chord;
+      greatest_travel = std::max(greatest_travel, solved.travel);
     }
   }
   EXPECT_GT(greatest_travel, 0.01);  // some of them pull
@@ -42,17 +42,17 @@ TEST(TrackedEquilibrium, SettlesInFiveStepsAfterATenthOfAMillimetreOnAChord) {
 TEST(TrackedEquilibrium, ComesBackToTheShapeWhenAChangeIsUndone) {
   TrackedValve valve;
   valve.add_common();
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Points start = valve.equilibrium.positions();
   const Vector value = valve.equilibrium.value();
   Vector changed = value;
   for (size_t p = 0; p < valve.equilibrium.parameter_count(); ++p)
     changed += 0.01 * valve.direction(p, 5).cwiseMin(0.5 * value.cwiseAbs().cwiseMax(0.1));
   valve.equilibrium.set(changed);
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   EXPECT_GT((valve.equilibrium.positions() - start).cwiseAbs().maxCoeff(), 1e-3);
   valve.equilibrium.set(value);
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   std::vector<int> held = valve.scene.held_nodes(start);
   EXPECT_LT((valve.equilibrium.positions() - start)(Eigen::all, held).cwiseAbs().maxCoeff(), 1e-6);
 }
@@ -63,11 +63,11 @@ TEST(TrackedEquilibrium, SeveralAtOnceGiveTheSameBits) {
   const auto work = [](Vector& gradient) {
     TrackedValve valve;
     valve.add_common();
-    valve.equilibrium.settle();
+    valve.equilibrium.solve();
     Vector value = valve.equilibrium.value();
     value[0] *= 0.99;
     valve.equilibrium.set(value);
-    valve.equilibrium.settle();
+    valve.equilibrium.solve();
     gradient = valve.equilibrium.derivatives(*make_strain_energy("energy", valve.objective)).gradient;
   };
   Vector alone;
@@ -127,14 +127,14 @@ struct Truss {
 
 TEST(TrackedEquilibrium, ReportsTheBranchThatASnapLeaves) {
   Truss truss(0.0015);
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   EXPECT_GT(truss.equilibrium.positions()(2, 2), 0.1);
   truss.equilibrium.set(Vector::Constant(1, 1.0005));  // a little wider: still above
-  const Settling small = truss.equilibrium.settle();
+  const WarmSolve small = truss.equilibrium.solve();
   ASSERT_EQ(small.status, Status::Converged);
   EXPECT_FALSE(small.lost_branch.has_value()) << small.message;
   truss.equilibrium.set(Vector::Constant(1, 1.012));  // too flat to carry the load: it hangs below
-  const Settling snap = truss.equilibrium.settle();
+  const WarmSolve snap = truss.equilibrium.solve();
   ASSERT_EQ(snap.status, Status::Converged) << snap.message;
   EXPECT_LT(truss.equilibrium.positions()(2, 2), 0);
   ASSERT_TRUE(snap.lost_branch.has_value());
@@ -171,10 +171,10 @@ struct TwoCables {
 // The slack cable becomes taut when it is shortened to the distance of its ends.
 TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
   Truss truss(0.0015);
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);  // the anchor: above
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);  // the anchor: above
   const Vector q = truss.equilibrium.unknowns(), start = truss.equilibrium.value();
   truss.equilibrium.set(Vector::Constant(1, 1.0005));
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   const AnchorCheck above = truss.equilibrium.check_anchor();
   EXPECT_TRUE(above.is_same_branch) << above.message;
   EXPECT_LT(above.back, 1e-6);
@@ -182,9 +182,9 @@ TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
   EXPECT_GT(above.travel, 0);
 
   truss.equilibrium.set(Vector::Constant(1, 1.012));  // it snaps, and stays below when the change is undone
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   truss.equilibrium.set(Vector::Constant(1, 1.0005));
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   const Points here = truss.equilibrium.positions();
   EXPECT_LT(here(2, 2), 0);
   const AnchorCheck below = truss.equilibrium.check_anchor();
@@ -196,12 +196,12 @@ TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
   EXPECT_EQ(truss.equilibrium.positions(), here);
   EXPECT_EQ(truss.equilibrium.value()[0], 1.0005);
   truss.equilibrium.set(Vector::Constant(1, 1.0004));
-  EXPECT_LE(truss.equilibrium.settle().iterations, 5);
+  EXPECT_LE(truss.equilibrium.solve().iterations, 5);
 
   // From an anchor below it is on its own branch.
   truss.equilibrium.anchor_here();
   truss.equilibrium.set(Vector::Constant(1, 1.0005));
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   EXPECT_TRUE(truss.equilibrium.check_anchor().is_same_branch);
   truss.equilibrium.anchor_at(start, q);
   EXPECT_FALSE(truss.equilibrium.check_anchor().is_same_branch);
@@ -210,18 +210,18 @@ TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
 
 TEST(TrackedEquilibrium, ComparesWithItsAnchorEveryFewSteps) {
   Truss truss(0.0015, {.anchor_steps = 3});
-  ASSERT_EQ(truss.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
   const double widths[] = {1.012, 1.0110, 1.0100, 1.0005};
   std::vector<bool> compared;
   bool has_left = false;
   for (const double width : widths) {
     truss.equilibrium.set(Vector::Constant(1, width));
-    const Settling settled = truss.equilibrium.settle();
-    ASSERT_EQ(settled.status, Status::Converged);
-    compared.push_back(settled.anchor.has_value());
-    if (settled.anchor) {
-      has_left = !settled.anchor->is_same_branch;
-      EXPECT_EQ(settled.message.find("has left") != std::string::npos, has_left);
+    const WarmSolve solved = truss.equilibrium.solve();
+    ASSERT_EQ(solved.status, Status::Converged);
+    compared.push_back(solved.anchor.has_value());
+    if (solved.anchor) {
+      has_left = !solved.anchor->is_same_branch;
+      EXPECT_EQ(solved.message.find("has left") != std::string::npos, has_left);
     }
   }
   EXPECT_EQ(compared, (std::vector<bool>{false, false, true, false}));
@@ -231,7 +231,7 @@ TEST(TrackedEquilibrium, ComparesWithItsAnchorEveryFewSteps) {
 TEST(TrackedEquilibrium, ReportsAKink) {
   TwoCables two;
   TrackedEquilibrium& equilibrium = two.equilibrium;
-  ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(equilibrium.solve().status, Status::Converged);
   EXPECT_TRUE(equilibrium.switches(Eigen::Vector2d(0.01, 0)).empty());
   const double apart = (equilibrium.positions().col(2) - equilibrium.positions().col(1)).norm();
   const std::vector<Switch> found = equilibrium.switches(Eigen::Vector2d(1.4 * (1.3 - apart), 0));
@@ -243,7 +243,7 @@ TEST(TrackedEquilibrium, ReportsAKink) {
 
   // Where the slack cable is just as long as its ends are apart, the smallest change has a kink.
   equilibrium.set(Eigen::Vector2d(1, apart));
-  ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(equilibrium.solve().status, Status::Converged);
   EXPECT_EQ(equilibrium.switches(Eigen::Vector2d(0, 1e-8)).size(), 1U);
   EXPECT_EQ(equilibrium.switches(Eigen::Vector2d(1e-8, 0)).size(), 1U);
 }
@@ -256,18 +256,18 @@ TEST(TrackedEquilibrium, TellsOfKinksThatItPassesAndStandsAt) {
     if (by_x != nullptr) (*by_x)(2, 2) = 1;
     return shape(2, 2);
   });
-  const auto settled = [&](double second) {
+  const auto solved = [&](double second) {
     equilibrium.set(Eigen::Vector2d(1, second));
-    const Settling settling = equilibrium.settle();
-    EXPECT_EQ(settling.status, Status::Converged) << settling.message;
-    return settling.switched;
+    const WarmSolve warm = equilibrium.solve();
+    EXPECT_EQ(warm.status, Status::Converged) << warm.message;
+    return warm.switched;
   };
-  EXPECT_TRUE(settled(1.3).empty());
-  EXPECT_TRUE(settled(1.25).empty()) << "still slack";
+  EXPECT_TRUE(solved(1.3).empty());
+  EXPECT_TRUE(solved(1.25).empty()) << "still slack";
   EXPECT_TRUE(equilibrium.derivatives(height).kinks.empty());
   const double apart = (equilibrium.positions().col(2) - equilibrium.positions().col(1)).norm();
 
-  const std::vector<Switch> passed = settled(0.95 * apart);
+  const std::vector<Switch> passed = solved(0.95 * apart);
   ASSERT_EQ(passed.size(), 1U);
   EXPECT_EQ(passed[0].term, two.cables().name());
   EXPECT_EQ(passed[0].element, 1);
@@ -275,15 +275,15 @@ TEST(TrackedEquilibrium, TellsOfKinksThatItPassesAndStandsAt) {
   EXPECT_EQ(passed[0].after, "taut");
   EXPECT_TRUE(passed[0].is_kink);
   EXPECT_TRUE(equilibrium.derivatives(height).kinks.empty());
-  ASSERT_EQ(settled(1.25).size(), 1U) << "and back";
+  ASSERT_EQ(solved(1.25).size(), 1U) << "and back";
 
-  settled(apart);  // just as long as its ends are apart
+  solved(apart);  // just as long as its ends are apart
   const std::vector<Switch> kinks = equilibrium.derivatives(height).kinks;
   ASSERT_EQ(kinks.size(), 1U);
   EXPECT_EQ(kinks[0].element, 1);
   EXPECT_EQ(kinks[0].before, "slack");
   EXPECT_EQ(kinks[0].after, "taut");
-  settled(0.999 * apart);
+  solved(0.999 * apart);
   EXPECT_TRUE(equilibrium.kinks().empty()) << "of this shape";
 }
 
@@ -321,7 +321,7 @@ TEST(TrackedEquilibrium, SaysWhichContactsAndMembranesSwitch) {
   TrackedValve valve;
   EnergyTerm& chords = valve.term("chords");
   valve.equilibrium.add(make_line_lengths("lengths", chords, single_lines(chords), LengthMeasure::Length));
-  ASSERT_EQ(valve.equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(valve.equilibrium.solve().status, Status::Converged);
   const Vector change = Vector::Constant(valve.equilibrium.number_count(), 0.02);
   std::map<std::string, int> count;
   for (const Switch& each : valve.equilibrium.switches(change)) {
@@ -342,7 +342,7 @@ TEST(TrackedEquilibrium, RefusesWhatMeansNothing) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
   contains(refusal([&] { equilibrium.derivatives(*make_strain_energy("energy", valve.objective)); }),
-           "settle()");
+           "solve()");
   contains(refusal([&] { make_line_lengths("a", membrane, {{0}}, LengthMeasure::Length); }), "no lines");
   contains(refusal([&] {
              make_line_lengths("a", chords, {{0, 0}, {}, {99999}}, LengthMeasure::Change);

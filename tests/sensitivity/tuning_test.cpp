@@ -60,9 +60,9 @@ class TuningTest : public testing::Test {
   // The valve with other factors, as a surface.
   TriangleMesh closed(const Vector& factors) {
     const auto equilibrium = maker()(first());
-    EXPECT_EQ(equilibrium->settle().status, Status::Converged);
+    EXPECT_EQ(equilibrium->solve().status, Status::Converged);
     equilibrium->set(factors);
-    EXPECT_EQ(equilibrium->settle().status, Status::Converged);
+    EXPECT_EQ(equilibrium->solve().status, Status::Converged);
     TriangleMesh surface;
     surface.triangles = valve_.scene.triangles;
     surface.vertices = equilibrium->positions().leftCols(surface.triangles.maxCoeff() + 1);

@@ -260,7 +260,7 @@ TEST_F(StressedScene, AnEnergyThatRisesIsToldUnlessAnotherRoundBegins) {
   result.trace[2].iteration = 2;
   const std::string rise = energy_rise(result, *model.objective, model.X);
   EXPECT_NE(rise.find("in iteration 2"), std::string::npos) << rise;
-  result.trace[2].round = 1;
+  result.trace[2].outer_iteration = 1;
   EXPECT_EQ(energy_rise(result, *model.objective, model.X), "");
 }
 

@@ -341,7 +341,7 @@ TEST_F(ChordTuningTest, GoesOnFromItsCheckpoint) {
 
   // Of another tuning, damaged, none.
   more.lowest = -0.1;
-  const auto read = [&](const std::map<std::string, std::string>& of) -> std::string {
+  const auto read = [&](const Identity& of) -> std::string {
     try {
       read_chord_tuning_checkpoint(file, of);
     } catch (const InputError& error) {
@@ -349,7 +349,7 @@ TEST_F(ChordTuningTest, GoesOnFromItsCheckpoint) {
     }
     return "";
   };
-  EXPECT_NE(read(chord_tuning_identity(load_scene(scene()), more, run_)).find("another bounds"),
+  EXPECT_NE(read(chord_tuning_identity(load_scene(scene()), more, run_)).find("another pair of bounds"),
             std::string::npos);
   const auto size = fs::file_size(file);
   fs::resize_file(file, size - 1);

@@ -96,7 +96,7 @@ TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
   EXPECT_GT(values[values.size() - 1], 0) << "the orifice is within its limit";
   for (Eigen::Index k = 0; k < 3; ++k) {
     equilibrium->set(at);
-    ASSERT_EQ(equilibrium->settle().status, Status::Converged);
+    ASSERT_EQ(equilibrium->solve().status, Status::Converged);
     const Points motion = equilibrium->response(Vector::Unit(3, k));
     const Vector derived = excess.derivatives(x, {motion}).col(0);
     EXPECT_NEAR(excess.pull_back(x, weights).cwiseProduct(motion).sum(), weights.dot(derived),
@@ -105,7 +105,7 @@ TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
     std::vector<Points> shapes;
     for (const double sign : {-1.0, 1.0}) {
       equilibrium->set(at + sign * h * Vector::Unit(3, k));
-      ASSERT_EQ(equilibrium->settle().status, Status::Converged);
+      ASSERT_EQ(equilibrium->solve().status, Status::Converged);
       shapes.push_back(equilibrium->positions());
     }
     const Points difference = (shapes[1] - shapes[0]) / (2 * h);
@@ -119,7 +119,7 @@ TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
   // Made again, it begins where it began.
   const auto again = make(first.q);
   EXPECT_EQ(again->value(), at);
-  ASSERT_EQ(again->settle().status, Status::Converged);
+  ASSERT_EQ(again->solve().status, Status::Converged);
   EXPECT_LT((again->positions() - x).norm(), 1e-6 * x.norm());
 }
 

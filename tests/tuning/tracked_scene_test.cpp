@@ -82,7 +82,7 @@ TEST_F(TrackedSceneTest, NamedParametersAreThoseOfTheScene) {
                                           "right.thickness"};
   for (const std::string& name : names) tracked.equilibrium->add(make_named_parameter(name, given, tracked));
   tracked.equilibrium->add(make_named_parameter("pressure.pressure", given, tracked));
-  ASSERT_EQ(tracked.equilibrium->settle().status, Status::Converged);
+  ASSERT_EQ(tracked.equilibrium->solve().status, Status::Converged);
   const std::unique_ptr<Metric> metric = height(tracked);
   Vector exact = tracked.equilibrium->derivatives(*metric).gradient;
   exact[4] *= tracked.equilibrium->value()[4];  // per change of the whole, as the others
@@ -109,7 +109,7 @@ TEST_F(TrackedSceneTest, NumbersOfAPrestressAreParametersAndSoIsItsShapeAtRest) 
   for (const char* name : {"sail.stiffness", "sail.thickness"})  // there is no modulus
     EXPECT_EQ(std::find(known.begin(), known.end(), name), known.end()) << name;
   for (const std::string& name : keys) tracked.equilibrium->add(make_named_parameter(name, given, tracked));
-  ASSERT_EQ(tracked.equilibrium->settle().status, Status::Converged);
+  ASSERT_EQ(tracked.equilibrium->solve().status, Status::Converged);
   const std::unique_ptr<Metric> metric = height(tracked);
   Vector exact = tracked.equilibrium->derivatives(*metric).gradient;
   exact = exact.cwiseProduct(tracked.equilibrium->value());  // per change of the whole
@@ -137,7 +137,7 @@ TEST_F(TrackedSceneTest, AnyNumberOfAnElasticTermIsAParameter) {
   value[3] = 2;
   value[5] = 1.01;
   equilibrium.set(value);
-  ASSERT_EQ(equilibrium.settle().status, Status::Converged);
+  ASSERT_EQ(equilibrium.solve().status, Status::Converged);
   const std::unique_ptr<Metric> metric = height(tracked);
   const Vector exact = equilibrium.derivatives(*metric).gradient.cwiseProduct(value).head(5);
 
@@ -167,7 +167,7 @@ TEST_F(TrackedSceneTest, ChordsOfATipAreAGroup) {
     TrackedScene tracked = track(given, scene_solvers(), {}, {.tolerance = 1e-9});
     for (const std::string& name : names)
       tracked.equilibrium->add(make_named_parameter(name, given, tracked));
-    EXPECT_EQ(tracked.equilibrium->settle().status, Status::Converged);
+    EXPECT_EQ(tracked.equilibrium->solve().status, Status::Converged);
     value = tracked.equilibrium->value();
     Points weights = Points::Zero(3, tracked.model.X.cols());
     weights.leftCols(tracked.model.mesh.vertex_count()).setOnes();

@@ -143,7 +143,7 @@ TEST(XpbdConstraints, CorrectNothingWhereTheyAreUndefined) {
   EXPECT_EQ(x, start);
 }
 
-TEST(XpbdConstraints, OfAFilmSettleAtItsTension) {
+TEST(XpbdConstraints, OfAFilmConvergeToItsTension) {
   Points x = random_points(3, 31);
   const InverseMasses w = Points::Ones(3, 3);
   const double dt2 = 1e-3, tension = 0.7;
@@ -153,7 +153,7 @@ TEST(XpbdConstraints, OfAFilmSettleAtItsTension) {
 }
 
 // Multiplier times gradient is the impulse -dt^2 dW/dx.
-TEST(XpbdConstraints, OfATriangleOfAnyEnergySettleAtItsForces) {
+TEST(XpbdConstraints, OfATriangleOfAnyEnergyConvergeToItsForces) {
   const TriangleEnergyConstraint triangle = spring_triangle({0.4, 0.7, 1.1});
   Points x = random_points(3, 31);
   const InverseMasses w = Points::Ones(3, 3);

@@ -8,7 +8,7 @@
                                    {"type": "load_pressure", "value": "0.1 kPa"}], fixed="boundary")
 
     eq = coapt.Equilibrium("scene.json", ["chords.length"])           # warm solves, exact sensitivities
-    eq.settle()
+    eq.solve()
     area, slope = eq.value_and_grad(coapt.metrics.orifice_area(eq))
 
 Lengths are mm, forces N, stresses MPa, energies mJ. Arrays of points have shape (n, 3).
@@ -18,12 +18,13 @@ from __future__ import annotations
 import json
 import os
 import pathlib
+import warnings
 from typing import Any
 
 from . import _core, autograd, metrics
 from ._api import minimize, solve
 from ._core import Iterate
-from ._equilibrium import AnchorCheck, Equilibrium, KinkWarning, LostBranch, Settling, Switch
+from ._equilibrium import AnchorCheck, Equilibrium, KinkWarning, LostBranch, Switch, WarmSolve
 from ._errors import InputError
 from ._objective import LostBranchWarning, Objective, objective
 from ._registration import Registration, register
@@ -32,8 +33,8 @@ from ._terms import Term, check_term
 
 __version__ = _core.version()
 __all__ = ["AnchorCheck", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",
-           "Objective", "Registration", "Result", "Settling", "Status", "Switch", "Term", "autograd", "check_term", "components",
-           "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "register", "scene_schema", "solve"]
+           "Objective", "Registration", "Result", "Status", "Switch", "Term", "WarmSolve", "autograd", "check_term",
+           "components", "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "register", "scene_schema", "solve"]
 
 
 def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:
@@ -54,6 +55,13 @@ def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, se
         raise InputError(*defects)
     _core.generate_mitral(folder=os.fsencode(folder), triangles=triangles, seed=seed)
     return pathlib.Path(folder) / "scene.json"
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Settling":  # the former name, deprecated
+        warnings.warn("coapt.Settling is now coapt.WarmSolve", DeprecationWarning, stacklevel=2)
+        return WarmSolve
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def methods() -> list[str]:

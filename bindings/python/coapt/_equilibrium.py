@@ -30,7 +30,7 @@ class LostBranch:
 
 @dataclass(frozen=True)
 class AnchorCheck:
-    """The present parameters and those of the anchor by two ways: step by step, as they were settled, and all at once.
+    """The present parameters and those of the anchor by two ways: step by step, as they were solved, and all at once.
     Where the shapes differ, steps that each looked harmless have led to another branch of equilibria."""
     status: Status  #: CONVERGED: both ways could be gone at once
     is_same_branch: bool  #: False also where nothing could be compared
@@ -60,7 +60,7 @@ class KinkWarning(RuntimeWarning):
 
 
 @dataclass(frozen=True)
-class Settling:
+class WarmSolve:
     """How a solve for the present parameters ended."""
     success: bool  #: whether the residual, with the exact loads, is within the tolerance
     status: Status  #: why it ended
@@ -74,16 +74,16 @@ class Settling:
     jump: float = 0.0  #: greatest distance of a node from the linear prediction [mm]
     lost_branch: LostBranch | None = None
     anchor: AnchorCheck | None = None  #: where it was time for one: every 20 warm steps
-    #: what has another state than in the shape settled before: on the way between the two derivatives may have kinks
+    #: what has another state than in the shape solved before: on the way between the two derivatives may have kinks
     switched: Sequence[Switch] = ()
 
 
-def _settling(found: dict[str, Any]) -> Settling:
+def _warm_solve(found: dict[str, Any]) -> WarmSolve:
     status = Status[found.pop("status").upper()]
     lost = found.pop("lost_branch", None)
     anchor = _anchor_check(found.pop("anchor", None))
     switched = [Switch(*each) for each in found.pop("switched", [])]
-    return Settling(success=status is Status.CONVERGED, status=status,
+    return WarmSolve(success=status is Status.CONVERGED, status=status,
                     lost_branch=None if lost is None else LostBranch(**lost), anchor=anchor, switched=switched, **found)
 
 
@@ -91,11 +91,11 @@ class Equilibrium:
     """The equilibrium of a scene, or of a mesh in memory (`Equilibrium.of`), followed while named parameters change.
 
         eq = coapt.Equilibrium("scene.json", ["chords.length", "annulus.ring"])
-        eq.settle()                                     # judged by the objective's residual
+        eq.solve()                                     # judged by the objective's residual
         orifice = coapt.metrics.orifice_area(eq)
         area, slope = eq.value_and_grad(orifice)        # exact, for every number of every parameter
         eq["chords.length"] = 0.95
-        eq.settle()                                     # warm: a few Newton steps
+        eq.solve()                                     # warm: a few Newton steps
 
     Parameters (TERM and SET are names of the scene; `available` lists all):
         TERM.lengths: rest length of each line of a cable or tether term, (k,) [mm].
@@ -115,7 +115,7 @@ class Equilibrium:
 
     The interpreter lock is released while it works, and taken for metrics in Python. One object serves one thread at a
     time (another call meanwhile is refused); several objects side by side give the same bits. Ctrl-C ends a solve at
-    its next step; `settle()` goes on from there.
+    its next step; `solve()` goes on from there.
 
     Args:
         scene: path of a scene file, or the same keys as a dict, as in `solve`.
@@ -123,7 +123,7 @@ class Equilibrium:
         terms: energies of one's own beside those of the scene (see `Term`). Each needs a `hessian`: the steps and the
             derivatives solve with the exact tangent. What they raise ends the call and is raised to the caller.
         x0: positions to start from, (n, 3) for all nodes [mm], as in `solve`; default: the scene's own start.
-        tol: of `settle()`, on the residual; the first solve, made here, has the scene's own tolerance.
+        tol: of `solve()`, on the residual; the first solve, made here, has the scene's own tolerance.
         method: solver of the first solve; default: the scene's.
         max_seconds: wall time after which a solve ends [s].
 
@@ -190,7 +190,7 @@ class Equilibrium:
 
     @property
     def value(self) -> Array:
-        """All numbers, a vector; a copy. What is assigned counts from the next `settle()` on."""
+        """All numbers, a vector; a copy. What is assigned counts from the next `solve()` on."""
         return self._core.value()
 
     @value.setter
@@ -221,22 +221,27 @@ class Equilibrium:
 
     # --- solving, and what is there
 
-    def settle(self) -> Settling:
+    def solve(self) -> WarmSolve:
         """Solves for the present parameters, warm: linear prediction, then Newton's method; where that does not
         converge, the whole method. A shape that did not converge is kept, and `success` is False.
 
         Raises:
-            KeyboardInterrupt: Ctrl-C; the shape is where it got to, and settle() goes on from there.
+            KeyboardInterrupt: Ctrl-C; the shape is where it got to, and solve() goes on from there.
         """
-        return _settling(self._core.settle())
+        return _warm_solve(self._core.solve())
+
+    def settle(self) -> WarmSolve:
+        """The former name of `solve()`, deprecated."""
+        warnings.warn("Equilibrium.settle() is now Equilibrium.solve()", DeprecationWarning, stacklevel=2)
+        return self.solve()
 
     def check_anchor(self) -> AnchorCheck:
-        """Whether the shape is still on the branch of its anchor, the shape that was settled first: goes from here to
+        """Whether the shape is still on the branch of its anchor, the shape that was solved first: goes from here to
         the anchor's parameters and from there to these, each at once, and compares shapes. Two warm solves; the shape
-        is then what it was. `settle()` does it by itself every 20 steps (`Settling.anchor`).
+        is then what it was. `solve()` does it by itself every 20 steps (`WarmSolve.anchor`).
 
         Raises:
-            InputError: the shape is not settled.
+            InputError: the shape is not solved.
         """
         check = _anchor_check(self._core.check_anchor())
         assert check is not None
@@ -246,14 +251,14 @@ class Equilibrium:
         """Makes the present shape the anchor.
 
         Raises:
-            InputError: it is not settled.
+            InputError: it is not solved.
         """
         self._core.anchor_here()
 
     @property
-    def first(self) -> Settling:
+    def first(self) -> WarmSolve:
         """How the solve from the scene's own start ended."""
-        return _settling(self._core.first_solve())
+        return _warm_solve(self._core.first_solve())
 
     @property
     def x(self) -> Array:
@@ -289,7 +294,7 @@ class Equilibrium:
     # --- figures of merit
 
     def evaluate(self, metric: MetricLike | Sequence[MetricLike]) -> Any:
-        """Value of a metric at the present shape, or values of several, (m,); settled or not."""
+        """Value of a metric at the present shape, or values of several, (m,); solved or not."""
         values = self._core.evaluate(self._metrics(metric))
         return values if isinstance(metric, (list, tuple)) else float(values[0])
 
@@ -297,7 +302,7 @@ class Equilibrium:
         """Value of a metric and its exact derivative by every number (one linear system for all of them).
 
         Raises:
-            InputError: this shape is not settled, or its tangent is singular.
+            InputError: this shape is not solved, or its tangent is singular.
         """
         return self._told(self._core.value_and_grad(as_metric(self._core, metric)))
 
@@ -337,7 +342,7 @@ class Equilibrium:
         warns of it (`KinkWarning`).
 
         Raises:
-            InputError: this shape is not settled.
+            InputError: this shape is not solved.
         """
         return [Switch(*each) for each in self._core.kinks()]
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from ._equilibrium import Equilibrium, Settling
+from ._equilibrium import Equilibrium, WarmSolve
 from ._errors import InputError
 from .metrics import MetricLike
 
@@ -26,32 +26,32 @@ class Objective(NamedTuple):
 
 
 class Follower:
-    """Settles an equilibrium where it is asked for, and remembers where it is."""
+    """Solves for an equilibrium where it is asked for, and remembers where it is."""
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self.equilibrium = equilibrium
         self.at: Array | None = None
-        self.settling: Settling | None = None
+        self.warm_solve: WarmSolve | None = None
 
-    def go(self, numbers: npt.ArrayLike) -> Settling:
+    def go(self, numbers: npt.ArrayLike) -> WarmSolve:
         """The equilibrium at these numbers; a solve only where it is elsewhere."""
         wanted = np.array(numbers, dtype=np.float64)
         here = self.equilibrium.value
         is_here = self.at is not None and np.array_equal(self.at, wanted) and np.array_equal(here, wanted)
-        if not is_here or self.settling is None:
-            self.at = self.settling = None
+        if not is_here or self.warm_solve is None:
+            self.at = self.warm_solve = None
             self.equilibrium.value = wanted
-            self.settling = self.equilibrium.settle()
+            self.warm_solve = self.equilibrium.solve()
             self.at = wanted
-            if self.settling.lost_branch is not None:
-                warnings.warn(self.settling.message, LostBranchWarning, stacklevel=4)
-        return self.settling
+            if self.warm_solve.lost_branch is not None:
+                warnings.warn(self.warm_solve.message, LostBranchWarning, stacklevel=4)
+        return self.warm_solve
 
-    def settled(self, numbers: npt.ArrayLike) -> None:
+    def require_solved(self, numbers: npt.ArrayLike) -> None:
         """Raises InputError where it does not converge."""
-        settling = self.go(numbers)
-        if not settling.success:
-            raise InputError(f"equilibrium: no derivatives at these parameters, for {settling.message}")
+        warm = self.go(numbers)
+        if not warm.success:
+            raise InputError(f"equilibrium: no derivatives at these parameters, for {warm.message}")
 
 
 def objective(equilibrium: Equilibrium, metric: MetricLike | Sequence[MetricLike]) -> Objective:
@@ -77,7 +77,7 @@ def objective(equilibrium: Equilibrium, metric: MetricLike | Sequence[MetricLike
         return np.full(len(metric), np.inf) if isinstance(metric, (list, tuple)) else np.inf
 
     def jac(numbers: npt.ArrayLike) -> Array:
-        follower.settled(numbers)
+        follower.require_solved(numbers)
         if isinstance(metric, (list, tuple)):
             return equilibrium.jacobian(metric)
         return equilibrium.value_and_grad(cast(MetricLike, metric))[1]

@@ -5,7 +5,7 @@
     loss = ((shape(p) - wanted) ** 2).mean() + area(p)
     loss.backward()                                           # p.grad: exact
 
-Forward settles the equilibrium at the given numbers, a vector as `Equilibrium.value`; backward is one linear system. Only
+Forward solves the equilibrium at the given numbers, a vector as `Equilibrium.value`; backward is one linear system. Only
 first derivatives: a second differentiation is refused. Nothing here imports either package before it is asked for.
 """
 from __future__ import annotations
@@ -45,14 +45,14 @@ class _Differentiable:
 
     def value(self, numbers: npt.ArrayLike) -> Array:
         with self.lock:
-            self.follower.settled(numbers)
+            self.follower.require_solved(numbers)
             if self.metric is None:
                 return self.equilibrium.x
             return np.asarray(self.equilibrium.evaluate(self.metric))
 
     def pull_back(self, numbers: npt.ArrayLike, weights: npt.ArrayLike) -> Array:
         with self.lock:
-            self.follower.settled(numbers)
+            self.follower.require_solved(numbers)
             array = np.array(weights, dtype=np.float64)
             if self.metric is None:
                 return self.equilibrium.pull_back(array)

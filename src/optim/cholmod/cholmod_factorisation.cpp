@@ -92,7 +92,7 @@ class CholmodFactorisation final : public Factorisation {
   double pivot_ratio() const override { return pivot_ratio_; }
 
   Inertia inertia(const SparseMatrix& lower) override {
-    // The supernodal factorisation settles the usual case far sooner than a simplicial one.
+    // The supernodal factorisation decides the usual case far sooner than a simplicial one.
     if (factorise(lower)) return {0, 0, static_cast<int>(lower.cols())};
     if (!upper_) upper_.emplace(graph_, permuted_.order(), Triangle::Upper);
     upper_->take_values(lower);

@@ -33,9 +33,9 @@ std::optional<BranchChange> BranchWatch::compare(const Place& now, double travel
   for (auto before = visited_.rbegin(); before != visited_.rend(); ++before) {
     means_.pose(now.t);
     Vector returned = now.q, stayed = before->q;
-    if (!means_.carry(before->t, returned) || !means_.settle(stayed)) return std::nullopt;
+    if (!means_.carry(before->t, returned) || !means_.solve(stayed)) return std::nullopt;
     if (farthest(stayed, before->q) > kBack * travel) continue;
-    if (!means_.settle(returned)) return std::nullopt;
+    if (!means_.solve(returned)) return std::nullopt;
     const double distance = farthest(stayed, returned);
     if (distance <= kBack * travel) return std::nullopt;
     return BranchChange{now.step, before->step, distance};

@@ -19,7 +19,7 @@ struct PathMeans {
   std::function<bool(double t, Vector& q)> carry;
 
   // Improves q to the equilibrium where the objective is posed; false when that does not converge.
-  std::function<bool(Vector& q)> settle;
+  std::function<bool(Vector& q)> solve;
 };
 
 // A step in which the shape goes more than three times as far as in the step before may be a snap: the branch

@@ -78,7 +78,7 @@ StabilityReport stability_at(Objective& objective, const Vector& q, double toler
                              const StabilityOptions& options) {
   StabilityReport report;
   if (objective.free_count() == 0) {
-    report.verdict = Stability::NothingToJudge;
+    report.verdict = Stability::NothingToCheck;
     return report;
   }
   if (objective.has_circulatory_force()) objective.set_path_anchor(q);
@@ -89,8 +89,8 @@ StabilityReport stability_at(Objective& objective, const Vector& q, double toler
   SkewProduct skew;
   if (objective.has_skew_tangent())
     skew = [&](const Vector& v, Vector& product) { objective.add_skew_product(v, product); };
-  return judge_stability(h, skew, prescribed_unknowns(objective.fixed()),
-                         negligible_stiffness(objective, q, tolerance), options);
+  return classify_stability(h, skew, prescribed_unknowns(objective.fixed()),
+                            negligible_stiffness(objective, q, tolerance), options);
 }
 
 std::string modes(int count, const std::string& kind) {
@@ -106,8 +106,8 @@ std::string lowest_text(const StabilityReport& report) {
 std::string stability_summary(const StabilityReport& report) {
   switch (report.verdict) {
     case Stability::NotKnown:
-      return "stability not judged";
-    case Stability::NothingToJudge:
+      return "stability not checked";
+    case Stability::NothingToCheck:
       return "no free node has any stiffness";
     case Stability::StrictMinimum:
       return report.pivot_ratio > 0
@@ -142,7 +142,7 @@ std::vector<FreePart> free_parts(const Objective& objective, const Points& x) {
 }
 
 Certificate certify(Objective& objective, const Vector& q, double tolerance, const StabilityOptions& options,
-                    bool judges_stability) {
+                    bool checks_stability) {
   Certificate certificate;
   certificate.is_made = true;
   certificate.is_conservative = !objective.has_circulatory_force();
@@ -153,7 +153,7 @@ Certificate certify(Objective& objective, const Vector& q, double tolerance, con
   certificate.free_parts = free_parts(objective, x);
   const bool is_equilibrium = certificate.residual <= tolerance;
   if (!is_equilibrium) certificate.imbalance = largest_imbalance(objective, x);
-  if (is_equilibrium && judges_stability && options.factorisation) {
+  if (is_equilibrium && checks_stability && options.factorisation) {
     certificate.stability = stability_at(objective, q, tolerance, options);
     certificate.free_nodes = nodes_of(certificate.stability.free_blocks, objective.fixed());
   }

@@ -39,7 +39,7 @@ struct Certificate {
   bool is_balance_clear = false;
 
   // Of the exact Hessian; with a load that has no potential of the exact tangent, whose symmetric part is
-  // looked at first: a positive definite one is enough. Not judged of a state that is no equilibrium.
+  // looked at first: a positive definite one is enough. Not checked for a state that is no equilibrium.
   StabilityReport stability;
   bool is_conservative = true;
 
@@ -53,10 +53,10 @@ struct Certificate {
 // The certificate of a state. Stiffnesses below a millionth, or ten times the tolerance, of the reference
 // force over the extent count as none: what rests on less is moved by forces that the tolerance lets pass, by
 // a hundredth, or a tenth, of the scene. With a load that has no potential, the objective follows the path
-// from q on afterwards. judges_stability: otherwise Stability::NotKnown, and no Hessian is evaluated. Cost
+// from q on afterwards. checks_stability: otherwise Stability::NotKnown, and no Hessian is evaluated. Cost
 // where all is well: one Hessian, one factorisation, some gradients.
 Certificate certify(Objective& objective, const Vector& q, double tolerance, const StabilityOptions& options,
-                    bool judges_stability = true);
+                    bool checks_stability = true);
 
 // "strict minimum (smallest pivot ratio 3e-06), 2 free nodes, reactions balance to 2e-13".
 std::string summary(const Certificate& certificate);

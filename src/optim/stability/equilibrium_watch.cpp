@@ -130,7 +130,7 @@ bool EquilibriumWatch::has_collapsed(const Points& x) {
   return true;
 }
 
-bool EquilibriumWatch::is_lost(const Objective& objective, const Vector& q, double residual) {
+bool EquilibriumWatch::has_no_equilibrium(const Objective& objective, const Vector& q, double residual) {
   if (adrift_.empty() && film_.empty()) return false;
   if (!film_.empty() && residual < least_residual_) {
     least_residual_ = residual;

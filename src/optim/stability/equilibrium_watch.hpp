@@ -23,13 +23,14 @@ class EquilibriumWatch {
   // has shrunk to next to no area and stayed so far from equilibrium: it pinches off. That takes some 200
   // iterates, as nodes may slide together for a while, but some ten where they move along lines across the
   // film. Looks every 50 or 5 iterates, and only where the scene has such parts or films.
-  bool is_lost(const Objective& objective, const Vector& q, double residual);
+  bool has_no_equilibrium(const Objective& objective, const Vector& q, double residual);
 
   bool sees_films() const { return !film_.empty(); }
   // The iterate with the least residual so far; empty where there are no films.
   const Vector& nearest() const { return nearest_; }
 
-  // What is_lost() saw; before it did, that the shape grows without bound and which part is not held.
+  // What has_no_equilibrium() saw; before it did, that the shape grows without bound and which part is not
+  // held.
   std::string reason() const { return reason_; }
 
  private:

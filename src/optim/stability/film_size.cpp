@@ -108,7 +108,7 @@ std::optional<Points> spanned_films(const Objective& objective, const Points& x)
     return std::nullopt;
   const FilmNet net = net_of_films(objective);
   Points film = x;
-  for (int coordinate = 0; coordinate < 3; ++coordinate) settle_net(net, coordinate, film);
+  for (int coordinate = 0; coordinate < 3; ++coordinate) relax_net(net, coordinate, film);
   if (!lessen_area(net, film)) return std::nullopt;
   return film;
 }

@@ -29,8 +29,8 @@ class Judgement {
   }
 
   StabilityReport report() {
-    if (judged_ == 0 || !std::isfinite(report_.scale)) {
-      report_.verdict = judged_ == 0 ? Stability::NothingToJudge : Stability::NotKnown;
+    if (checked_ == 0 || !std::isfinite(report_.scale)) {
+      report_.verdict = checked_ == 0 ? Stability::NothingToCheck : Stability::NotKnown;
       return report_;
     }
     find_smallest();
@@ -45,7 +45,7 @@ class Judgement {
       report_.verdict = report_.zero_modes == 0 ? Stability::StrictMinimum : Stability::Flat;
       if (report_.verdict == Stability::Flat) find_moved_blocks();
     } else {
-      judge_indefinite();
+      classify_indefinite();
     }
     report_.free_blocks.assign(free_blocks_.begin(), free_blocks_.end());
     return report_;
@@ -59,9 +59,9 @@ class Judgement {
       const double entry = std::abs(h_.coeff(c, c));
       greatest = std::max(greatest, entry);
       sum += entry;
-      ++judged_;
+      ++checked_;
     }
-    report_.scale = judged_ > 0 ? sum / judged_ : 0;
+    report_.scale = checked_ > 0 ? sum / checked_ : 0;
     zero_ = std::max(zero, kRoundOff * greatest);
   }
 
@@ -72,12 +72,12 @@ class Judgement {
       const auto first = is_prescribed_.begin() + 3 * free.block;
       if (directions == std::count(first, first + 3, false)) ++report_.loose_nodes;
       report_.free_directions += directions;
-      judged_ -= directions;
+      checked_ -= directions;
       free_blocks_.insert(free.block);
     }
   }
 
-  // Gives what is not judged a stiffness of its own.
+  // Gives what is not checked a stiffness of its own.
   void resist(double stiffness) {
     for (int c = 0; c < h_.cols(); ++c)
       if (is_prescribed_[static_cast<size_t>(c)]) h_.coeffRef(c, c) = stiffness;
@@ -128,7 +128,7 @@ class Judgement {
     report_.zero_modes = small ? *small - negative : -1;
   }
 
-  // Without the symmetry of any mesh, zero at what is not judged.
+  // Without the symmetry of any mesh, zero at what is not checked.
   Vector start_vector(double phase = 0) const {
     Vector v(h_.cols());
     for (int k = 0; k < v.size(); ++k)
@@ -143,7 +143,7 @@ class Judgement {
     return v;
   }
 
-  void judge_indefinite() {
+  void classify_indefinite() {
     Vector mode;
     const double lowest = skew_ || options_.finds_descent ? find_lowest(mode) : 0;
     if (!skew_) {
@@ -151,7 +151,7 @@ class Judgement {
       if (options_.finds_descent && lowest < 0) report_.descent = mode;
     } else {
       report_.verdict = Stability::NotDecided;
-      if (lowest < 0) judge_tangent(lowest);
+      if (lowest < 0) classify_tangent(lowest);
     }
     const std::optional<int> negative = below(-zero_);
     report_.negative_modes = negative.value_or(-1);
@@ -175,13 +175,13 @@ class Judgement {
     return v.dot(h_.selfadjointView<Eigen::Lower>() * v) - shift_;
   }
 
-  void judge_tangent(double lowest_of_symmetric_part) {
+  void classify_tangent(double lowest_of_symmetric_part) {
     shift(0);
     const LowestEigenvalues found =
         lowest_eigenvalues(h_, skew_, start_vector(), lowest_of_symmetric_part, options_.factorisation);
     report_.factorisations += found.factorisations;
     if (found.values.size() == 0) return;
-    report_.is_tangent_judged = true;
+    report_.is_tangent_checked = true;
     report_.lowest = found.values[0];
     report_.zero_modes = 0;
     Eigen::Index real = -1;
@@ -229,7 +229,7 @@ class Judgement {
   const StabilityOptions& options_;
   std::vector<FreeDirections> free_;
   std::set<int> free_blocks_;
-  int judged_ = 0;  // unknowns, less the free directions
+  int checked_ = 0;  // unknowns, less the free directions
   double zero_ = 0, shift_ = 0, resisted_ = 0;
   std::unique_ptr<Factorisation> factor_;
   StabilityReport report_;
@@ -255,7 +255,7 @@ std::string_view stability_name(Stability stability) {
       return "flutter";
     case Stability::NotDecided:
       return "not_decided";
-    case Stability::NothingToJudge:
+    case Stability::NothingToCheck:
       return "nothing_to_judge";
   }
   return "";
@@ -266,9 +266,9 @@ bool is_unstable(Stability stability) {
          stability == Stability::Flutter;
 }
 
-StabilityReport judge_stability(const SparseMatrix& lower, const SkewProduct& skew,
-                                const std::vector<bool>& is_prescribed, double zero,
-                                const StabilityOptions& options) {
+StabilityReport classify_stability(const SparseMatrix& lower, const SkewProduct& skew,
+                                   const std::vector<bool>& is_prescribed, double zero,
+                                   const StabilityOptions& options) {
   return Judgement(lower, skew, is_prescribed, zero, options).report();
 }
 

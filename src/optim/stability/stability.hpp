@@ -13,7 +13,7 @@ namespace coapt {
 // Without a skew part the tangent is the Hessian of the energy; with one it is that of a load without
 // potential, and stable is what comes back along the way that its forces drive it.
 enum class Stability {
-  NotKnown,        // not asked for, or not judged
+  NotKnown,        // not asked for, or not checked
   StrictMinimum,   // all eigenvalues of the (symmetric part of the) tangent are positive
   Stable,          // those of the symmetric part are not, yet all of the tangent have positive real parts
   Flat,            // none is negative, some are zero: to second order the shape is not unique
@@ -21,7 +21,7 @@ enum class Stability {
   Divergence,      // a real eigenvalue of the tangent is negative: the shape leaves along its mode
   Flutter,         // none but complex ones have negative real parts: the shape spirals away
   NotDecided,      // the symmetric part has negative eigenvalues, and the others could not be found
-  NothingToJudge,  // no coordinate is free, or none that is has any stiffness
+  NothingToCheck,  // no coordinate is free, or none that is has any stiffness
 };
 
 std::string_view stability_name(Stability stability);  // "strict_minimum", "flat", ...
@@ -30,7 +30,7 @@ std::string_view stability_name(Stability stability);  // "strict_minimum", "fla
 bool is_unstable(Stability stability);
 
 struct StabilityOptions {
-  FactorisationFactory factorisation;  // empty: nothing is judged
+  FactorisationFactory factorisation;  // empty: nothing is checked
   int modes = 0;                       // smallest eigenvalues wanted
   bool finds_descent = true;           // whether an unstable state gets its way out
   int most_unknowns = 30000;           // beyond these modes are not counted: that takes a slow factorisation
@@ -56,7 +56,7 @@ struct StabilityReport {
 
   // Of a tangent with a skew part that was looked at as a whole: eigenvalues with a negative real part, and
   // the one with the lowest [force/length].
-  bool is_tangent_judged = false;
+  bool is_tangent_checked = false;
   int unstable_modes = 0;
   std::complex<double> lowest;
 
@@ -70,8 +70,8 @@ struct StabilityReport {
 // coordinate. skew: its other part; empty for an energy. is_prescribed: for each unknown. zero
 // [force/length]: real parts of no greater magnitude count as zero, as do those that round-off hides. One
 // factorisation where the symmetric part is positive definite.
-StabilityReport judge_stability(const SparseMatrix& lower, const SkewProduct& skew,
-                                const std::vector<bool>& is_prescribed, double zero,
-                                const StabilityOptions& options);
+StabilityReport classify_stability(const SparseMatrix& lower, const SkewProduct& skew,
+                                   const std::vector<bool>& is_prescribed, double zero,
+                                   const StabilityOptions& options);
 
 }  // namespace coapt

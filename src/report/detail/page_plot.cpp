@@ -186,8 +186,8 @@ std::string plot_html(const PagePlot& plot) {
       }
       spots.push_back({axes.x.place(point.x), axes.y.place(point.y)});
       has_early = has_early || point.stopped_early;
-      has_rounds = has_rounds || point.begins_round;
-      if (point.begins_round) drawn += round_line(spots.back());
+      has_rounds = has_rounds || point.begins_outer_iteration;
+      if (point.begins_outer_iteration) drawn += round_line(spots.back());
       if (series.points.size() <= kMostMarks || point.stopped_early || !series.is_joined)
         marks += mark(plot, s, point, spots.back()) + "\n";
     }
@@ -225,9 +225,9 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
       table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
                             {page_number(point.x, 6)},
                             {page_number(point.y, 6)},
-                            {point.stopped_early  ? "stopped early"
-                             : point.begins_round ? "another energy from here on"
-                                                  : ""}});
+                            {point.stopped_early            ? "stopped early"
+                             : point.begins_outer_iteration ? "another energy from here on"
+                                                            : ""}});
     }
     tables.push_back(std::move(table));
   }

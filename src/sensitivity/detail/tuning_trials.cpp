@@ -51,7 +51,7 @@ std::optional<AnchorCheck> TuningTrials::check_anchor() {
   return equilibrium_->check_anchor();
 }
 
-// Where it is no better, or does not settle, the search begins at the first numbers.
+// Where it is no better, or does not converge, the search begins at the first numbers.
 void TuningTrials::take_up_start() {
   if (has_ended()) return;
   const TuningStart start = options_.start(best_);
@@ -67,11 +67,11 @@ bool TuningTrials::take_up_best() {
   equilibrium_.reset();
   equilibrium_ = make_(best_.q);
   equilibrium_->set(best_.value);
-  const Settling settled = equilibrium_->settle();
-  is_at_best_ = settled.status == Status::Converged;
+  const WarmSolve solved = equilibrium_->solve();
+  is_at_best_ = solved.status == Status::Converged;
   is_current_ = is_at_best_;
   if (!is_at_best_) {
-    failure_ = settled.message;
+    failure_ = solved.message;
     return false;
   }
   TuningTrial again;
@@ -119,14 +119,14 @@ bool TuningTrials::attempt(const Vector& z) {
   TuningTrial trial;
   trial.value = z.cwiseQuotient(options_.scales);
   equilibrium_->set(trial.value);
-  const Settling settled = equilibrium_->settle();
-  trial.status = settled.status;
-  trial.iterations = settled.iterations;
-  trial.lost_branch = settled.lost_branch;
-  if (settled.status == Status::Converged)
+  const WarmSolve solved = equilibrium_->solve();
+  trial.status = solved.status;
+  trial.iterations = solved.iterations;
+  trial.lost_branch = solved.lost_branch;
+  if (solved.status == Status::Converged)
     measure(trial);
   else
-    failure_ = settled.message;
+    failure_ = solved.message;
   if (!std::isfinite(trial.cost)) trial.cost = kInfinity;
   z_ = z;
   cost_ = trial.cost;

@@ -11,7 +11,7 @@ class TuningTrials final : public BoundedFunction {
   TuningTrials(const EquilibriumMaker& make, const Vector& q, const TuningGoal& goal,
                const TuningOptions& options, const Vector& first);
 
-  // Settles at the start, or where the known record ends. False: it did not; see failure().
+  // Solves at the start, or where the known record ends. False: it did not; see failure().
   bool begin();
   Vector first() const { return scaled(best_.value); }  // where the method begins
   const std::string& failure() const { return failure_; }
@@ -34,7 +34,7 @@ class TuningTrials final : public BoundedFunction {
 
  private:
   Vector scaled(const Vector& value) const { return value.cwiseProduct(options_.scales); }
-  bool solve(const Vector& z);  // whether z is settled, by this call or the last one
+  bool solve(const Vector& z);  // whether z is solved, by this call or the last one
   bool take_up_best();
   void take_up_start();
   bool has_ended();  // a limit is reached
@@ -53,8 +53,8 @@ class TuningTrials final : public BoundedFunction {
   double least_ = kInfinity;
   Vector z_, r_;              // of the last trial, and its residuals
   double cost_ = kInfinity;   // of the last trial
-  bool is_at_best_ = false;   // the equilibrium is settled there
-  bool is_current_ = false;   // ... is settled at z_
+  bool is_at_best_ = false;   // the equilibrium is solved there
+  bool is_current_ = false;   // ... is solved at z_
   Eigen::MatrixXd jacobian_;  // of the residuals, at z_of_jacobian_
   Vector z_of_jacobian_, r_of_jacobian_;
   std::optional<TuningStatus> end_;

@@ -53,7 +53,7 @@ struct BenchRun {
   std::string message = {};
   double residual = 0;  // relative
   double energy = 0;    // [mJ]
-  int iterations = 0, rounds = 0;
+  int iterations = 0, outer_iterations = 0;
   EvaluationCounts evaluations = {};
   long factorisations = 0;
   int repeats = 0;

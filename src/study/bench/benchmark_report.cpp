@@ -44,7 +44,7 @@ OrderedJson run_json(const Benchmark& bench, const BenchRun& run) {
   json["residual"] = number_json(run.residual);
   json["energy_mj"] = number_json(run.energy);
   json["iterations"] = run.iterations;
-  json["rounds"] = run.rounds;
+  json["rounds"] = run.outer_iterations;
   json["evaluations"] = {{"value", run.evaluations.value},
                          {"gradient", run.evaluations.gradient},
                          {"hessian", run.evaluations.hessian},

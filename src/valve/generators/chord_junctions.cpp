@@ -2,7 +2,7 @@
 
 namespace coapt {
 
-Vec3 settle_junction(Vec3 start, const JunctionLimits& limits) {
+Vec3 place_junction(Vec3 start, const JunctionLimits& limits) {
   constexpr int kSweeps = 200;
   constexpr double kClearance = 0.8;  // [mm]
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

@@ -21,7 +21,7 @@ struct JunctionLimits {
 // `start`, projected onto one limit after the other; the balls come last, so that chords stay slack when
 // the limits exclude each other. All limits are convex: the sweeps converge to a common point if there is
 // one.
-Vec3 settle_junction(Vec3 start, const JunctionLimits& limits);
+Vec3 place_junction(Vec3 start, const JunctionLimits& limits);
 
 // The papillary tip nearest to a point, of those from `first` to `last` - 1. Pre: there is one.
 int nearest_tip(const Points& tips, int first, int last, const Vec3& point);

@@ -182,7 +182,7 @@ class LeafletChordBuilder {
       limits.ends.col(static_cast<Eigen::Index>(k) + 1) = x;
       limits.rest_lengths.push_back(rest_length(place.expected, expected(x)));
     }
-    place.start = settle_junction(from.start + kJunctionPlace * (middle(X_, vertices) - from.start), limits);
+    place.start = place_junction(from.start + kJunctionPlace * (middle(X_, vertices) - from.start), limits);
     place.end = {ChordEnd::Kind::Junction, static_cast<int>(junctions_.size())};
     junctions_.push_back(place.start);
     return place;

@@ -161,7 +161,7 @@ struct MitralChordBuilder {
         limits.planes.push_back({mitral_open_point(shape, u, height), mitral_open_normal(shape, u, height)});
     }
     const Vec3 start = open_tip + kJunctionPlace * (open_middle - open_tip);
-    const Vec3 junction = settle_junction(start, limits);
+    const Vec3 junction = place_junction(start, limits);
     std::vector<double>& rest_lengths = limits.rest_lengths;
     for (int i = 0; i <= count; ++i)
       rest_lengths[i] = std::max(rest_lengths[i], (junction - limits.ends.col(i)).norm());

@@ -62,7 +62,7 @@ class RoughChordBuilder {
   }
 
   ChordNetwork finished() {
-    settle();
+    relax();
     tighten();
     cut_lengths();
     reach_leaflets();
@@ -144,7 +144,7 @@ class RoughChordBuilder {
   }
 
   // Moves branch points strand by strand to where lengths lie within the limits.
-  void settle() {
+  void relax() {
     constexpr int kSweeps = 400;
     constexpr double kWithin = 0.97 * kMostSlack;
     for (int sweep = 0; sweep < kSweeps; ++sweep)

@@ -2,8 +2,8 @@
 // and the papillary tips that hold them.
 #pragma once
 
+#include "core/random_source.hpp"
 #include "core/types.hpp"
-#include "valve/generators/random_source.hpp"
 
 #include <functional>
 #include <string>

@@ -1,8 +1,8 @@
 // Tissue of rough valves at random, as strong as the pressure asks for.
 #pragma once
 
+#include "core/random_source.hpp"
 #include "formats/valve.hpp"
-#include "valve/generators/random_source.hpp"
 
 namespace coapt {
 

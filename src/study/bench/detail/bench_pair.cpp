@@ -94,7 +94,7 @@ BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tol
   run.residual = result.residual;
   run.energy = result.energy;
   run.iterations = result.iterations;
-  run.rounds = result.rounds;
+  run.outer_iterations = result.outer_iterations;
   run.evaluations = result.evaluations;
   run.factorisations = result.factorisations;
   run.repeats = timed.repeats;

@@ -19,6 +19,7 @@ class RandomSource {
   double log_between(double low, double high) { return low * std::pow(high / low, unit()); }
   // One of 0 ... count - 1. Pre: count > 0.
   int below(int count) { return static_cast<int>(unit() * count); }
+  int whole(int low, int high) { return low + below(high - low + 1); }  // both included
   bool chance(double probability) { return unit() < probability; }
 
  private:
