@@ -50,9 +50,9 @@ struct PageTable {
 
 struct PagePoint {
   double x = 0, y = 0;
-  bool stopped_early = false;  // drawn hollow and crossed: the run did not reach what was wanted
-  std::string label = {};      // of the point, in its tooltip; may be empty
-  bool begins_round = false;   // an upright line: from here on another function is minimised
+  bool is_crossed = false;    // drawn hollow and crossed: not what was wanted, see PagePlot::crossed
+  std::string label = {};     // of the point, in its tooltip; may be empty
+  bool begins_round = false;  // an upright line: from here on another function is minimised
 };
 
 struct PageSeries {
@@ -88,6 +88,7 @@ struct PagePlot {
   std::vector<PageSeries> series = {};
   std::vector<PageLevel> levels = {};
   std::string note = {};
+  std::string crossed = "stopped early";  // what is said of crossed points
 };
 
 // Markup of our own, put into the page as it stands.

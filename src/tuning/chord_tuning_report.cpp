@@ -188,7 +188,10 @@ PageTable length_table(const ChordTuning& found) {
 }
 
 PagePlot history_plot(const ChordTuning& found) {
-  PagePlot plot{.title = "Cost of each solve", .x = {"solve"}, .y = {"cost", Scale::ByRange}};
+  PagePlot plot{.title = "Cost of each solve",
+                .x = {"solve"},
+                .y = {"cost", Scale::ByRange},
+                .crossed = "on another branch of equilibria"};
   PageSeries all{.name = "each", .is_joined = false}, best{.name = "best so far"};
   int number = 1, rejected = 0, aided = 0;
   double least = kInfinity;
@@ -199,8 +202,7 @@ PagePlot history_plot(const ChordTuning& found) {
       continue;
     }
     least = std::min(least, trial.cost);
-    all.points.push_back({static_cast<double>(number), trial.cost, trial.lost_branch.has_value(),
-                          trial.lost_branch ? "another branch of equilibria" : ""});
+    all.points.push_back({static_cast<double>(number), trial.cost, trial.lost_branch.has_value()});
     best.points.push_back({static_cast<double>(number), least});
   }
   plot.series = {best, all};

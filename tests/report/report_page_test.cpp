@@ -69,8 +69,8 @@ TEST_F(ReportPlot, MarksRunsThatStoppedEarly) {
             .x = {"time [s]", Scale::ByRange},
             .y = {"error [mm]", Scale::ByRange},
             .series = {{"newton", {{0.1, 1}, {1, 1e-3}}}, {"lbfgs", {{0.2, 1}, {3, 1e-2, true, "1e-6"}}}}});
-  EXPECT_TRUE(plot["series"][0]["early"].empty());
-  EXPECT_EQ(plot["series"][1]["early"], nlohmann::json({1}));
+  EXPECT_TRUE(plot["series"][0]["crossed"].empty());
+  EXPECT_EQ(plot["series"][1]["crossed"], nlohmann::json({1}));
   EXPECT_EQ(plot["series"][1]["labels"], nlohmann::json({"", "1e-6"}));
   EXPECT_EQ(plot["y"]["title"], "error [mm]");
   EXPECT_EQ(count(page, ">stopped early</td>"), 1u);

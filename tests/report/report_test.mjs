@@ -489,7 +489,7 @@ await run("pages of compare, bench, study, tune, intervene and stress work as th
          ["Stability matrix of disc (scene.json)", written("stress.html", disc, "stress", "--rows", "S1,S4,S8", "--quick"), 0],
          ["Study of mitral (scene.json)", written("report.html", valve, "study", "--sweep", "load_pressure.value=60,120 mmHg"), 4],
          ["Chord lengths of mitral (scene.json)",
-          written("report.html", valve, "tune", "chords", "--orifice-weight", "1", "--by", "head", "--max-solves", "6"), 1]]) {
+          written("report.html", valve, "tune", "--orifice-weight", "1", "--by", "tip", "--max-solves", "6"), 1]]) {
     const { page, closed } = await opened(place);
     assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
     assert.ok(await page.getByRole("table").count() > 0);

@@ -77,7 +77,7 @@ std::vector<size_t> drawn_points(const PageSeries& series, bool is_log_x) {
       const PagePoint& point = series.points[all[k]];
       if (point.y < series.points[all[least]].y) least = k;
       if (point.y > series.points[all[greatest]].y) greatest = k;
-      if (point.stopped_early || point.begins_round) chosen.push_back(k);
+      if (point.is_crossed || point.begins_round) chosen.push_back(k);
     }
     chosen.insert(chosen.end(), {first, least, greatest, last});
     std::sort(chosen.begin(), chosen.end());
@@ -101,10 +101,10 @@ OrderedJson series_json(const PagePlot& plot, size_t index, bool is_log_x) {
   size_t index_in_group = 0;  // series of the group before it
   for (size_t s = 0; series.group >= 0 && s < index; ++s)
     if (plot.series[s].group == series.group) ++index_in_group;
-  OrderedJson x = OrderedJson::array(), y = x, labels = x, early = x, rounds = x;
+  OrderedJson x = OrderedJson::array(), y = x, labels = x, crossed = x, rounds = x;
   for (const size_t k : drawn_points(series, is_log_x)) {
     const PagePoint& point = series.points[k];
-    if (point.stopped_early) early.push_back(x.size());
+    if (point.is_crossed) crossed.push_back(x.size());
     if (point.begins_round) rounds.push_back(x.size());
     x.push_back(rounded(point.x));
     y.push_back(rounded(point.y));
@@ -119,7 +119,7 @@ OrderedJson series_json(const PagePlot& plot, size_t index, bool is_log_x) {
           {"x", x},
           {"y", y},
           {"labels", labels},
-          {"early", early},
+          {"crossed", crossed},
           {"rounds", rounds}};
 }
 
@@ -136,7 +136,8 @@ OrderedJson plot_json(const PagePlot& plot, const Scales& scales) {
   return {{"x", axis_json(plot.x, scales.is_log_x)},
           {"y", axis_json(plot.y, scales.is_log_y)},
           {"series", series},
-          {"levels", levels}};
+          {"levels", levels},
+          {"crossed_text", plot.crossed}};
 }
 
 std::string counted(long points, const std::string& one, const std::string& many) {
@@ -207,7 +208,7 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
       table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
                             {is_named ? plot.x.names[static_cast<size_t>(place)] : page_number(point.x, 6)},
                             {page_number(point.y, 6)},
-                            {point.stopped_early  ? "stopped early"
+                            {point.is_crossed     ? plot.crossed
                              : point.begins_round ? "another energy from here on"
                                                   : ""}});
     }

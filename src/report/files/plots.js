@@ -53,23 +53,25 @@ function ticksOf(axis, min, max, length, space) {
     return ticks;
   }
   const first = Math.ceil(Math.log10(min) - 1e-9), last = Math.floor(Math.log10(max) + 1e-9);
-  const isFine = Math.log10(max / min) * 3 <= most, step = Math.max(1, Math.ceil((last - first + 1) / most));
-  for (let k = isFine ? first - 1 : first; k <= last; k += isFine ? 1 : step)
-    for (const factor of isFine ? [1, 2, 5] : [1]) {
+  const decades = Math.log10(max / min), step = Math.max(1, Math.ceil((last - first + 1) / most));
+  const factors = [[1, 2, 5], [1, 3]].find(those => those.length * decades <= most) ?? [1];
+  for (let k = factors.length > 1 ? first - 1 : first; k <= last; k += factors.length > 1 ? 1 : step)
+    for (const factor of factors) {
       const tick = Number(factor + "e" + k);
       if (tick >= min * (1 - 1e-9) && tick <= max * (1 + 1e-9)) ticks.push(tick);
     }
   return ticks;
 }
 
-// A power of ten with its exponent set high where it has many zeros: 0.01, 10⁻⁶, 2·10⁻⁶.
+// Very large and very small numbers have their power of ten with its exponent set high: 0.01, 10⁻⁶, 2.5·10⁻⁶.
 function tickText(axis, value, range) {
   if (axis.names) return axis.names[Math.round(value) - 1] ?? "";
-  if (!axis.logarithmic) return number(Math.abs(value) < 1e-9 * range ? 0 : value, 6);
-  const exponent = Math.floor(Math.log10(value) + 1e-9), factor = Math.round(value / 10 ** exponent);
-  if (exponent >= -3 && exponent <= 3) return String(Number(value.toPrecision(1)));
-  const high = [...String(exponent)].map(digit => digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("");
-  return (factor === 1 ? "" : factor + "·") + "10" + high;
+  if (Math.abs(value) < 1e-9 * range) return "0";
+  const size = Math.abs(value), isPlain = axis.logarithmic ? size >= 1e-3 * (1 - 1e-9) && size < 5000 : size >= 1e-4 && size < 1e6;
+  if (isPlain) return String(Number(value.toPrecision(6)));
+  const [factor, exponent] = Number(value.toPrecision(6)).toExponential().split("e");
+  const high = [...exponent].map(digit => digit === "+" ? "" : digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]).join("");
+  return (factor === "1" ? "" : factor + "·") + "10" + high;
 }
 
 // A shape for each series, so that colour is not all that tells them apart. r [canvas px].
@@ -83,7 +85,7 @@ function shapePath(shape, x, y, r) {
   return path;
 }
 
-// kind: "" filled; "early" hollow and crossed; "edge" an open triangle: the value has no place on the scale.
+// kind: "" filled; "crossed" hollow and crossed; "edge" an open triangle: the value has no place on the scale.
 function drawMark(pen, kind, shape, shade, x, y, ratio) {
   const r = markSize * ratio;
   pen.setLineDash([]);
@@ -93,7 +95,7 @@ function drawMark(pen, kind, shape, shade, x, y, ratio) {
   const path = kind === "edge" ? new Path2D(`M${x - r} ${y - 1.8 * r}h${2 * r}l${-r} ${1.6 * r}z`) : shapePath(shape, x, y, r);
   pen.fill(path);
   pen.stroke(path);
-  if (kind !== "early") return;
+  if (kind !== "crossed") return;
   const d = 1.5 * r;
   pen.stroke(new Path2D(`M${x - d} ${y - d}l${2 * d} ${2 * d}M${x - d} ${y + d}l${2 * d} ${-2 * d}`));
 }
@@ -117,7 +119,7 @@ function drawSample(canvas, series) {
 function keyOf(data) {
   const key = make("ul", "key"), entries = [...data.series];
   const has = name => data.series.some(series => series[name].length > 0);
-  if (has("early")) entries.push({ name: "stopped early", kind: "early" });
+  if (has("crossed")) entries.push({ name: data.crossed_text, kind: "crossed" });
   if (has("rounds")) entries.push({ name: "another energy from here on", isRound: true });
   const samples = entries.map(entry => {
     const item = make("li", ""), canvas = make("canvas", "");
@@ -131,9 +133,9 @@ function keyOf(data) {
 
 // Marks of one series, on top of its line.
 function drawMarks(plot, series, ratio) {
-  const early = new Set(series.early), pen = plot.ctx, shade = colour("s" + series.colour);
+  const crossed = new Set(series.crossed), pen = plot.ctx, shade = colour("s" + series.colour);
   series.x.forEach((x, k) => {
-    const kind = early.has(k) ? "early" : series.isOffScale[k] ? "edge" : "";
+    const kind = crossed.has(k) ? "crossed" : series.isOffScale[k] ? "edge" : "";
     if (series.marks || kind)
       drawMark(pen, kind, series.shape, shade, plot.valToPos(series.px[k], "x", true), plot.valToPos(series.py[k], "y", true), ratio);
   });
@@ -213,7 +215,7 @@ function pointText(data, { series, k }) {
   const x = data.x.names ? data.x.names[Math.round(series.x[k]) - 1] : number(series.x[k]);
   const label = series.labels[k] ? ", " + series.labels[k] : "";
   return `${series.name}${label}: ${data.x.title} ${x}, ${data.y.title} ${number(series.y[k])}` +
-      (series.early.includes(k) ? " (stopped early)" : "");
+      (series.crossed.includes(k) ? ` (${data.crossed_text})` : "");
 }
 
 function addTooltip(plot, data) {

@@ -74,7 +74,7 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
         if (!height) continue;
         series.points.push_back({.x = run.wall.median,
                                  .y = height->mm.value_or(edge),
-                                 .stopped_early = run.status != Status::Converged,
+                                 .is_crossed = run.status != Status::Converged,
                                  .label = "tolerance " + page_number(run.tolerance) + ", " +
                                           words(status_name(run.status)) +
                                           (height->remark.empty() ? "" : ", " + height->remark)});
