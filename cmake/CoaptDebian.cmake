@@ -45,7 +45,7 @@ if("ZLIB" IN_LIST coapt_finds_core)
 endif()
 coapt_debian_package(core libcoapt-dev libdevel "The library with its headers, for CMake and pkg-config"
                      LICENCE "BSD-3-Clause" DEPENDS ${coapt_core_depends}
-                     LINKED NANOFLANN JSON PUGIXML ZLIB SPECTRA)
+                     LINKED NANOFLANN JSON PUGIXML ZLIB REPORT UPLOT SPECTRA)
 
 set(coapt_depends_cgal libcgal-dev)
 set(coapt_depends_cholmod libsuitesparse-dev libopenblas-dev)

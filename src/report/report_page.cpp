@@ -79,7 +79,8 @@ std::string html(const PageTable& table) {
 }
 
 std::string html(const PagePlot& plot) {
-  std::string html = plot_html(plot) + "<details><summary>Numbers</summary>\n";
+  std::string html =
+      plot_html(plot) + (has_plots() ? "<details>" : "<details open>") + "<summary>Numbers</summary>\n";
   for (const PageTable& numbers : plot_numbers(plot)) html += coapt::html(numbers);
   return html + "</details>\n";
 }
@@ -104,16 +105,20 @@ std::string report_page(const Page& page) {
                                xml_escaped(page.lead) + "</p>\n") +
       "</header>\n<main>\n";
   int number = 0;
+  bool has_plot = false;
   for (const PageSection& section : page.sections) {
     const std::string id = "section-" + std::to_string(++number);
     text += "<section aria-labelledby=\"" + id + "\">\n<h2 id=\"" + id + "\">" + xml_escaped(section.title) +
             "</h2>\n";
-    for (const PageBlock& block : section.blocks)
+    for (const PageBlock& block : section.blocks) {
       text += std::visit([](const auto& part) { return html(part); }, block);
+      has_plot = has_plot || std::holds_alternative<PagePlot>(block);
+    }
     text += "</section>\n";
   }
   return text + "</main>\n<footer>" + (page.footer.empty() ? "" : "<p>" + xml_escaped(page.footer) + "</p>") +
-         "<p>Written by coapt " + version() + ".</p></footer>\n</body>\n</html>\n";
+         "<p>Written by coapt " + version() + ".</p></footer>\n" + (has_plot ? plot_scripts() : "") +
+         "</body>\n</html>\n";
 }
 
 std::string page_number(double value, int digits) {

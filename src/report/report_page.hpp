@@ -50,8 +50,8 @@ struct PageTable {
 
 struct PagePoint {
   double x = 0, y = 0;
-  bool stopped_early = false;           // drawn hollow and crossed: the run did not reach what was wanted
-  std::string label = {};               // of the point, in its tooltip; may be empty
+  bool is_crossed = false;  // drawn hollow and crossed: not what was wanted, see PagePlot::crossed
+  std::string label = {};   // of the point, in its tooltip; may be empty
   bool begins_outer_iteration = false;  // an upright line: from here on another function is minimised
 };
 
@@ -62,29 +62,33 @@ struct PageSeries {
   int group = -1;  // series of one group share a colour, and differ by mark and dashes; below 0: in none
 };
 
-enum class Scale { Linear, Logarithmic };
+// ByRange: logarithmic where no value is negative and the positive ones span a factor of thirty, else linear.
+enum class Scale { Linear, ByRange };
 
 struct PageAxis {
   std::string title = {};  // with its unit
   Scale scale = Scale::Linear;
+  std::vector<std::string> names = {};  // of the values 1, 2, ..., where they stand for something else
 };
 
-// A level of y worth seeing, such as the tolerance.
+// A level of y worth seeing, such as the tolerance. The axis reaches to it.
 struct PageLevel {
   double y = 0;
   std::string label = {};
 };
 
-// Points that are not finite, or not positive on a logarithmic scale, are counted below the plot and not
-// drawn. Long series are drawn by the extremes of each stretch of x, never smoothed. Below the plot its
-// numbers stand as a table that opens: all of them up to 40 of a series, else 40 evenly chosen, which its
-// caption says.
+// Points that are not finite are not drawn, and counted below the plot; so are zeros of a logarithmic axis,
+// which stand as open triangles at its lower end. Long series are drawn by the extremes of each stretch of x,
+// never smoothed. Below the plot its numbers stand as a table that opens: all of them up to 40 of a series,
+// else 40 evenly chosen, which its caption says. In a build without uPlot the tables are open and no plot is
+// drawn.
 struct PagePlot {
   std::string title = {};  // says what it shows: also what a screen reader gets
   PageAxis x = {}, y = {};
   std::vector<PageSeries> series = {};
   std::vector<PageLevel> levels = {};
   std::string note = {};
+  std::string crossed = "stopped early";  // what is said of crossed points
 };
 
 // Markup of our own, put into the page as it stands.
@@ -106,6 +110,9 @@ struct Page {
   std::vector<PageSection> sections = {};
   std::string footer = {};  // small print at the end; the version of the library is added
 };
+
+// Whether this build draws plots.
+bool has_plots();
 
 // The whole HTML file.
 std::string report_page(const Page& page);

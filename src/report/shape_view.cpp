@@ -5,6 +5,8 @@
 #include "formats/xml_escaped.hpp"
 #include "report/detail/report_files.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 namespace {
 
@@ -36,8 +38,13 @@ std::string_view place_name(ViewPlace place) {
 
 OrderedJson field_json(const ViewField& field) {
   OrderedJson values = OrderedJson::array();
-  for (const Vector& state : field.values)
-    values.push_back(state.size() > 0 ? OrderedJson(floats(state)) : OrderedJson(nullptr));
+  for (const Vector& state : field.values) {
+    OrderedJson text = state.size() > 0 ? OrderedJson(floats(state)) : OrderedJson(nullptr);
+    // Values that an earlier state has, as regions do, are named by its number.
+    const auto same = std::find(values.begin(), values.end(), text);
+    values.push_back(text.is_null() || same == values.end() ? std::move(text)
+                                                            : OrderedJson(same - values.begin()));
+  }
   OrderedJson json = {
       {"title", field.title}, {"unit", field.unit}, {"at", place_name(field.place)}, {"values", values}};
   if (!field.categories.empty()) json["categories"] = field.categories;

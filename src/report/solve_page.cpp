@@ -3,34 +3,17 @@
 #include "core/components.hpp"
 #include "core/timing.hpp"
 #include "formats/xml_escaped.hpp"
+#include "report/metric_words.hpp"
 #include "report/solve_view.hpp"
 #include "results/result_warnings.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 namespace coapt {
 namespace {
 
 constexpr size_t kMostShapes = 12;
 constexpr size_t kShapeBytes = 2'000'000;  // of all shapes in the page; a node takes 16 in each
-
-// "orifice_area_mm2" in words: "orifice area".
-std::string in_words(const MetricRow& row) {
-  std::string name = row.name, unit = row.unit;
-  for (char& letter : unit) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  if (!unit.empty() && name.ends_with("_" + unit)) name.resize(name.size() - unit.size() - 1);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  if (const size_t at = name.find("cauchy"); at != std::string::npos) name[at] = 'C';
-  if (const size_t at = name.find("mises"); at != std::string::npos) name[at] = 'M';
-  return name;
-}
-
-std::string unit_sign(std::string unit) {
-  if (unit == "mm2") return "mm²";
-  if (unit == "mm3") return "mm³";
-  return unit;
-}
 
 std::string tile(const std::string& name, double value, const std::string& unit) {
   return "<div><dt>" + formats::xml_escaped(name) + "</dt><dd>" + page_number(value) + " <small>" + unit +
@@ -44,7 +27,7 @@ PageMarkup tiles(const Report& report) {
     for (const char* name : {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
                              "tenting_height_mm", "max_principal_strain", "max_cauchy_stress_kpa",
                              "max_chord_force_n", "max_chord_stress_kpa", "max_displacement_mm"})
-      if (row.name == name && row.value) html += tile(in_words(row), *row.value, unit_sign(row.unit));
+      if (row.name == name && row.value) html += tile(metric_in_words(row), *row.value, unit_sign(row.unit));
   if (report.reference)
     html += tile("mean distance to reference", both_directions(*report.reference).mean, "mm");
   return {"<dl class=\"tiles\">\n" + html + tile("residual", report.result.residual, "") + "</dl>\n"};
@@ -71,7 +54,7 @@ PageTable metric_table(const Report& report) {
                   .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
   for (const MetricRow& row : metric_rows(report.metrics))
     if (row.value)
-      table.rows.push_back({{in_words(row)},
+      table.rows.push_back({{metric_in_words(row)},
                             value_cell(*row.value, range_of(report.branches, row.name)),
                             {unit_sign(row.unit)},
                             {row.meaning}});
@@ -82,8 +65,7 @@ PageTable metric_table(const Report& report) {
 
 PageTable leaflet_table(const std::vector<LeafletMetrics>& leaflets) {
   PageTable table{.caption = "Leaflet by leaflet", .columns = {{"figure", true}}};
-  for (const MetricRow& row : leaflet_rows(leaflets.front()))
-    table.rows.push_back({{in_words(row) + (row.unit.empty() ? "" : " [" + unit_sign(row.unit) + "]")}});
+  for (const MetricRow& row : leaflet_rows(leaflets.front())) table.rows.push_back({{metric_title(row)}});
   for (const LeafletMetrics& leaflet : leaflets) {
     table.columns.push_back({leaflet.name});
     const std::vector<MetricRow> rows = leaflet_rows(leaflet);
@@ -158,8 +140,7 @@ PageTable branch_table(const Branches& branches) {
                              "tenting_height_mm", "max_chord_force_n"})
       if (own[row].name == name && own[row].value) {
         shown.push_back(row);
-        table.columns.push_back(
-            {in_words(own[row]) + (own[row].unit.empty() ? "" : " [" + unit_sign(own[row].unit) + "]")});
+        table.columns.push_back({metric_title(own[row])});
       }
   for (const NearbyEquilibrium& equilibrium : branches.equilibria) {
     table.rows.push_back({{table.rows.empty() ? "this result" : std::to_string(table.rows.size() + 1)},
@@ -269,7 +250,7 @@ PagePlot residual_plot(const std::vector<NamedReport>& reports, bool against_tim
   PagePlot plot{
       .title = against_time ? "Residual against wall time" : "Residual against iterates",
       .x = {against_time ? "wall time since the start [s]" : "accepted iterate"},
-      .y = {"residual", Scale::Logarithmic},
+      .y = {"residual", Scale::ByRange},
       .note = "Residual: the largest out-of-balance nodal force over the largest applied or reaction force."};
   for (const NamedReport& each : reports) {
     PageSeries& series = plot.series.emplace_back();

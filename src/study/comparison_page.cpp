@@ -105,8 +105,8 @@ PageTable figure_table(const Comparison& comparison) {
 
 PagePlot work_plot(const Comparison& comparison) {
   PagePlot plot{.title = "Distance to " + comparison.reference().name + " against run time",
-                .x = {"CPU time of the solve [s]", Scale::Logarithmic},
-                .y = {"mean distance [mm]", Scale::Logarithmic}};
+                .x = {"CPU time of the solve [s]", Scale::ByRange},
+                .y = {"mean distance [mm]", Scale::ByRange}};
   for (const ComparedMethod& method : comparison.methods)
     if (const auto gap = mean_gap(method))
       plot.series.push_back({.name = method.name,

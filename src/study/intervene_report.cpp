@@ -2,6 +2,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/compared_view.hpp"
+#include "report/metric_words.hpp"
 #include "results/csv_row.hpp"
 #include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
@@ -46,8 +47,8 @@ PageTable figure_table(const BeforeAfter& found) {
                   .note = "Definitions: docs/metrics.md."};
   for (const ChangedFigure& figure : changed_figures(found))
     if (figure.before.value || figure.after)
-      table.rows.push_back({{figure.before.name, Tone::Plain, figure.before.meaning},
-                            {figure.before.unit},
+      table.rows.push_back({{metric_in_words(figure.before), Tone::Plain, figure.before.meaning},
+                            {unit_sign(figure.before.unit)},
                             figure_cell(figure.before.value),
                             figure_cell(figure.after),
                             figure_cell(figure.change)});

@@ -1,12 +1,15 @@
 #include "core/components.hpp"
 #include "formats/json/json_text.hpp"
+#include "formats/text.hpp"
 #include "formats/whole_file.hpp"
+#include "report/metric_words.hpp"
 #include "report/report_page.hpp"
 #include "results/csv_row.hpp"
 #include "results/study_files.hpp"
 #include "study/parameter_study.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 
 namespace coapt {
@@ -79,11 +82,17 @@ std::vector<std::string> shown_metrics(const ParameterStudy& study) {
   return names;
 }
 
+MetricRow row_of(const std::string& metric) {
+  for (const MetricRow& row : metric_rows(Metrics()))
+    if (row.name == metric) return row;
+  return {metric, "", "", false, std::nullopt};
+}
+
 PageTable point_table(const ParameterStudy& study) {
   PageTable table{.caption = "Points, the best first", .columns = {{"rank"}}};
   for (const Sweep& sweep : study.sweeps) table.columns.push_back({sweep.path, true});
   table.columns.push_back({"status", true});
-  for (const std::string& name : shown_metrics(study)) table.columns.push_back({name});
+  for (const std::string& name : shown_metrics(study)) table.columns.push_back({metric_title(row_of(name))});
   int rank = 0;
   for (const size_t place : ranked(study)) {
     const PointResult& result = study.results[place];
@@ -97,25 +106,57 @@ PageTable point_table(const ParameterStudy& study) {
     }
     table.rows.push_back(std::move(row));
   }
-  table.note = "Ranked by " + study.metric + ", the " + (study.is_greatest_best ? "greatest" : "least") +
+  table.note = "Ranked by " + metric_in_words(row_of(study.metric)) + ", the " +
+               (study.is_greatest_best ? "greatest" : "least") +
                " first. All figures stand in study.csv, and each point's own page in its folder.";
   return table;
 }
 
+// Where the values of a sweep stand on an axis: numbers of one unit where they belong, others side by side.
+struct SweptAxis {
+  PageAxis axis;
+  std::vector<double> places;  // of each value
+};
+
+SweptAxis swept_axis(const Sweep& sweep) {
+  SweptAxis swept{{sweep.path, Scale::ByRange}, {}};
+  std::string unit;
+  bool is_even = true;
+  for (const std::string& value : sweep.values) {
+    char* end = nullptr;
+    swept.places.push_back(std::strtod(value.c_str(), &end));
+    const std::string rest(formats::trimmed(end));
+    is_even = is_even && end != value.c_str() && (swept.places.size() == 1 || rest == unit);
+    unit = rest;
+  }
+  if (is_even) {
+    if (!unit.empty()) swept.axis.title += " [" + unit_sign(unit) + "]";
+    return swept;
+  }
+  swept.axis.names = sweep.values;
+  for (size_t k = 0; k < swept.places.size(); ++k) swept.places[k] = static_cast<double>(k + 1);
+  return swept;
+}
+
 // The metric along the last sweep, one line for each combination of the others.
 PagePlot metric_plot(const ParameterStudy& study, const std::string& metric) {
-  PagePlot plot{.title = metric + " against " + study.sweeps.back().path,
-                .x = {study.sweeps.back().path},
-                .y = {metric}};
+  const MetricRow row = row_of(metric);
+  const Sweep& sweep = study.sweeps.back();
+  const SweptAxis swept = swept_axis(sweep);
+  PagePlot plot{
+      .title = metric_in_words(row) + " against " + sweep.path, .x = swept.axis, .y = {metric_title(row)}};
+  plot.title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(plot.title[0])));
   for (const PointResult& result : study.results) {
     std::string name;
     for (size_t k = 0; k + 1 < study.sweeps.size(); ++k)
       name += (k == 0 ? "" : ", ") + study.sweeps[k].path + " = " + result.values[k];
-    if (name.empty()) name = metric;
-    if (plot.series.empty() || plot.series.back().name != name) plot.series.push_back({.name = name});
-    if (const std::optional<double> value = result.metric(metric))
+    if (name.empty()) name = metric_in_words(row);
+    if (plot.series.empty() || plot.series.back().name != name)
+      plot.series.push_back({.name = name, .is_joined = swept.axis.names.empty()});
+    const auto at = std::find(sweep.values.begin(), sweep.values.end(), result.values.back());
+    if (const std::optional<double> value = result.metric(metric); value && at != sweep.values.end())
       plot.series.back().points.push_back(
-          {std::strtod(result.values.back().c_str(), nullptr), *value, !result.has_converged()});
+          {swept.places[static_cast<size_t>(at - sweep.values.begin())], *value, !result.has_converged()});
   }
   return plot;
 }
@@ -134,7 +175,7 @@ std::string parameter_study_page(const ParameterStudy& study) {
   for (const std::string& name : shown_metrics(study)) {
     const bool has_values = std::any_of(study.results.begin(), study.results.end(),
                                         [&](const PointResult& r) { return r.metric(name).has_value(); });
-    if (has_values && plots.blocks.size() < 4) plots.blocks.push_back(metric_plot(study, name));
+    if (has_values && plots.blocks.size() < 4) plots.blocks.emplace_back(metric_plot(study, name));
   }
   page.sections.push_back(std::move(plots));
   return report_page(page);

@@ -2,6 +2,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/compared_view.hpp"
+#include "report/metric_words.hpp"
 #include "results/csv_row.hpp"
 #include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
@@ -130,7 +131,7 @@ PageTable figure_table(const ChordTuning& found) {
   };
   if (std::isfinite(found.misfit_before()))
     table.rows.push_back(
-        {{"rms_distance_mm", Tone::Plain, "Root mean square distance of the vertices from the target."},
+        {{"rms distance", Tone::Plain, "Root mean square distance of the vertices from the target."},
          {"mm"},
          cell(found.misfit_before()),
          cell(found.misfit_after()),
@@ -143,8 +144,8 @@ PageTable figure_table(const ChordTuning& found) {
     std::optional<double> change;
     if (then && before[k].value) change = *then - *before[k].value;
     if (before[k].value || then)
-      table.rows.push_back({{before[k].name, Tone::Plain, before[k].meaning},
-                            {before[k].unit},
+      table.rows.push_back({{metric_in_words(before[k]), Tone::Plain, before[k].meaning},
+                            {unit_sign(before[k].unit)},
                             cell(before[k].value),
                             cell(then),
                             cell(change)});
@@ -187,7 +188,10 @@ PageTable length_table(const ChordTuning& found) {
 }
 
 PagePlot history_plot(const ChordTuning& found) {
-  PagePlot plot{.title = "Cost of each solve", .x = {"solve"}, .y = {"cost", Scale::Logarithmic}};
+  PagePlot plot{.title = "Cost of each solve",
+                .x = {"solve"},
+                .y = {"cost", Scale::ByRange},
+                .crossed = "on another branch of equilibria"};
   PageSeries all{.name = "each", .is_joined = false}, best{.name = "best so far"};
   int number = 1, rejected = 0, aided = 0;
   double least = kInfinity;
@@ -198,8 +202,7 @@ PagePlot history_plot(const ChordTuning& found) {
       continue;
     }
     least = std::min(least, trial.cost);
-    all.points.push_back({static_cast<double>(number), trial.cost, trial.lost_branch.has_value(),
-                          trial.lost_branch ? "another branch of equilibria" : ""});
+    all.points.push_back({static_cast<double>(number), trial.cost, trial.lost_branch.has_value()});
     best.points.push_back({static_cast<double>(number), least});
   }
   plot.series = {best, all};
@@ -215,7 +218,7 @@ PagePlot history_plot(const ChordTuning& found) {
 PagePlot spectrum_plot(const ChordTuning& found) {
   PagePlot plot{.title = "Singular value of each combination of lengths",
                 .x = {"combination, best determined first"},
-                .y = {"singular value [mm/mm]", Scale::Logarithmic}};
+                .y = {"singular value [mm/mm]", Scale::ByRange}};
   PageSeries known{.name = "determined", .is_joined = false},
       open{.name = "not determined", .is_joined = false};
   const Determinacy& spectrum = *found.determinacy;
@@ -369,7 +372,7 @@ std::string chord_tuning_page(const ChordTuning& found) {
               " after";
   page.tone = found.has_converged() ? Tone::Good : Tone::Caution;
   page.sections.push_back({"Tuning", {messages(found)}});
-  if (!found.tuning.best.history.empty()) page.sections.back().blocks.push_back(history_plot(found));
+  if (!found.tuning.best.history.empty()) page.sections.back().blocks.emplace_back(history_plot(found));
   std::vector<ComparedShape> shapes = {{"before", &found.before.model, &found.before.report}};
   if (found.after) shapes.push_back({"after", &found.after->model, &found.after->report});
   if (const auto view = compared_view(shapes, shapes.size() - 1, "tuning", "Before ↔ after"))

@@ -61,7 +61,7 @@ class BenchTest(command_case.CommandCase):
             self.assertIn(line, text)
         self.assertRegex(found["recommendations"][0], r"^for 1 mm on this scene: (newton|lbfgs), [\d,]+ triangles, ")
         page = (self.out / "bench.html").read_text()
-        self.assertIn("<svg", page)
+        self.assertIn('<figure class="plot">', page)
         for word in ['src="http', 'href="http', "@import"]:
             self.assertNotIn(word, page)
 

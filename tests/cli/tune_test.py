@@ -67,7 +67,7 @@ class TuneTest(CommandCase):
         rows = list(csv.DictReader((self.folder / "out" / "tuning.csv").read_text().splitlines()))
         self.assertAlmostEqual(float(rows[0]["after_mm"]), lengths["tip_0"]["after_mm"], places=6)
         page = (self.folder / "out" / "report.html").read_text()
-        for piece in ["Cost of each solve", "Rest lengths", "orifice_area_mm2", "tip_1", "What the target determines",
+        for piece in ["Cost of each solve", "Rest lengths", "orifice area", "mm²", "tip_1", "What the target determines",
                       "Singular value of each combination of lengths"]:
             self.assertTrue(piece in page, piece)
         rows = self.table(page, "Combinations of lengths")

@@ -2,10 +2,12 @@
 
 #include "energy/objective.hpp"
 #include "formats/json/base64.hpp"
+#include "report/plot_data.hpp"
 #include "results/shape_record.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -43,66 +45,126 @@ TEST(ReportPage, RowsAreNamedAndShortOnesFilled) {
             std::string::npos);
 }
 
-TEST(ReportPage, APlotMarksRunsThatStoppedEarly) {
-  PagePlot plot{
-      .title = "Error",
-      .x = {"time [s]", Scale::Logarithmic},
-      .y = {"error [mm]", Scale::Logarithmic},
-      .series = {{"newton", {{0.1, 1}, {1, 1e-3}}}, {"lbfgs", {{0.2, 1}, {3, 1e-2, true, "1e-6"}}}}};
-  const std::string html = report_page(page_with(plot));
-  EXPECT_EQ(count(html, "<g class=\"mark early\"><title>"), 1u);
-  EXPECT_NE(html.find("lbfgs, 1e-6: time [s] 3, error [mm] 0.01 (stopped early)"), std::string::npos);
-  EXPECT_EQ(count(html, "<polyline points=\""), 2u + 2u);  // in the plot and in its key
-  plot.series[1].points[1].stopped_early = false;
-  EXPECT_EQ(count(report_page(page_with(plot)), "mark early\">"), 0u);
+// Its page, and the data of its plot.
+struct ReportPlot : testing::Test {
+  void SetUp() override {
+    if (!has_plots()) GTEST_SKIP() << "this build has no uPlot";
+  }
+  nlohmann::json data(PagePlot plot) {
+    page = report_page(page_with(std::move(plot)));
+    const std::vector<nlohmann::json> plots = plot_data(page);
+    EXPECT_EQ(plots.size(), 1u);
+    return plots.at(0);
+  }
+  std::string page;
+};
+
+PagePlot plot_of(const std::vector<PagePoint>& points, Scale x = Scale::ByRange, Scale y = Scale::ByRange) {
+  return {.title = "t", .x = {"x", x}, .y = {"y", y}, .series = {{"s", points}}};
 }
 
-TEST(ReportPage, APlotShowsKinInOneColourAndWhereARoundBegins) {
+TEST_F(ReportPlot, MarksRunsThatStoppedEarly) {
+  const nlohmann::json plot =
+      data({.title = "Error",
+            .x = {"time [s]", Scale::ByRange},
+            .y = {"error [mm]", Scale::ByRange},
+            .series = {{"newton", {{0.1, 1}, {1, 1e-3}}}, {"lbfgs", {{0.2, 1}, {3, 1e-2, true, "1e-6"}}}}});
+  EXPECT_TRUE(plot["series"][0]["crossed"].empty());
+  EXPECT_EQ(plot["series"][1]["crossed"], nlohmann::json({1}));
+  EXPECT_EQ(plot["series"][1]["labels"], nlohmann::json({"", "1e-6"}));
+  EXPECT_EQ(plot["y"]["title"], "error [mm]");
+  EXPECT_EQ(count(page, ">stopped early</td>"), 1u);
+  EXPECT_NE(page.find("aria-label=\"Error: error [mm] against time [s]\""), std::string::npos);
+}
+
+TEST_F(ReportPlot, ShowsKinInOneColourAndWhereARoundBegins) {
   PagePlot plot{.title = "Error", .x = {"time [s]"}, .y = {"error [mm]"}};
   for (const int group : {4, 4, 2})
     plot.series.push_back({.name = "line",
                            .points = {{1, 2}, {.x = 2, .y = 1, .begins_outer_iteration = group == 2}},
                            .group = group});
-  const std::string html = report_page(page_with(plot));
-  EXPECT_EQ(count(html, "<g class=\"series s4\">"), 1u);
-  EXPECT_EQ(count(html, "<g class=\"series s4 d1\">"), 1u);  // dashed, and other marks
-  EXPECT_EQ(count(html, "<g class=\"series s2\">"), 1u);
-  EXPECT_EQ(count(html, "<line class=\"round\""), 1u + 1u);  // in the plot and in its key
+  const nlohmann::json series = data(plot)["series"];
+  const auto look = [&](size_t s) { return std::pair<int, int>(series[s]["colour"], series[s]["dashes"]); };
+  EXPECT_EQ(look(0), std::pair(4, 0));
+  EXPECT_EQ(look(1), std::pair(4, 1));  // dashed, and other marks
+  EXPECT_EQ(look(2), std::pair(2, 0));
+  EXPECT_NE(series[0]["shape"], series[1]["shape"]);
+  EXPECT_EQ(series[2]["rounds"], nlohmann::json({1}));
+  EXPECT_TRUE(series[1]["rounds"].empty());
 }
 
-TEST(ReportPage, PointsWithoutAPlaceAreCounted) {
-  PagePlot plot{.title = "Error", .x = {"x"}, .y = {"y", Scale::Logarithmic}};
+TEST_F(ReportPlot, ChoosesItsScalesByTheRangeOfTheValues) {
+  const auto is_logarithmic = [&](double least, double greatest, Scale scale = Scale::ByRange) {
+    return data(plot_of({{1, least}, {2, greatest}}, Scale::Linear, scale))["y"]["logarithmic"] == true;
+  };
+  EXPECT_TRUE(is_logarithmic(1e-8, 1));
+  EXPECT_TRUE(is_logarithmic(1, 30));
+  EXPECT_FALSE(is_logarithmic(1, 29));  // where a logarithmic axis would draw all at one end of its decades
+  EXPECT_FALSE(is_logarithmic(1e-8, 1, Scale::Linear));
+  EXPECT_FALSE(is_logarithmic(-1, 1e6));
+  EXPECT_FALSE(is_logarithmic(0, 0));
+  EXPECT_FALSE(is_logarithmic(0, 5));
+  PagePlot with_level = plot_of({{1, 1}, {2, 2}});
+  with_level.levels = {{1e-8, "tolerance"}};  // which the axis reaches to
+  EXPECT_EQ(data(with_level)["y"]["logarithmic"], true);
+  EXPECT_EQ(data(with_level)["x"]["logarithmic"], false);
+}
+
+TEST_F(ReportPlot, LosesNoPointWithoutAWord) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  plot.series = {{"a", {{1, 1e-3}, {2, 0}, {3, -1}, {4, nothing}, {nothing, 1}, {5, 10}}}};
-  const std::string html = report_page(page_with(plot));
-  EXPECT_NE(html.find("4 points have no place"), std::string::npos);
-  EXPECT_EQ(count(html, "<g class=\"mark\"><title>"), 2u);
-  const std::string svg = html.substr(html.find("<svg role"), html.find("</svg>") - html.find("<svg role"));
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  const nlohmann::json plot = data(plot_of({{1, 1e-3}, {2, 0}, {4, nothing}, {nothing, 1}, {5, 10}}));
+  EXPECT_EQ(plot["series"][0]["y"], nlohmann::json({1e-3, 0.0, 10.0}));
+  EXPECT_NE(page.find("1 point is zero: it stands as an open triangle"), std::string::npos);
+  EXPECT_NE(page.find("2 points are not finite and not drawn."), std::string::npos);
+  data(plot_of({{1, 1e-3}, {2, 0}, {3, -1}, {5, 10}}));  // linear, so all have their places
+  EXPECT_EQ(page.find("point is"), std::string::npos);
+  EXPECT_EQ(page.find("points are"), std::string::npos);
 }
 
-TEST(ReportPage, APlotOfNothingOrOfOneValueHasAxes) {
-  for (const auto& points : std::vector<std::vector<PagePoint>>{{}, {{2, 3}}, {{2, 3}, {2, 3}}, {{0, 0}}}) {
-    const std::string html =
-        report_page(page_with(PagePlot{.title = "t", .x = {"x"}, .y = {"y"}, .series = {{"s", points}}}));
-    EXPECT_GT(count(html, "class=\"grid\""), 3u);
-    EXPECT_EQ(html.find("nan"), std::string::npos);
-  }
+TEST_F(ReportPlot, NamesValuesThatAreNoNumbers) {
+  PagePlot plot = plot_of({{1, 3}, {2, 4}});
+  plot.x.names = {"newton", "<lbfgs>"};
+  EXPECT_EQ(data(plot)["x"]["names"], nlohmann::json({"newton", "<lbfgs>"}));
+  EXPECT_NE(page.find("<td class=\"plain\">&lt;lbfgs&gt;</td>"), std::string::npos);
+  EXPECT_EQ(page.find("<lbfgs>"), std::string::npos);
 }
 
-TEST(ReportPage, ALongSeriesStaysSmallAndKeepsItsExtremes) {
-  PageSeries series{.name = "residual"};
+TEST_F(ReportPlot, KeepsALongSeriesSmallWithItsExtremes) {
+  std::vector<PagePoint> points;
   for (int k = 0; k < 100000; ++k)
-    series.points.push_back({double(k), k == 54321 ? 1e6 : 1 + 0.5 * std::sin(k)});
-  const std::string html = report_page(
-      page_with(PagePlot{.title = "t", .x = {"x"}, .y = {"y", Scale::Logarithmic}, .series = {series}}));
-  EXPECT_LT(html.size(), 60000u);
-  const size_t line = html.find("<polyline points=\"") + 18;
-  double highest = 1e9;  // places grow downwards
-  for (size_t at = html.find(',', line); at < html.find('"', line); at = html.find(',', at + 1))
-    highest = std::min(highest, std::stod(html.substr(at + 1, 8)));
-  EXPECT_NEAR(highest, 14, 1);  // the top of the plot, at 1e6
+    points.push_back({.x = double(k),
+                      .y = k == 54321 ? 1e6 : 1 + 0.5 * std::sin(k),
+                      .label = "not worth a byte",
+                      .begins_outer_iteration = k == 77777});
+  const nlohmann::json plot = data(plot_of(points, Scale::Linear)), series = plot["series"][0];
+  EXPECT_LT(plot.dump().size(), 30000u);
+  const auto& ys = series["y"];
+  const auto highest = std::max_element(ys.begin(), ys.end()) - ys.begin();
+  EXPECT_EQ(ys[static_cast<size_t>(highest)], 1e6);
+  EXPECT_EQ(series["x"][static_cast<size_t>(highest)], 54321);
+  EXPECT_EQ(series["x"][series["rounds"][0].get<size_t>()], 77777);
+  EXPECT_EQ(series["x"].front(), 0);
+  EXPECT_EQ(series["x"].back(), 99999);
+}
+
+TEST_F(ReportPlot, PutsItsLibraryIntoAPageThatHasAPlotAndInNoOther) {
+  const std::string licence = "Licence of uPlot";
+  data(plot_of({{1, 2}}));
+  EXPECT_EQ(count(page, licence), 1u);
+  EXPECT_EQ(count(page, "Permission is hereby granted"), 1u);
+  EXPECT_EQ(count(report_page(page_with(PageText{"no plot"})), licence), 0u);
+  Page two = page_with(plot_of({{1, 2}}));
+  two.sections.push_back({"More", {plot_of({{1, 2}})}});
+  EXPECT_EQ(count(report_page(two), licence), 1u);
+}
+
+TEST(ReportPage, ABuildWithoutUPlotShowsTheNumbersAndSaysWhy) {
+  if (has_plots()) GTEST_SKIP() << "this build has uPlot";
+  const std::string page = report_page(page_with(plot_of({{1, 2.5}})));
+  EXPECT_NE(page.find("uPlot was not found"), std::string::npos);
+  EXPECT_NE(page.find("<details open><summary>Numbers"), std::string::npos);
+  EXPECT_NE(page.find("2.5</td>"), std::string::npos);
+  EXPECT_EQ(page.find("class=\"chart\""), std::string::npos);
 }
 
 TEST(ReportPage, NumbersAreForPeople) {

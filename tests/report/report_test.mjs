@@ -50,10 +50,11 @@ function written(file, scene, command, ...options) {
   return join(folder, file);
 }
 
-// A page, named by its file or the folder of its report.html, whose errors and requests are counted; closed() asserts
+// A page, named by its file or the folder of its report.html, where `atFirst` is run before its scripts and whose errors and requests are counted; closed() asserts
 // that there were none.
-async function opened(place, options = {}) {
+async function opened(place, options = {}, atFirst = () => {}) {
   const page = await browser.newPage({ viewport: { width: 900, height: 760 }, ...options });
+  await page.addInitScript(atFirst);
   const file = place.endsWith(".html") ? place : join(place, "report.html");
   const errors = [], requests = [], url = pathToFileURL(file).href;
   page.on("console", message => message.type() === "error" && errors.push(message.text()));
@@ -85,12 +86,72 @@ async function pick(page, node) {
   assert.match(await page.getByRole("status").textContent(), new RegExp(`^Node ${node}\\.`));
 }
 
-async function assertPlotsHoldTheirTexts(page) {
-  for (const plot of await page.locator("figure.plot svg[role=img]").all())
-    assert.deepEqual(await plot.evaluate(svg => [...svg.querySelectorAll("text")].filter(text => {
-      const box = text.getBoundingClientRect(), all = svg.getBoundingClientRect();
-      return box.left < all.left - 1 || box.right > all.right + 1 || box.top < all.top - 1 || box.bottom > all.bottom + 1;
-    }).map(text => text.textContent)), [], "texts that are cut off");
+// Nothing stands at the edge of a canvas: a text would be cut off there. And something stands inside of it, in the
+// colours of the page.
+async function assertChartsAreDrawn(page, least) {
+  const charts = page.locator("figure.plot .chart");
+  assert.ok(await charts.count() >= least, "charts: " + await charts.count());
+  for (const chart of await charts.all()) {
+    const name = await chart.getAttribute("aria-label");
+    const { edge, colours } = await chart.evaluate(chart => {
+      const canvas = chart.querySelector("canvas"), { width, height } = canvas;
+      const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+      const inks = new Map();
+      let edge = 0;
+      for (let y = 0; y < height; ++y)
+        for (let x = 0; x < width; ++x) {
+          const at = 4 * (y * width + x);
+          if (data[at + 3] === 0) continue;
+          if (x === 0 || y === 0 || x === width - 1 || y === height - 1) ++edge;
+          if (data[at + 3] === 255) {
+            const ink = data.slice(at, at + 3).join();
+            inks.set(ink, (inks.get(ink) ?? 0) + 1);
+          }
+        }
+      const style = getComputedStyle(document.documentElement), pen = new OffscreenCanvas(1, 1).getContext("2d");
+      const series = JSON.parse(chart.querySelector("script").textContent).series;
+      const colours = series.filter(each => each.x.length > 0).map(each => {
+        pen.fillStyle = style.getPropertyValue("--s" + each.colour);
+        pen.fillRect(0, 0, 1, 1);
+        return inks.get([...pen.getImageData(0, 0, 1, 1).data.slice(0, 3)].join()) ?? 0;
+      });
+      return { edge, colours };
+    });
+    assert.equal(edge, 0, name + ": something is cut off");
+    assert.ok(colours.every(pixels => pixels > 8), `${name}: pixels of each series: ${colours}`);
+  }
+}
+
+// WCAG 2.2, relative luminance.
+async function assertContrast(page, foreground, least) {
+  const ratio = await page.evaluate(name => {
+    const pen = new OffscreenCanvas(1, 1).getContext("2d"), style = getComputedStyle(document.documentElement);
+    const luminance = name => {
+      pen.fillStyle = style.getPropertyValue(name);
+      pen.fillRect(0, 0, 1, 1);
+      const [r, g, b] = [...pen.getImageData(0, 0, 1, 1).data].map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const [a, b] = [luminance(name), luminance("--ground")].sort((a, b) => b - a);
+    return (a + 0.05) / (b + 0.05);
+  }, foreground);
+  assert.ok(ratio >= least, `${foreground}: contrast ${ratio.toFixed(2)}`);
+}
+
+// In both colour schemes and on a telephone: every chart is drawn, no text is too pale, nothing needs scrolling sideways.
+async function assertFitsEveryScreen(page, title, least) {
+  for (const colorScheme of ["dark", "light"]) {
+    await page.emulateMedia({ colorScheme });
+    for (const width of [390, 1280]) {
+      await page.setViewportSize({ width, height: 760 });
+      await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      assert.ok(wide <= 0, `${title} is ${wide} px wider than ${width}`);
+      if (least > 0) await assertChartsAreDrawn(page, least);
+    }
+    for (const name of ["--ink", "--quiet", "--good", "--caution", "--bad", "--accent"]) await assertContrast(page, name, 4.5);
+    for (let k = 0; k < 8; ++k) await assertContrast(page, "--s" + k, 3);
+  }
 }
 
 // Each way leads from the start through iterates, each another shape, to a result.
@@ -241,8 +302,8 @@ const tests = {
     }
     assert.equal(await page.locator("header .lead").textContent(), result.message);
     assert.ok(await page.getByText(result.certificate.summary).count() > 0);
-    assert.equal(await page.locator("figure.plot svg[role=img]").count(), 2);
-    await assertPlotsHoldTheirTexts(page);
+    assert.equal(await page.locator("figure.plot [role=img]").count(), 2);
+    await assertChartsAreDrawn(page, 2);
   },
 
   async "the orifice is drawn with its area, and every legend has its unit and its ends"({ page, vtp, folder }) {
@@ -370,38 +431,77 @@ await run("every warning stands above the figures, in sight", async () => {
     await closed();
   }
 });
-await run("plots look as they did, in light and dark", async () => {
-  const folder = join(scratch, "sample");
+const sampleFolder = (name, text) => {
+  const folder = join(scratch, name);
   mkdirSync(folder, { recursive: true });
-  writeFileSync(join(folder, "report.html"), execFileSync(samplePage));
+  writeFileSync(join(folder, "report.html"), text);
+  return folder;
+};
+const sample = execFileSync(samplePage, { encoding: "utf8" });
+await run("plots look as they did, in light and dark", async () => {
+  const right = sampleFolder("sample", sample), spoilt = sampleFolder("spoilt", sample.replace('"joined":true', '"joined":false'));
   for (const colorScheme of ["light", "dark"]) {
-    const sample = await opened(folder, { colorScheme });
-    await sample.page.addStyleTag({ content: "figure.plot svg text { visibility: hidden }" });
-    const plot = sample.page.getByRole("img", { name: /^Error against time/ });
-    const drawn = await framed(sample.page, plot, 720, 400);
-    await plot.locator("polyline").first().evaluate(curve => curve.remove());
-    await looksLike(browser, "plot_" + colorScheme, drawn, await framed(sample.page, plot, 720, 400), scratch);
-    await sample.closed();
+    const shots = [];
+    for (const folder of [right, spoilt]) {
+      const { page, closed } = await opened(folder, { colorScheme }, () => {  // without texts, whose fonts differ
+        CanvasRenderingContext2D.prototype.fillText = () => {};
+        CanvasRenderingContext2D.prototype.measureText = () => ({ width: 30 });
+      });
+      await page.addStyleTag({ content: "figure.plot .axis { visibility: hidden }" });
+      shots.push(await framed(page, page.getByRole("img", { name: /^Error against time/ }), 720, 440));
+      await closed();
+    }
+    await looksLike(browser, "plot_" + colorScheme, ...shots, scratch);
   }
 });
-await run("pages of compare, bench and stress work as that of solve does, and fit on paper", async () => {
+await run("axes are logarithmic where values span decades, and no point is lost", async () => {
+  const { page, closed } = await opened(join(scratch, "sample"));
+  const isLogarithmic = name => page.locator("figure.plot", { hasText: new RegExp("^\\s*" + name) }).first()
+      .evaluate(figure => JSON.parse(figure.querySelector(".chart script").textContent).y.logarithmic);
+  for (const [name, expected] of [["Error against time", true], ["Narrow", false], ["Zeros", true], ["Below zero", false], ["Named", true]])
+    assert.equal(await isLogarithmic(name), expected, name);
+  await assertChartsAreDrawn(page, 7);
+  assert.ok(await page.getByText("1 point is zero: it stands as an open triangle").isVisible());
+  await closed();
+});
+await run("the pointer shows the values of a point, and the key what its marks mean", async () => {
+  const { page, closed } = await opened(join(scratch, "sample"));
+  const figure = page.locator("figure.plot").first(), tip = figure.locator(".tip");
+  assert.ok(await tip.isHidden());
+  const box = await figure.locator(".u-over").boundingBox();
+  const last = { x: Math.log10(30 / 0.1) / Math.log10(50 / 0.1), y: Math.log10(10 / 1e-2) / Math.log10(10 / 1e-6) };
+  await page.mouse.move(box.x + last.x * box.width, box.y + last.y * box.height);
+  assert.equal(await tip.textContent(), "two, stopped at its time limit: time [s] 30, error [mm] 0.01 (stopped early)");
+  await page.mouse.move(box.x + 3, box.y + box.height - 3);
+  assert.ok(await tip.isHidden(), "nothing is near");
+  assert.deepEqual(await figure.locator(".key li").allTextContents(), ["one", "two", "three", "stopped early"]);
+  await closed();
+});
+await run("pages of compare, bench, study, tune and stress work as that of solve does, and fit on screens and paper", async () => {
   solved("disc", ["disc", "--triangles", "100"]);
-  const scene = join(scratch, "disc", "scene.json"), few = ["--methods", "newton,lbfgs"];
-  for (const [title, place] of [
-         ["Comparison of methods on disc (scene.json)", written("report.html", scene, "compare", ...few)],
+  const disc = join(scratch, "disc", "scene.json"), valve = join(scratch, "mitral", "scene.json"), few = ["--methods", "newton,lbfgs"];
+  for (const [title, place, charts] of [
+         ["Result of parametric mitral valve (scene.json)", folder, 2],
+         ["Comparison of methods on disc (scene.json)", written("report.html", disc, "compare", ...few), 3],
          ["Benchmark of disc (scene.json)",
-          written("bench.html", scene, "bench", ...few, "--tolerances", "1e-2,1e-6", "--repeats", "1")],
-         ["Stability matrix of disc (scene.json)", written("stress.html", scene, "stress", "--rows", "S1,S4,S8", "--quick")]]) {
+          written("bench.html", disc, "bench", ...few, "--tolerances", "1e-2,1e-6", "--repeats", "1"), 2],
+         ["Stability matrix of disc (scene.json)", written("stress.html", disc, "stress", "--rows", "S1,S4,S8", "--quick"), 0],
+         ["Study of parametric mitral valve (scene.json)", written("report.html", valve, "study", "--sweep", "load_pressure.value=60,120 mmHg"), 4],
+         ["Chord lengths of parametric mitral valve (scene.json)",
+          written("report.html", valve, "tune", "--orifice-weight", "1", "--by", "tip", "--max-solves", "6"), 1]]) {
     const { page, closed } = await opened(place);
     assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
     assert.ok(await page.getByRole("table").count() > 0);
-    await assertPlotsHoldTheirTexts(page);
-    if (await page.locator("#viewer").count() > 0) await assertWays(page, title);
-    for (const part of [/version of coapt/, /certificate/i, /^Residual against iterates/])
-      assert.ok(await page.getByText(part).count() + await page.getByRole("img", { name: part }).count() > 0, title + ": " + part);
+    assert.doesNotMatch(await page.locator("main").textContent(), /\b[a-z]+(_[a-z]+)*_(mm[23]?|kpa|n)\b/, "keys of files in a page");
+    if (await page.locator("#viewer").count() > 0 && /^(Comp|Bench|Stab)/.test(title)) await assertWays(page, title);
+    if (/^(Comp|Bench|Stab)/.test(title))
+      for (const part of [/version of coapt/, /certificate/i, /^Residual against iterates/])
+        assert.ok(await page.getByText(part).count() + await page.getByRole("img", { name: part }).count() > 0, title + ": " + part);
+    await assertFitsEveryScreen(page, title, charts);
     await page.emulateMedia({ media: "print" });
     await page.setViewportSize({ width: 718, height: 1000 });  // A4 without its margins, 96 to an inch
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), title + " is wider than paper");
+    if (charts > 0) await assertChartsAreDrawn(page, charts);
     await closed();
   }
 });

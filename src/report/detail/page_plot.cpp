@@ -1,212 +1,193 @@
 #include "report/detail/page_plot.hpp"
 
+#include "formats/json/json_text.hpp"
 #include "formats/xml_escaped.hpp"
-#include "report/detail/plot_axis.hpp"
+#include "report/detail/report_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <sstream>
+#include <cstdlib>
+#include <limits>
 
 namespace coapt {
 namespace {
 
 using formats::xml_escaped;
 
-constexpr double kWidth = 720, kHeight = 400;  // of the picture [px]
-constexpr double kLeft = 70, kRight = 690, kTop = 14, kBottom = 344;
 constexpr size_t kColours = 8;     // that style.css has for series
 constexpr size_t kMostMarks = 60;  // of a series; a longer one is a line alone
 constexpr size_t kMostRows = 40;   // of the table of a series
 constexpr int kStretches = 300;    // of x; of each the line keeps its ends and extremes
+constexpr double kLogarithmicFrom =
+    30;  // greatest over least; a linear axis has the least at a thirtieth of it
 
-struct Spot {
-  double x = 0, y = 0;  // [px]
-};
+bool is_drawn(const PagePoint& point) { return std::isfinite(point.x) && std::isfinite(point.y); }
 
-std::string px(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
-// What tells a series from the others: colour and mark, in a group mark and dashes.
-struct Look {
-  std::string classes;
-  size_t shape = 0;
-};
-
-Look look_of(const PagePlot& plot, size_t series) {
-  const int group = plot.series[series].group;
-  const size_t colour = (group < 0 ? series : static_cast<size_t>(group)) % kColours;
-  size_t index_in_group = 0;  // series of the group before it
-  for (size_t s = 0; group >= 0 && s < series; ++s)
-    if (plot.series[s].group == group) ++index_in_group;
-  return {"series s" + std::to_string(colour) +
-              (index_in_group > 0 ? " d" + std::to_string(std::min<size_t>(index_in_group, 3)) : ""),
-          group < 0 ? series : index_in_group};
-}
-
-// A shape for each series, so that colour is not all that tells them apart.
-std::string shape(size_t series, const Spot& at, double r) {
-  const auto point = [&](double dx, double dy) { return px(at.x + r * dx) + "," + px(at.y + r * dy) + " "; };
-  switch (series % 4) {
-    case 0:
-      return "<circle cx=\"" + px(at.x) + "\" cy=\"" + px(at.y) + "\" r=\"" + px(r) + "\"/>";
-    case 1:
-      return "<polygon points=\"" + point(-.9, -.9) + point(.9, -.9) + point(.9, .9) + point(-.9, .9) +
-             "\"/>";
-    case 2:
-      return "<polygon points=\"" + point(0, -1.25) + point(1.1, .8) + point(-1.1, .8) + "\"/>";
-    default:
-      return "<polygon points=\"" + point(0, -1.3) + point(1.3, 0) + point(0, 1.3) + point(-1.3, 0) + "\"/>";
+bool is_logarithmic(Scale scale, const std::vector<double>& values) {
+  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  for (const double value : values) {
+    if (value < 0) return false;
+    if (value == 0) continue;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
   }
+  return scale == Scale::ByRange && greatest >= kLogarithmicFrom * least;
 }
 
-std::string mark(const PagePlot& plot, size_t series, const PagePoint& point, const Spot& at) {
-  const std::string name = plot.series[series].name;
-  std::string title = name + (point.label.empty() ? "" : ", " + point.label) + ": " + plot.x.title + " " +
-                      page_number(point.x) + ", " + plot.y.title + " " + page_number(point.y);
-  if (point.stopped_early) title += " (stopped early)";
-  std::string html = std::string("<g class=\"mark") + (point.stopped_early ? " early" : "") + "\"><title>" +
-                     xml_escaped(title) + "</title>" + shape(look_of(plot, series).shape, at, 4.5);
-  if (point.stopped_early)
-    html += "<path d=\"M" + px(at.x - 7) + " " + px(at.y - 7) + "L" + px(at.x + 7) + " " + px(at.y + 7) +
-            "M" + px(at.x - 7) + " " + px(at.y + 7) + "L" + px(at.x + 7) + " " + px(at.y - 7) + "\"/>";
-  return html + "</g>";
+struct Scales {
+  bool is_log_x = false, is_log_y = false;
+};
+
+Scales scales_of(const PagePlot& plot) {
+  std::vector<double> xs, ys;
+  for (const PageSeries& series : plot.series)
+    for (const PagePoint& point : series.points)
+      if (is_drawn(point)) {
+        xs.push_back(point.x);
+        ys.push_back(point.y);
+      }
+  for (const PageLevel& level : plot.levels) ys.push_back(level.y);
+  return {is_logarithmic(plot.x.scale, xs), is_logarithmic(plot.y.scale, ys)};
 }
 
-// Where a long line would have more corners than the picture has places, the ends and the extremes of each
-// stretch.
-std::vector<Spot> drawn_corners(const std::vector<Spot>& spots) {
-  if (spots.size() <= 4 * kStretches) return spots;
-  std::vector<Spot> kept;
-  for (size_t first = 0; first < spots.size();) {
-    const auto stretch = [&](size_t k) {
-      return static_cast<int>((spots[k].x - kLeft) / (kRight - kLeft) * kStretches);
-    };
-    size_t last = first, low = first, high = first;
-    while (last + 1 < spots.size() && stretch(last + 1) == stretch(first)) {
-      ++last;
-      if (spots[last].y < spots[low].y) low = last;
-      if (spots[last].y > spots[high].y) high = last;
+// The points that are drawn: all of a short series or one of marks; of a longer line the ends and the
+// extremes of each stretch of x, and what has a mark of its own.
+std::vector<size_t> drawn_points(const PageSeries& series, bool is_log_x) {
+  std::vector<size_t> all;
+  for (size_t k = 0; k < series.points.size(); ++k)
+    if (is_drawn(series.points[k])) all.push_back(k);
+  if (!series.is_joined || all.size() <= 4 * kStretches) return all;
+  const auto place = [&](size_t k) { return is_log_x ? std::log(series.points[k].x) : series.points[k].x; };
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const size_t k : all)
+    if (std::isfinite(place(k))) {
+      low = std::min(low, place(k));
+      high = std::max(high, place(k));
     }
-    std::vector<size_t> chosen = {first, std::min(low, high), std::max(low, high), last};
+  const auto stretch = [&](size_t k) {
+    const double share = high > low ? (place(k) - low) / (high - low) : 0;
+    return share > 0 ? static_cast<int>(share * kStretches) : 0;
+  };
+  std::vector<size_t> kept;
+  for (size_t first = 0; first < all.size();) {
+    size_t last = first, least = first, greatest = first;
+    std::vector<size_t> chosen;
+    for (size_t k = first; k < all.size() && stretch(all[k]) == stretch(all[first]); last = k++) {
+      const PagePoint& point = series.points[all[k]];
+      if (point.y < series.points[all[least]].y) least = k;
+      if (point.y > series.points[all[greatest]].y) greatest = k;
+      if (point.is_crossed || point.begins_outer_iteration) chosen.push_back(k);
+    }
+    chosen.insert(chosen.end(), {first, least, greatest, last});
+    std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-    for (const size_t k : chosen) kept.push_back(spots[k]);
+    for (const size_t k : chosen) kept.push_back(all[k]);
     first = last + 1;
   }
   return kept;
 }
 
-std::string round_line(const Spot& at) {
-  return "<line class=\"round\" x1=\"" + px(at.x) + "\" x2=\"" + px(at.x) + "\" y1=\"" + px(kTop) +
-         "\" y2=\"" + px(kBottom) + "\"/>\n";
+// To the six digits that its table has: a picture shows fewer.
+double rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return std::strtod(text, nullptr);
 }
 
-std::string line(const std::vector<Spot>& spots) {
-  std::string html = "<polyline points=\"";
-  for (const Spot& spot : drawn_corners(spots)) html += px(spot.x) + "," + px(spot.y) + " ";
-  return html + "\"/>";
+OrderedJson series_json(const PagePlot& plot, size_t index, bool is_log_x) {
+  const PageSeries& series = plot.series[index];
+  const bool has_marks = !series.is_joined || series.points.size() <= kMostMarks;
+  size_t index_in_group = 0;  // series of the group before it
+  for (size_t s = 0; series.group >= 0 && s < index; ++s)
+    if (plot.series[s].group == series.group) ++index_in_group;
+  OrderedJson x = OrderedJson::array(), y = x, labels = x, crossed = x, rounds = x;
+  for (const size_t k : drawn_points(series, is_log_x)) {
+    const PagePoint& point = series.points[k];
+    if (point.is_crossed) crossed.push_back(x.size());
+    if (point.begins_outer_iteration) rounds.push_back(x.size());
+    x.push_back(rounded(point.x));
+    y.push_back(rounded(point.y));
+    if (has_marks) labels.push_back(point.label);
+  }
+  return {{"name", series.name},
+          {"joined", series.is_joined},
+          {"marks", has_marks},
+          {"colour", (series.group < 0 ? index : static_cast<size_t>(series.group)) % kColours},
+          {"dashes", std::min<size_t>(index_in_group, 3)},
+          {"shape", series.group < 0 ? index : index_in_group},
+          {"x", x},
+          {"y", y},
+          {"labels", labels},
+          {"crossed", crossed},
+          {"rounds", rounds}};
 }
 
-struct Axes {
-  PlotAxis x, y;
-};
+OrderedJson axis_json(const PageAxis& axis, bool is_logarithmic) {
+  OrderedJson json = {{"title", axis.title}, {"logarithmic", is_logarithmic}};
+  if (!axis.names.empty()) json["names"] = axis.names;
+  return json;
+}
 
-Axes axes_of(const PagePlot& plot) {
-  std::vector<double> xs, ys;
-  const bool is_log_x = plot.x.scale == Scale::Logarithmic, is_log_y = plot.y.scale == Scale::Logarithmic;
+OrderedJson plot_json(const PagePlot& plot, const Scales& scales) {
+  OrderedJson series = OrderedJson::array(), levels = OrderedJson::array();
+  for (size_t s = 0; s < plot.series.size(); ++s) series.push_back(series_json(plot, s, scales.is_log_x));
+  for (const PageLevel& level : plot.levels) levels.push_back({{"y", level.y}, {"label", level.label}});
+  return {{"x", axis_json(plot.x, scales.is_log_x)},
+          {"y", axis_json(plot.y, scales.is_log_y)},
+          {"series", series},
+          {"levels", levels},
+          {"crossed_text", plot.crossed}};
+}
+
+std::string counted(long points, const std::string& one, const std::string& many) {
+  if (points == 0) return "";
+  return "<p class=\"quiet\">" + std::to_string(points) + (points == 1 ? one : many) + "</p>\n";
+}
+
+// What of the points cannot be seen where it belongs.
+std::string lost_points(const PagePlot& plot, const Scales& scales) {
+  long zeros = 0, others = 0;
   for (const PageSeries& series : plot.series)
     for (const PagePoint& point : series.points)
-      if ((!is_log_x || point.x > 0) && (!is_log_y || point.y > 0)) {
-        xs.push_back(point.x);
-        ys.push_back(point.y);
-      }
-  for (const PageLevel& level : plot.levels) ys.push_back(level.y);
-  return {PlotAxis(plot.x, xs, kLeft, kRight), PlotAxis(plot.y, ys, kBottom, kTop)};
-}
-
-std::string grid(const PagePlot& plot, const Axes& axes) {
-  std::ostringstream svg;
-  for (const PlotTick& tick : axes.x.ticks())
-    svg << "<line class=\"grid\" x1=\"" << px(tick.place) << "\" x2=\"" << px(tick.place) << "\" y1=\""
-        << kTop << "\" y2=\"" << kBottom << "\"/><text x=\"" << px(tick.place) << "\" y=\"" << kBottom + 18
-        << "\" text-anchor=\"middle\">" << tick.label << "</text>\n";
-  for (const PlotTick& tick : axes.y.ticks())
-    svg << "<line class=\"grid\" x1=\"" << kLeft << "\" x2=\"" << kRight << "\" y1=\"" << px(tick.place)
-        << "\" y2=\"" << px(tick.place) << "\"/><text x=\"" << kLeft - 8 << "\" y=\"" << px(tick.place + 4)
-        << "\" text-anchor=\"end\">" << tick.label << "</text>\n";
-  svg << "<text class=\"axis\" x=\"" << (kLeft + kRight) / 2 << "\" y=\"" << kBottom + 44
-      << "\" text-anchor=\"middle\">" << xml_escaped(plot.x.title)
-      << "</text>\n<text class=\"axis\" transform=\"translate(16 " << (kTop + kBottom) / 2
-      << ") rotate(-90)\" text-anchor=\"middle\">" << xml_escaped(plot.y.title) << "</text>\n";
-  for (const PageLevel& level : plot.levels)
-    if (axes.y.fits(level.y))
-      svg << "<line class=\"level\" x1=\"" << kLeft << "\" x2=\"" << kRight << "\" y1=\""
-          << px(axes.y.place(level.y)) << "\" y2=\"" << px(axes.y.place(level.y))
-          << "\"/><text class=\"level\" x=\"" << kRight - 6 << "\" y=\"" << px(axes.y.place(level.y) - 5)
-          << "\" text-anchor=\"end\">" << xml_escaped(level.label) << "</text>\n";
-  return svg.str();
-}
-
-std::string key(const PagePlot& plot, bool has_early, bool has_rounds) {
-  std::string html = "<ul class=\"key\">";
-  for (size_t s = 0; s < plot.series.size(); ++s) {
-    const Look look = look_of(plot, s);
-    html += "<li><svg class=\"" + look.classes + "\" width=\"26\" height=\"14\" aria-hidden=\"true\">" +
-            (plot.series[s].is_joined ? "<polyline points=\"1,7 25,7\"/>" : "") + "<g class=\"mark\">" +
-            shape(look.shape, {13, 7}, 4) + "</g></svg>" + xml_escaped(plot.series[s].name) + "</li>";
-  }
-  if (has_early)
-    html +=
-        "<li><svg class=\"series\" width=\"26\" height=\"14\" aria-hidden=\"true\"><g class=\"mark early\">"
-        "<circle cx=\"13\" cy=\"7\" r=\"4\"/><path d=\"M7 1L19 13M7 13L19 1\"/></g></svg>stopped early</li>";
-  if (has_rounds)
-    html +=
-        "<li><svg class=\"plot\" width=\"26\" height=\"14\" aria-hidden=\"true\"><line class=\"round\" "
-        "x1=\"13\" x2=\"13\" y1=\"0\" y2=\"14\"/></svg>another energy from here on</li>";
-  return html + "</ul>";
+      if (!is_drawn(point))
+        ++others;
+      else if ((scales.is_log_x && point.x == 0) || (scales.is_log_y && point.y == 0))
+        ++zeros;
+  return counted(zeros,
+                 " point is zero: it stands as an open triangle at the lower end of a logarithmic axis.",
+                 " points are zero: they stand as open triangles at the lower end of a logarithmic axis.") +
+         counted(others, " point is not finite and not drawn.", " points are not finite and not drawn.");
 }
 
 }  // namespace
 
+bool has_plots() { return !report_files::uplot.empty(); }
+
 std::string plot_html(const PagePlot& plot) {
-  const Axes axes = axes_of(plot);
-  std::string drawn;
-  long lost = 0;
-  bool has_early = false, has_rounds = false;
-  for (size_t s = 0; s < plot.series.size(); ++s) {
-    const PageSeries& series = plot.series[s];
-    std::vector<Spot> spots;
-    std::string marks;
-    for (const PagePoint& point : series.points) {
-      if (!axes.x.fits(point.x) || !axes.y.fits(point.y)) {
-        ++lost;
-        continue;
-      }
-      spots.push_back({axes.x.place(point.x), axes.y.place(point.y)});
-      has_early = has_early || point.stopped_early;
-      has_rounds = has_rounds || point.begins_outer_iteration;
-      if (point.begins_outer_iteration) drawn += round_line(spots.back());
-      if (series.points.size() <= kMostMarks || point.stopped_early || !series.is_joined)
-        marks += mark(plot, s, point, spots.back()) + "\n";
-    }
-    drawn += "<g class=\"" + look_of(plot, s).classes + "\">" + (series.is_joined ? line(spots) : "") + "\n" +
-             marks + "</g>\n";
-  }
-  std::ostringstream html;
-  html << "<figure class=\"plot\">\n<figcaption>" << xml_escaped(plot.title)
-       << "</figcaption>\n<svg role=\"img\" aria-label=\""
-       << xml_escaped(plot.title + ": " + plot.y.title + " against " + plot.x.title) << "\" viewBox=\"0 0 "
-       << kWidth << " " << kHeight << "\">\n"
-       << grid(plot, axes) << drawn << "</svg>\n"
-       << key(plot, has_early, has_rounds) << "\n";
-  if (lost > 0)
-    html << "<p class=\"quiet\">" << lost << (lost == 1 ? " point has" : " points have")
-         << " no place on these scales: not finite, or not positive on a logarithmic one.</p>\n";
-  if (!plot.note.empty()) html << "<p class=\"quiet\">" << xml_escaped(plot.note) << "</p>\n";
-  html << "</figure>\n";
-  return html.str();
+  const Scales scales = scales_of(plot);
+  std::string html = "<figure class=\"plot\">\n<figcaption>" + xml_escaped(plot.title) + "</figcaption>\n";
+  if (has_plots())
+    html += "<div class=\"chart\" role=\"img\" aria-label=\"" +
+            xml_escaped(plot.title + ": " + plot.y.title + " against " + plot.x.title) +
+            "\"><script type=\"application/json\">" + script_text(plot_json(plot, scales)) +
+            "</script></div>\n<noscript>The plot needs scripts. Its numbers stand below.</noscript>\n" +
+            lost_points(plot, scales);
+  else
+    html +=
+        "<p class=\"quiet\">This build of coapt draws no plots (uPlot was not found, or was turned off, when "
+        "it "
+        "was configured): here are the numbers.</p>\n";
+  if (!plot.note.empty()) html += "<p class=\"quiet\">" + xml_escaped(plot.note) + "</p>\n";
+  return html + "</figure>\n";
+}
+
+std::string plot_scripts() {
+  if (!has_plots()) return "";
+  return "<details><summary>Licence of uPlot, which draws the plots</summary><pre>" +
+         xml_escaped(report_files::uplot_notice) + "</pre></details>\n<style>\n" +
+         std::string(report_files::uplot_style) + "</style>\n<script>\n" + std::string(report_files::uplot) +
+         "\n</script>\n<script>\n" + std::string(report_files::plots) + "</script>\n";
 }
 
 std::vector<PageTable> plot_numbers(const PagePlot& plot) {
@@ -222,10 +203,12 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
     for (size_t r = 0; r < rows; ++r) {
       const size_t k = rows > 1 ? r * (count - 1) / (rows - 1) : 0;
       const PagePoint& point = series.points[k];
+      const double place = std::round(point.x) - 1;
+      const bool is_named = place >= 0 && place < static_cast<double>(plot.x.names.size());
       table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
-                            {page_number(point.x, 6)},
+                            {is_named ? plot.x.names[static_cast<size_t>(place)] : page_number(point.x, 6)},
                             {page_number(point.y, 6)},
-                            {point.stopped_early            ? "stopped early"
+                            {point.is_crossed               ? plot.crossed
                              : point.begins_outer_iteration ? "another energy from here on"
                                                             : ""}});
     }

@@ -1,4 +1,5 @@
-// The files of src/scene/report and of three.js, which the build puts into the library. Private to this room.
+// The files of src/report/files, of three.js and of uPlot, which the build puts into the library. Private to
+// this room.
 #pragma once
 
 #include <string_view>
@@ -14,5 +15,10 @@ extern const std::string_view viewer_base, viewer_stage, viewer_parts, viewer_va
 
 // Empty in a build without three.js.
 extern const std::string_view three, three_controls, three_notice;
+
+extern const std::string_view plots;  // draws every plot of a page by uPlot
+
+// Empty in a build without uPlot.
+extern const std::string_view uplot, uplot_style, uplot_notice;
 
 }  // namespace coapt::report_files

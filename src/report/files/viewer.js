@@ -1,7 +1,11 @@
 // The viewer: reads the data of the page, draws them, and answers to the controls.
 
 function readData() {
-  const data = JSON.parse(byId("shape-data").textContent), unpacked = values => values.map(each => each && floats(each));
+  const data = JSON.parse(byId("shape-data").textContent);
+  const unpacked = values => {  // a number: those of an earlier state
+    const read = values.map(each => typeof each === "string" ? floats(each) : each);
+    return read.map(each => typeof each === "number" ? read[each] : each);
+  };
   for (const name of ["triangles", "lines", "obstacles"]) data[name] = integers(data[name]);
   if (!data.ways.length) data.ways = [{ label: "", states: data.states.length }];
   let first = 0;

@@ -60,8 +60,8 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
                     const std::string& note) {
   PagePlot plot;
   plot.title = title;
-  plot.x = {"wall time [s], median", Scale::Logarithmic};
-  plot.y = {axis, Scale::Logarithmic};
+  plot.x = {"wall time [s], median", Scale::ByRange};
+  plot.y = {axis, Scale::ByRange};
   plot.note = note;
   const double edge = upper_edge(bench, kind);
   for (size_t method = 0; method < bench.methods.size(); ++method)
@@ -74,7 +74,7 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
         if (!height) continue;
         series.points.push_back({.x = run.wall.median,
                                  .y = height->mm.value_or(edge),
-                                 .stopped_early = run.status != Status::Converged,
+                                 .is_crossed = run.status != Status::Converged,
                                  .label = "tolerance " + page_number(run.tolerance) + ", " +
                                           words(status_name(run.status)) +
                                           (height->remark.empty() ? "" : ", " + height->remark)});
