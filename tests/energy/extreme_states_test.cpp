@@ -120,6 +120,8 @@ TEST(ExtremeStates, DerivativesOfPublishedChordsHold) {
   expect_line_derivatives(ToeLine{24.2, 0.0925907, 0.113, 48.8});
   expect_line_derivatives(BilinearLine{0.1, {5.9, 0.25, 0.01}});
   expect_line_derivatives(CrimpedLine{CrimpedFibre(48, 12, 1.6, 0.01)});
+  expect_line_derivatives(
+      CrimpedLine{CrimpedFibre(48, 1.35 / 5, 5, 0.01), 0.01});  // strut chord of Toma et al. 2016
 }
 
 // The energy is the work of the force along the way: nothing jumps on it.

@@ -204,12 +204,13 @@ TEST_F(TissueScene, BuildsCablesOfEveryLaw) {
     {"type": "cable_bilinear", "edges": "boundary", "area": "1 mm^2", "young_pre": "1 MPa",
      "young_post": "5 MPa", "transition_strain": 0.1},
     {"type": "cable_crimped_fibre", "edges": "boundary", "area": "1 mm^2", "fibre_young": "40 MPa",
-     "crimp_ratio": 20, "radius_ratio": 1.6})"));
+     "crimp_ratio": 20, "radius_ratio": 1.6, "shear_modulus": "10 kPa"})"));
   const size_t rim = model.sets.at("boundary").size();
   EXPECT_EQ(model.lines.size(), 3 * rim);
   const auto& ogden = elements_of<CableOgden>(model);
   EXPECT_EQ(ogden[0].law.mu[1], 2);
   EXPECT_EQ(ogden[0].law.alpha[2], 0);
+  EXPECT_DOUBLE_EQ(elements_of<CableCrimpedFibre>(model)[0].law.shear_modulus, 0.01);
 }
 
 }  // namespace

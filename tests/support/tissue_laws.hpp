@@ -180,6 +180,16 @@ struct CrimpedChord {
   static std::optional<double> knee() { return law(1).fibre.limit() - 1; }
 };
 
+// With a matrix, which is all that the chord has below the limit of a long crimp.
+struct CrimpedChordInMatrix {
+  static constexpr const char* kName = "crimped_fibre_in_matrix";
+  static CrimpedLine sharp(double stress, double window) {
+    return {CrimpedFibre(20 * stress, 9, 1.6, window), 0.3 * stress};
+  }
+  static CrimpedLine law(double stress) { return sharp(stress, 0.02); }
+  static std::optional<double> knee() { return law(1).fibre.limit() - 1; }
+};
+
 // The law with its knees sharp, or as it is where it has none.
 template <typename Entry>
 auto with_sharp_knees(double stress) {
@@ -195,7 +205,7 @@ using MembraneLaws =
     testing::Types<laws::Bilinear, laws::NeoHookean, laws::SoftNeoHookean, laws::Exponential,
                    laws::SoftExponential, laws::Orthotropic, laws::MayNewmanYin, laws::Crimped>;
 using ChordLaws = testing::Types<laws::BilinearChord, laws::SteepChord, laws::OgdenChord, laws::ToeChord,
-                                 laws::CrimpedChord>;
+                                 laws::CrimpedChord, laws::CrimpedChordInMatrix>;
 
 struct LawNames {
   template <typename Entry>

@@ -82,10 +82,18 @@ struct ToeLine {
   }
 };
 
-// A bundle of crimped fibres.
+// A bundle of crimped fibres in an incompressible neo-Hookean matrix of this shear modulus, W = mu/2 (I1 -
+// 3): without it a chord whose fibres are long in their crimp has next to no stiffness. Source: Toma et al.
+// 2016, eq. 1 and section 2.5, in uniaxial tension.
 struct CrimpedLine {
   CrimpedFibre fibre;
-  CurveValue at(double e) const { return fibre.at(e); }
+  double shear_modulus = 0;  // mu [stress]
+
+  CurveValue at(double e) const {
+    const CurveValue fibres = fibre.at(e), matrix = OgdenLine{{shear_modulus}, {2}}.at(e);
+    return {fibres.energy + matrix.energy, fibres.stress + matrix.stress,
+            fibres.stiffness + matrix.stiffness};
+  }
 };
 
 }  // namespace coapt

@@ -128,10 +128,8 @@ TermPointer build_cable(const TermSpec& spec, BuildContext& context) {
 TermPointer build_cable_bilinear(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
   const double before = p.number("young_pre");
-  return build_cable_law(
-      spec, context,
-      BilinearLine{before,
-                   {p.number("young_post") - before, p.number("transition_strain"), p.number("knee")}});
+  const BilinearKnee knee{p.number("young_post") - before, p.number("transition_strain"), p.number("knee")};
+  return build_cable_law(spec, context, BilinearLine{before, knee});
 }
 
 TermPointer build_cable_ogden(const TermSpec& spec, BuildContext& context) {
@@ -153,7 +151,8 @@ TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& contex
   const Parameters& p = spec.parameters;
   return build_cable_law(spec, context,
                          CrimpedLine{CrimpedFibre(p.number("fibre_young"), p.number("crimp_ratio"),
-                                                  p.number("radius_ratio"), p.number("knee"))});
+                                                  p.number("radius_ratio"), p.number("knee")),
+                                     p.number("shear_modulus")});
 }
 
 TermPointer build_tether(const TermSpec& spec, BuildContext& context) {

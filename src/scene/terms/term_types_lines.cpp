@@ -224,14 +224,23 @@ TermType cable_toe_type() {
 TermType cable_crimped_fibre_type() {
   return {
       .name = "cable_crimped_fibre",
-      .summary = "Bundles of crimped collagen fibres (Freed & Doehring 2005); tension only.",
+      .summary =
+          "Crimped collagen fibres in a matrix (Freed & Doehring 2005, Toma et al. 2016); tension only.",
       .spec = {.keys = with(
                    {positive("fibre_young", kPressure, "Modulus of the straight fibres."),
                     positive("crimp_ratio", kDimensionless,
                              "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner "
                              "the fibres are straight."),
                     positive("radius_ratio", kDimensionless, "Amplitude over radius of the fibre, R0/r0."),
-                    knee_key(), area_key(), area_scale_key(), smoothing_key()},
+                    {.name = "shear_modulus",
+                     .dimension = kPressure,
+                     .fallback = "\"0 kPa\"",
+                     .min = 0,
+                     .doc = "Shear modulus of the matrix around the fibres; Toma et al. 2016: 10 kPa."},
+                    knee_key(),
+                    area_key(),
+                    area_scale_key(),
+                    smoothing_key()},
                    line_keys()),
                .groups = {{{"network", "edges"}, true}}},
       .check = check_area,
