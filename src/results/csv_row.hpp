@@ -1,7 +1,7 @@
 // A line of a CSV file, some of whose numbers are not there.
 #pragma once
 
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "results/reference_distance.hpp"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "energy/term_access.hpp"
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"

@@ -1,5 +1,5 @@
 // region_tuning.json and region_tuning.csv.
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/whole_file.hpp"
 #include "results/study_files.hpp"
 #include "tuning/region_tuning.hpp"

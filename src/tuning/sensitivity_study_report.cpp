@@ -1,5 +1,5 @@
 // sensitivity.json and sensitivity.csv.
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "results/study_files.hpp"
 #include "tuning/sensitivity_study.hpp"
 
