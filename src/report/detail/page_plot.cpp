@@ -1,10 +1,11 @@
 #include "report/detail/page_plot.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/detail/plot_axis.hpp"
+#include "report/page_table.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 namespace coapt {
@@ -23,11 +24,7 @@ struct Spot {
   double x = 0, y = 0;  // [px]
 };
 
-std::string px(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
+std::string px(double value) { return fixed_text(value, 1); }
 
 // What tells a series from the others: colour and mark, in a group mark and dashes.
 struct Look {
@@ -213,23 +210,21 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
   std::vector<PageTable> tables;
   for (const PageSeries& series : plot.series) {
     const size_t count = series.points.size(), rows = std::min(count, kMostRows);
-    PageTable table;
-    table.caption =
-        series.name + " (" +
-        (rows < count ? std::to_string(rows) + " of " + std::to_string(count) : std::to_string(count)) +
-        (count == 1 ? " point)" : " points)");
-    table.columns = {{"point", true}, {plot.x.title}, {plot.y.title}, {"remark", true}};
+    Table table{.columns = {text_column("point"),
+                            {plot.x.title, "", "", 6},
+                            {plot.y.title, "", "", 6},
+                            text_column("remark")}};
     for (size_t r = 0; r < rows; ++r) {
       const size_t k = rows > 1 ? r * (count - 1) / (rows - 1) : 0;
       const PagePoint& point = series.points[k];
-      table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
-                            {page_number(point.x, 6)},
-                            {page_number(point.y, 6)},
-                            {point.stopped_early  ? "stopped early"
-                             : point.begins_round ? "another energy from here on"
-                                                  : ""}});
+      table.rows.push_back({point.label.empty() ? std::to_string(k + 1) : point.label, point.x, point.y,
+                            point.stopped_early  ? "stopped early"
+                            : point.begins_round ? "another energy from here on"
+                                                 : ""});
     }
-    tables.push_back(std::move(table));
+    const std::string all = std::to_string(count) + (count == 1 ? " point)" : " points)");
+    tables.push_back(
+        page_table(table, series.name + " (" + (rows < count ? std::to_string(rows) + " of " : "") + all));
   }
   return tables;
 }
