@@ -36,7 +36,7 @@ PageTable distance_table(const Comparison& comparison) {
     status = {spaced(status.text), has_converged(comparison.methods[k]) ? Tone::Good : Tone::Bad};
   }
   table.note =
-      "In both directions: mean of the means, greater 95th percentile, greater maximum. Vertex: of each "
+      "In both directions: mean of the means, greater 95th percentile, greater maximum. Same vertex: of each "
       "vertex from itself. " +
       (has_closed ? "Closed: to the given surface " + comparison.closed_surface + ". " : "") +
       "One equilibrium: no vertex farther than " + page_number(kSameShape * comparison.extent_mm, 3) +
