@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "formats/text.hpp"
 #include "study/bench/benchmark_report.hpp"
@@ -38,58 +38,16 @@ std::vector<double> tolerance_list(const std::string& text) {
   return tolerances;
 }
 
-void print_progress(const Benchmark& bench, const BenchRun& run) {
-  std::printf("  %-12s %-18s %8.0e  %-16s %10.4f s %6d iterations\n", bench.methods[run.method].name.c_str(),
-              mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance,
-              std::string(status_name(run.status)).c_str(), run.wall.median, run.iterations);
-  std::fflush(stdout);
-}
-
-void print_runs(const Benchmark& bench) {
-  std::printf("\n  %-12s %-18s %8s %10s %10s %10s %10s %10s %10s %8s\n", "errors in mm", "mesh", "tol.",
-              "algebraic", "mesh", "method", "model", "total", "CPU s", "MB");
-  for (const BenchRun& run : bench.runs) {
-    const RunErrors& errors = run.errors;
-    std::printf("  %-12s %-18s %8.0e", bench.methods[run.method].name.c_str(),
-                mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance);
-    print_cell(error_of(run, ErrorKind::Algebraic), " %10.2e");
-    print_cell(errors.discretisation, " %10.2e");
-    print_cell(errors.method, " %10.2e");
-    print_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt, " %10.2e");
-    print_cell(errors.total, " %10.2e");
-    std::printf(" %10.4f", run.cpu.median);
-    if (run.peak_memory_mb) std::printf(" %8.1f", *run.peak_memory_mb);
-    std::printf("%s\n", run.status == Status::Converged ? "" : "  stopped early");
-  }
-}
-
-void print_times(const Benchmark& bench) {
-  std::printf("\n  %-12s %-18s", "seconds to", "");
-  for (const double mm : kAlgebraicAccuracies) std::printf(" %7g mm", mm);
-  std::printf("\n");
-  for (size_t method = 0; method < bench.methods.size(); ++method) {
-    const auto print = [&](const std::string& what, ErrorKind kind, const RunFilter& filter,
-                           auto accuracies) {
-      std::printf("  %-12s %-18s", bench.methods[method].name.c_str(), what.c_str());
-      for (const double mm : accuracies) {
-        const BenchRun* run = fastest_run(bench, kind, mm, filter);
-        print_cell(run != nullptr ? std::optional(run->wall.median) : std::nullopt, " %10.2e");
-      }
-      std::printf("\n");
-    };
-    print("in all", ErrorKind::Total, {.method = method}, kTotalAccuracies);
-    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh)
-      if (bench.meshes[mesh].is_benchmarked)
-        print(mesh_text(bench.meshes[mesh]), ErrorKind::Algebraic, {method, mesh}, kAlgebraicAccuracies);
-  }
-}
-
 void print_summary(const Benchmark& bench) {
-  print_runs(bench);
+  std::printf("\n");
+  print_table(chosen(run_table(bench, bench.runs),
+                     {"method", "mesh", "tolerance", "status", "algebraic_max_mm", "discretisation_mm",
+                      "method_mm", "mean_to_closed_mm", "total_mm", "cpu_median_s", "peak_memory_mb"}));
   for (const BenchEnd& end : bench.ends)
     if (!end.failure.empty())
       std::printf("  %s failed: %s\n", bench.methods[end.method].name.c_str(), end.failure.c_str());
-  print_times(bench);
+  std::printf("\nmedian wall time to an accuracy\n");
+  print_table(times_table(bench));
   std::printf("\n");
   for (const std::string& missing : missing_equilibria(bench))
     std::printf("  warning: %s\n", missing.c_str());
@@ -117,9 +75,12 @@ void bench_scene(const BenchArguments& arguments, int& exit_code) {
   options.closed = arguments.closed;
   options.branches = arguments.branches;
   if (arguments.truth_seconds > 0) options.truth_seconds = arguments.truth_seconds;
+  RowPrinter print;
   options.report = [&](const Benchmark& bench, const BenchRun& done) {
     end_progress();
-    if (!arguments.prints_json) print_progress(bench, done);
+    if (arguments.prints_json) return;
+    print(chosen(run_table(bench, {&done, 1}),
+                 {"method", "mesh", "tolerance", "status", "wall_median_s", "iterations"}));
   };
   const Benchmark found = run_benchmark(scene, all_solvers(), options, run);
   end_progress();

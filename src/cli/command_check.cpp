@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/row_printer.hpp"
 #include "core/error.hpp"
 #include "exchange/check.hpp"
 #include "exchange/repair.hpp"
@@ -16,24 +17,26 @@
 namespace coapt::cli {
 namespace {
 
-std::string slope_text(double slope) {
-  if (std::isinf(slope)) return "exact";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", slope);
-  return text;
+TableCell slope(double slope) { return std::isinf(slope) ? TableCell("exact") : TableCell(slope); }
+
+std::string verdict_on(const DerivativeReport& report) {
+  const char* verdict = !report.is_active() ? "not active here" : report.has_passed() ? "passed" : "FAILED";
+  const std::string kinks =
+      report.kinks > 0 ? ", " + std::to_string(report.kinks) + " directions at a kink" : "";
+  return verdict + kinks;
 }
 
-void print_table(const std::vector<DerivativeReport>& reports) {
+void print_derivatives(const std::vector<DerivativeReport>& reports) {
   std::printf("Derivatives at a perturbed start (slopes: at least 1.95 and 2.90; worst direction)\n");
-  std::printf("  %-20s %-18s %10s %10s %12s %12s  %s\n", "term", "type", "gradient", "Hessian", "diff. grad.",
-              "diff. Hess.", "verdict");
-  for (const DerivativeReport& report : reports) {
-    std::string verdict = !report.is_active() ? "not active here" : report.has_passed() ? "passed" : "FAILED";
-    if (report.kinks > 0) verdict += ", " + std::to_string(report.kinks) + " directions at a kink";
-    std::printf("  %-20s %-18s %10s %10s %12.1e %12.1e  %s\n", report.name.c_str(), report.type.c_str(),
-                slope_text(report.gradient_slope).c_str(), slope_text(report.hessian_slope).c_str(),
-                report.gradient_error, report.hessian_error, verdict.c_str());
-  }
+  using Derivatives = DerivativeReport;
+  print_table(table_of<Derivatives>(reports,
+                                    {{text_column("term"), &Derivatives::name},
+                                     {text_column("type"), &Derivatives::type},
+                                     {{"gradient", "", "", 4, 3}, along(&Derivatives::gradient_slope, slope)},
+                                     {{"Hessian", "", "", 4, 3}, along(&Derivatives::hessian_slope, slope)},
+                                     {{"diff. grad.", "", "", 2}, &Derivatives::gradient_error},
+                                     {{"diff. Hess.", "", "", 2}, &Derivatives::hessian_error},
+                                     {text_column("verdict"), verdict_on}}));
 }
 
 // Prints what was done, or why nothing was.
@@ -98,7 +101,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
     const CheckReport report = check(options->scene);
     for (const std::string& warning : report.warnings) std::printf("warning: %s\n", warning.c_str());
     if (!report.defects.empty()) throw InputError(report.defects);
-    print_table(report.derivatives);
+    print_derivatives(report.derivatives);
     std::printf(report.is_sound() ? "%s: no defects, derivatives passed\n"
                                   : "%s: no defects, but a derivative did not pass\n",
                 options->scene.c_str());

@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/table_cell.hpp"
 #include "study/comparison_report.hpp"
 
 #include <CLI/CLI.hpp>
@@ -29,45 +29,15 @@ std::vector<std::string> usual_methods(const std::vector<std::string>& known) {
   return methods;
 }
 
-void print_header(bool has_closed) {
-  std::printf("  %-12s %-16s %9s %9s %9s %9s", "method", "status", "mean", "95 %", "max", "vertex");
-  if (has_closed) std::printf(" %9s %9s", "closed", "95 %");
-  std::printf(" %9s %9s %9s %6s %9s %14s %7s %8s %8s\n", "orifice", "area +-", "coapt.", "inter.", "residual",
-              "energy", "iter.", "CPU s", "wall s");
-}
-
-void print_distances(const ComparedMethod& method, bool has_closed) {
-  using Figures = std::optional<DistanceFigures>;
-  Figures to_reference, to_closed;
-  if (method.gap && method.gap->surfaces) to_reference = both_directions(*method.gap->surfaces);
-  if (method.run->report.reference) to_closed = both_directions(*method.run->report.reference);
-  const auto print = [](const Figures& figures, double DistanceFigures::*figure) {
-    print_cell(figures ? std::optional((*figures).*figure) : std::nullopt, " %9.3g");
-  };
-  for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95, &DistanceFigures::max})
-    print(to_reference, figure);
-  print_cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt, " %9.3g");
-  if (!has_closed) return;
-  for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95}) print(to_closed, figure);
-}
-
-void print_row(const ComparedMethod& method, bool has_closed) {
-  if (method.run) {
-    const Result& result = method.run->report.result;
-    const Metrics& metrics = method.run->report.metrics;
-    std::printf("  %-12s %-16s", method.name.c_str(), std::string(status_name(result.status)).c_str());
-    print_distances(method, has_closed);
-    print_cell(metrics.orifice_area_mm2, " %9.2f");
-    print_cell(
-        metrics.leaflet_area_open_mm2 > 0 ? std::optional(metrics.leaflet_area_change_mm2) : std::nullopt,
-        " %9.2f");
-    print_cell(metrics.coaptation_area_mm2, " %9.2f");
-    std::printf(" %6ld %9.1e %14.8g %7d %8.2f %8.2f\n", metrics.intersections, result.residual, result.energy,
-                result.iterations, result.cpu_s, result.wall_s);
-  } else {
-    std::printf("  %-12s failed\n", method.name.c_str());
-  }
-  std::printf("      %s\n", method.message.c_str());
+void print_method(const ComparedMethod& method, bool has_closed, RowPrinter& print) {
+  std::vector<std::string> columns = {"method", "status"};
+  columns.insert(columns.end(), {"mean_to_reference_mm", "p95_to_reference_mm", "max_to_reference_mm",
+                                 "same_vertex_max_mm"});
+  if (has_closed) columns.insert(columns.end(), {"mean_to_closed_mm", "p95_to_closed_mm"});
+  columns.insert(columns.end(), {"orifice_area_mm2", "leaflet_area_change_mm2", "coaptation_area_mm2",
+                                 "intersections", "residual", "energy_mj", "iterations", "cpu_s", "wall_s"});
+  print(chosen(comparison_table({&method, 1}), columns));
+  std::printf("      %s%s\n", method.run ? "" : "failed: ", method.message.c_str());
   std::fflush(stdout);
 }
 
@@ -84,13 +54,10 @@ void compare(const CompareArguments& arguments, int& exit_code) {
   options.closed = arguments.closed;
   options.branches = arguments.branches;
   const bool has_closed = scene.closed_surface.has_value() || !arguments.closed.empty();
-  bool has_header = false;
+  RowPrinter print;
   options.report = [&](const ComparedMethod& method) {
     end_progress();
-    if (arguments.prints_json) return;
-    if (!has_header) print_header(has_closed);
-    has_header = true;
-    print_row(method, has_closed);
+    if (!arguments.prints_json) print_method(method, has_closed, print);
   };
   const Comparison found = compare_methods(scene, solvers, options, run);
   write_comparison(found.folder, found);

@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/table_cell.hpp"
 #include "study/intervene.hpp"
 
 #include <CLI/CLI.hpp>
@@ -28,18 +28,6 @@ void print_state(const char* name, const std::optional<RunReport>& run) {
   for (const std::string& warning : run->report.warnings) std::printf("        %s\n", warning.c_str());
 }
 
-void print_table(const BeforeAfter& found) {
-  std::printf("  %-26s %-4s %12s %12s %12s\n", "figure", "", "before", "after", "change");
-  for (const ChangedFigure& figure : changed_figures(found)) {
-    if (!figure.before.value && !figure.after) continue;
-    std::printf("  %-26s %-4s", figure.before.name.c_str(), figure.before.unit.c_str());
-    print_cell(figure.before.value, " %12.5g");
-    print_cell(figure.after, " %12.5g");
-    print_cell(figure.change, " %12.5g");
-    std::printf("\n");
-  }
-}
-
 void run_command(const InterveneArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   InterveneOptions options;
@@ -55,7 +43,7 @@ void run_command(const InterveneArguments& arguments, int& exit_code) {
   } else {
     print_state("before", found.before);
     print_state("after", found.after);
-    print_table(found);
+    print_table(change_table(defined_figures(changed_figures(found))));
     if (!found.after) std::printf("cancelled before the second solve\n");
     std::printf(
         "written to %s (intervene.json, intervene.csv, report.html and the folders before and after)\n",

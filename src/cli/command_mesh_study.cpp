@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "study/mesh_study.hpp"
@@ -17,37 +18,17 @@ struct MeshStudyArguments : StudyArguments {
   int levels = 2;
 };
 
-void print_level_header() {
-  std::printf("  %9s %10s %10s %10s  %26s %6s %10s\n", "triangles", "iterations", "s", "CPU s",
-              "to the level before (95 %)", "order", "orifice");
-}
-
-void print_row(const MeshLevel& level) {
-  std::printf("  %9d %10d %10.2f %10.2f", level.triangles, level.iterations, level.wall_s, level.cpu_s);
-  if (level.to_previous)
-    std::printf("  %14.4f (%.4f) mm", level.to_previous->mean, level.to_previous->p95);
-  else
-    std::printf("  %26s", "-");
-  std::printf(level.order ? " %6.2f" : "      -", level.order.value_or(0));
-  if (level.orifice_area_mm2) std::printf(" %6.2f mm2", *level.orifice_area_mm2);
-  if (level.intersections > 0) std::printf("  %ld intersections", level.intersections);
-  if (level.status != Status::Converged)
-    std::printf("  %s, residual %.1e", std::string(status_name(level.status)).c_str(), level.residual);
-  std::printf("\n");
-  std::fflush(stdout);
-}
-
 void study(const MeshStudyArguments& arguments, int& exit_code) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   const std::filesystem::path folder = arguments.prepared_folder(scene);
-  bool has_header = false;
+  RowPrinter print;
   const MeshStudy found =
       study_mesh(scene, all_solvers(), arguments.levels, arguments.options(), [&](const MeshLevel& level) {
         end_progress();
-        if (!has_header) print_level_header();
-        has_header = true;
-        print_row(level);
+        print(chosen(level_table({&level, 1}), {"triangles", "status", "residual", "iterations", "wall_s",
+                                                "cpu_s", "mean_to_previous_mm", "p95_to_previous_mm", "order",
+                                                "orifice_area_mm2", "intersections"}));
       });
   write_mesh_study(folder, found);
   std::printf("written to %s (mesh_study.json, mesh_study.csv, closed_*.obj)\n", folder.string().c_str());

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
+#include "cli/row_printer.hpp"
 #include "core/error.hpp"
 #include "formats/durable_file.hpp"
 #include "formats/json/markups.hpp"
@@ -96,10 +97,17 @@ void write_files(const RegisterArguments& arguments, const RegisteredMeshes& mes
   formats::write_durable(folder / "registration.json", document(arguments, meshes).dump(2) + "\n");
 }
 
-void print_distances(const char* when, const RegistrationDistances& distances) {
-  for (const auto& [from, d] : {std::pair{"moving to target", distances.to_target},
-                                std::pair{"target to moving", distances.from_target}})
-    std::printf("  %-7s %-17s %10.4g %10.4g %10.4g %10.4g\n", when, from, d.mean, d.p95, d.rms, d.max);
+Table distance_table(const RegisteredMeshes& meshes) {
+  Table table{.columns = {text_column("distance"), text_column("direction")}};
+  for (const char* figure : {"mean", "95 %", "rms", "max"}) table.columns.push_back({figure, "", "mm"});
+  const auto add = [&](const char* when, const RegistrationDistances& distances) {
+    for (const auto& [direction, d] : {std::pair{"moving to target", distances.to_target},
+                                       std::pair{"target to moving", distances.from_target}})
+      table.rows.push_back({when, direction, d.mean, d.p95, d.rms, d.max});
+  };
+  add("before", meshes.before);
+  add("after", meshes.after);
+  return table;
 }
 
 void register_meshes(RegisterArguments& arguments) {
@@ -124,9 +132,7 @@ void register_meshes(RegisterArguments& arguments) {
               found.motion.angle_deg(), moved_by(found.motion, meshes.moving.vertices), found.motion.scale);
   std::printf("  overlap %.3g, %d pairs, %.3g mm rms between them, %d iterations\n", found.overlap,
               found.pairs, found.rms, found.iterations);
-  std::printf("  %-7s %-17s %10s %10s %10s %10s\n", "mm", "", "mean", "95 %", "rms", "max");
-  print_distances("before", meshes.before);
-  print_distances("after", meshes.after);
+  print_table(distance_table(meshes));
   for (const std::string& doubt : registration_doubts(found)) std::printf("warning: %s\n", doubt.c_str());
   std::printf("written to %s (moved.obj, moved.vtp, target.vtp, registration.json)\n",
               arguments.output.c_str());

@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/table_cell.hpp"
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
 #include "tuning/sensitivity_study.hpp"
@@ -33,30 +33,33 @@ double share(const std::string& text) {
   }
 }
 
-void print_parameter_header(bool has_solves, bool starts_anew) {
-  std::printf("mean distances in mm, per 100 %% of each parameter; %s\n",
+void print_caption(bool has_solves, bool starts_anew) {
+  std::printf("mean distances, per 100 %% of each parameter; %s\n",
               !has_solves   ? "exact derivatives at the first solution"
               : starts_anew ? "solves start from the scene's own shape"
                             : "solves start from the first solution");
-  std::printf("  %-32s %12s %-7s %10s %10s %11s %8s\n", "parameter", "value", "", "movement", "error",
-              has_solves ? "iterations" : "", "s");
 }
 
-void print_row(const ParameterSensitivity& p) {
-  std::printf("  %-32s %12.6g %-7s", p.name.c_str(), p.value, p.unit.c_str());
-  print_cell(p.movement, " %10.3f");
-  print_cell(p.error_change, " %10.3f");
-  if (p.runs.size() == 2)
-    std::printf("   %4d %4d", p.runs[0].iterations, p.runs[1].iterations);
-  else
-    std::printf("   %9s", "");
-  std::printf(" %8.2f", p.wall_s);
-  for (const SensitivityRun& run : p.runs)
+void print_parameter(const ParameterSensitivity& found, RowPrinter& print) {
+  const auto iterations = [](size_t run) {
+    return [run](const ParameterSensitivity& p) {
+      return p.runs.size() == 2 ? TableCell(p.runs[run].iterations) : TableCell();
+    };
+  };
+  print(table_of<ParameterSensitivity>({&found, 1},
+                                       {{text_column("parameter", "", 32), &ParameterSensitivity::name},
+                                        {{"value", "", "", 6, -1, 12}, &ParameterSensitivity::value},
+                                        {text_column("unit", "", 7), &ParameterSensitivity::unit},
+                                        {{"movement", "", "mm", 4, 3}, &ParameterSensitivity::movement},
+                                        {{"error", "", "mm", 4, 3}, &ParameterSensitivity::error_change},
+                                        {{"iterations smaller"}, iterations(0)},
+                                        {{"larger"}, iterations(1)},
+                                        {{"wall", "", "s", 4, 2}, &ParameterSensitivity::wall_s}}));
+  for (const SensitivityRun& run : found.runs)
     if (run.status != Status::Converged)
-      std::printf("  times %g: %s, residual %.1e", run.factor, std::string(status_name(run.status)).c_str(),
-                  run.residual);
-  std::printf("\n");
-  if (!p.message.empty()) std::printf("    solved again: %s\n", p.message.c_str());
+      std::printf("    times %g: %s, residual %.1e\n", run.factor,
+                  std::string(status_name(run.status)).c_str(), run.residual);
+  if (!found.message.empty()) std::printf("    solved again: %s\n", found.message.c_str());
   std::fflush(stdout);
 }
 
@@ -67,14 +70,14 @@ void study(const SensitivityArguments& arguments, int& exit_code) {
   options.parameters = arguments.parameters;
   if (!arguments.perturbation.empty()) options.perturbation = share(arguments.perturbation);
   options.starts_anew = arguments.starts_anew;
-  bool has_header = false;
+  bool has_caption = false;
+  RowPrinter print;
   options.report = [&](const ParameterSensitivity& found) {
     end_progress();
-    if (!has_header)
-      print_parameter_header(options.perturbation.has_value() || arguments.starts_anew,
-                             arguments.starts_anew);
-    has_header = true;
-    print_row(found);
+    if (!has_caption)
+      print_caption(options.perturbation.has_value() || arguments.starts_anew, arguments.starts_anew);
+    has_caption = true;
+    print_parameter(found, print);
   };
   const std::filesystem::path folder = arguments.prepared_folder(scene);
   const SensitivityStudy found = study_sensitivity(scene, all_solvers(), options, arguments.options());

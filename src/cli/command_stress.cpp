@@ -1,11 +1,10 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
-#include "cli/table_cell.hpp"
 #include "core/error.hpp"
-#include "formats/text.hpp"
 #include "stress/stress_report.hpp"
 
 #include <CLI/CLI.hpp>
@@ -29,41 +28,21 @@ struct StressArguments {
   bool is_quick = false, lists = false, prints_json = false;
 };
 
-// "S1, S4" as a list.
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> all;
-  for (size_t from = 0; from != std::string::npos;) {
-    const size_t comma = names.find(',', from);
-    all.emplace_back(formats::trimmed(std::string_view(names).substr(from, comma - from)));
-    from = comma == std::string::npos ? comma : comma + 1;
-  }
-  return all;
-}
-
 void print_list(const std::vector<StressRow>& rows) {
-  std::printf("  %-4s %-20s %-24s %-58s %s\n", "row", "topic", "scene", "what is varied", "quick");
-  for (const StressRow& row : rows)
-    std::printf("  %-4s %-20s %-24s %-58s %s\n", row.id.c_str(), std::string(stress_topic(row.id)).c_str(),
-                row.scene.c_str(), row.name.c_str(), row.is_quick ? "yes" : "");
+  const auto topic = [](const StressRow& row) { return stress_topic(row.id); };
+  const auto quick = [](const StressRow& row) { return row.is_quick ? "yes" : ""; };
+  print_table(table_of<StressRow>(rows, {{text_column("row"), &StressRow::id},
+                                         {text_column("topic"), topic},
+                                         {text_column("scene"), &StressRow::scene},
+                                         {text_column("what is varied"), &StressRow::name},
+                                         {text_column("quick"), quick}}));
 }
 
-void print_header() {
-  std::printf("  %-4s %-24s %-58s %-7s %9s %9s %6s %8s\n", "row", "scene", "what is varied", "verdict",
-              "figure", "limit", "iter.", "wall s");
-}
-
-void print_row(const StressResult& result) {
-  const StressOutcome& outcome = result.outcome;
-  std::printf("  %-4s %-24s %-58s %-7s", result.row.id.c_str(), result.row.scene.c_str(),
-              result.row.name.c_str(), std::string(stress_verdict_name(outcome.verdict)).c_str());
-  print_cell(outcome.figure, " %9.2g");
-  print_cell(outcome.limit, " %9.2g");
-  if (outcome.iterations)
-    std::printf(" %6d", *outcome.iterations);
-  else
-    std::printf(" %6s", "-");
-  std::printf(" %8.2f\n", result.wall_s);
-  if (outcome.verdict != StressVerdict::Pass) std::printf("       %s\n", outcome.message.c_str());
+void print_result(const StressResult& result, RowPrinter& print) {
+  print(chosen(stress_table({&result, 1}),
+               {"id", "scene", "name", "verdict", "figure", "limit", "iterations", "wall_s"}));
+  if (result.outcome.verdict == StressVerdict::Pass) return;
+  std::printf("       %s\n", result.outcome.message.c_str());
   std::fflush(stdout);
 }
 
@@ -97,7 +76,7 @@ void stress(const StressArguments& arguments, int& exit_code) {
   std::optional<Scene> scene;
   if (!arguments.scene.empty()) scene = load_scene(arguments.scene);
   StressOptions options;
-  if (!arguments.rows.empty()) options.rows = split(arguments.rows);
+  if (!arguments.rows.empty()) options.rows = comma_list(arguments.rows);
   options.is_quick = arguments.is_quick;
   options.row_seconds = arguments.row_seconds;
   options.folder = folder_of(arguments, scene);
@@ -106,12 +85,9 @@ void stress(const StressArguments& arguments, int& exit_code) {
   options.judge = intersection_judge();
   options.is_cancelled = is_interrupted;
   options.solve_apart = solve_apart;
-  bool has_header = false;
+  RowPrinter print;
   options.report = [&](const StressResult& result) {
-    if (arguments.prints_json) return;
-    if (!has_header) print_header();
-    has_header = true;
-    print_row(result);
+    if (!arguments.prints_json) print_result(result, print);
   };
   const std::vector<StressRow> rows = scene ? stress_rows(*scene, options) : stress_rows(options);
   if (arguments.lists) {

@@ -1,10 +1,12 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "cli/worker_pool.hpp"
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "study/parameter_study.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,12 +27,10 @@ struct ParameterStudyArguments : StudyArguments {
 };
 
 std::string settings_text(const ParameterStudyArguments& arguments) {
-  char text[96];
-  std::snprintf(text, sizeof text, "tolerance %.17g, seconds %.17g, solver ", arguments.tolerance,
-                arguments.max_seconds);
   const std::string steps =
       arguments.damped_steps ? ", damped steps " + std::to_string(*arguments.damped_steps) : "";
-  return text + arguments.solver + steps;
+  return "tolerance " + number_text(arguments.tolerance, 17) + ", seconds " +
+         number_text(arguments.max_seconds, 17) + ", solver " + arguments.solver + steps;
 }
 
 // In a process of its own: solves the point into its folder.
@@ -61,20 +61,10 @@ void print_point(const PointResult& result, const ParameterStudy& study, size_t 
 }
 
 void print_ranking(const ParameterStudy& study) {
-  std::printf("rank");
-  for (const Sweep& sweep : study.sweeps) std::printf("  %16s", sweep.path.c_str());
-  std::printf("  %20s  status\n", study.metric.c_str());
-  int rank = 0;
-  for (const size_t place : ranked(study)) {
-    const PointResult& result = study.results[place];
-    std::printf("%4d", ++rank);
-    for (const std::string& value : result.values) std::printf("  %16s", value.c_str());
-    if (const auto value = result.metric(study.metric))
-      std::printf("  %20.6g", *value);
-    else
-      std::printf("  %20s", "-");
-    std::printf("  %s\n", result.status.c_str());
-  }
+  std::vector<std::string> columns{"rank"};
+  for (const Sweep& sweep : study.sweeps) columns.push_back(sweep.path);
+  columns.insert(columns.end(), {study.metric, "status"});
+  print_table(chosen(point_table(study), columns));
 }
 
 void print_study(const ParameterStudy& study, bool prints_json, const std::filesystem::path& folder) {

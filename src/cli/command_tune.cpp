@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
@@ -160,30 +161,10 @@ void print_trial(int solve, const TuningTrial& trial) {
   std::fflush(stdout);
 }
 
-void print_lengths(const ChordTuning& found) {
-  std::printf("  %-26s %10s %10s %10s %10s\n", "rest length [mm]", "before", "after", "change", "deviation");
-  for (const TunedLength& length : found.lengths) {
-    std::printf("  %-26s %10.4f %10.4f %10.4f", length.name.c_str(), length.before, length.after,
-                length.after - length.before);
-    if (std::isfinite(length.deviation))
-      std::printf(" %10.3g", length.deviation);
-    else
-      std::printf(" %10s", "-");
-    std::printf("%s%s%s\n",
-                length.at_bound < 0   ? "  lower bound"
-                : length.at_bound > 0 ? "  upper bound"
-                                      : "",
-                length.is_slack                              ? "  slack"
-                : found.determinacy && length.is_hardly_taut ? "  hardly taut"
-                                                             : "",
-                found.determinacy && !length.is_determined ? "  not determined" : "");
-  }
-}
-
 void print_found(const ChordTuning& found) {
   std::printf("%s: %s\n", std::string(tuning_status_name(found.tuning.status)).c_str(),
               found.tuning.message.c_str());
-  print_lengths(found);
+  print_table(chosen(length_table(found), kShownOfLengths));
   if (found.determinacy) {
     long open = 0;
     for (const TunedLength& length : found.lengths) open += length.is_determined ? 0 : 1;

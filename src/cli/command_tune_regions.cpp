@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
+#include "cli/row_printer.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
@@ -47,15 +48,7 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
   if (found.orifice_limit_mm2) std::printf("  %-22s %.2f mm2\n", "orifice at most", *found.orifice_limit_mm2);
   std::printf("  %-22s %d (%d not converged) in %d rounds, %.2f s\n", "solves", found.solves,
               found.failed_solves, found.rounds, found.wall_s);
-  for (const TunedFactor& region : found.regions) {
-    std::printf("  %-32s %5d triangles, ", region.name.c_str(), region.triangles);
-    if (region.is_tuned)
-      std::printf("stiffness times %.4f\n", region.factor);
-    else
-      std::printf("not tuned: no term with a modulus\n");
-  }
-  for (const TunedFactor& chord : found.chords)
-    std::printf("  %-32s cross-sections times %.4f\n", chord.name.c_str(), chord.factor);
+  print_table(factor_table(found));
   write_region_tuning(folder, found);
   std::printf("written to %s (region_tuning.json, region_tuning.csv, triangle_factors.csv)\n",
               folder.string().c_str());

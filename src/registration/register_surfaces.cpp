@@ -1,12 +1,12 @@
 #include "registration/register_surfaces.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "registration/detail/surface_search.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -116,26 +116,18 @@ bool fits_better_mirrored(const TriangleMesh& moving, const SearchedSurface& tar
 }
 
 void refuse_no_overlap(double overlap) {
-  char text[260];
-  std::snprintf(
-      text, sizeof text,
-      "has no overlap with the other surface: %.0f %% of the points find a counterpart. Bring it within "
-      "30 degrees first, or give landmarks (three or more), and see that both have one unit of length. "
-      "Nothing was moved",
-      100 * overlap);
-  throw InputError(text);
+  throw InputError("has no overlap with the other surface: " + fixed_text(100 * overlap, 0) +
+                   " % of the points find a counterpart. Bring it within 30 degrees first, or give landmarks "
+                   "(three or more), "
+                   "and see that both have one unit of length. Nothing was moved");
 }
 
 // A file in cm, m or inches finds a place everywhere on one in mm.
 void refuse_other_size(double ratio) {
   if (ratio >= kLeastSize && ratio <= 1 / kLeastSize) return;
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "is %.3g times as large as the other surface; see that both have one unit of length. Nothing was "
-      "moved",
-      ratio);
-  throw InputError(text);
+  throw InputError(
+      "is " + number_text(ratio) +
+      " times as large as the other surface; see that both have one unit of length. Nothing was moved");
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "registration/registration.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "mesh/distance/surface_distance.hpp"
 
 #include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace coapt {
@@ -49,15 +49,10 @@ const char* registration_method_name(RegistrationMethod method) {
 
 std::vector<std::string> registration_doubts(const Registration& registration) {
   std::vector<std::string> doubts;
-  if (registration.overlap < kSmallOverlap) {
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "only %.0f %% of the points have a counterpart after the registration; look at it before you "
-        "believe it",
-        100 * registration.overlap);
-    doubts.emplace_back(text);
-  }
+  if (registration.overlap < kSmallOverlap)
+    doubts.push_back(
+        "only " + fixed_text(100 * registration.overlap, 0) +
+        " % of the points have a counterpart after the registration; look at it before you believe it");
   if (registration.free_directions > 0)
     doubts.push_back(
         "the surfaces leave " + std::to_string(registration.free_directions) +

@@ -1,13 +1,13 @@
 #include "report/report_page.hpp"
 
 #include "core/components.hpp"
+#include "core/number_text.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/detail/page_plot.hpp"
 #include "report/detail/report_files.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -121,19 +121,19 @@ std::string report_page(const Page& page) {
          "</body>\n</html>\n";
 }
 
+std::string spaced(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
 std::string page_number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  char text[352];  // the longest that a format may ask for
   // Whole numbers with all their digits: counts are exact.
-  if (size < 1e9 && value == std::round(value))
-    std::snprintf(text, sizeof text, "%.0f", value);
-  else if (size < 1e-3 || size >= 1e6)
-    std::snprintf(text, sizeof text, "%.*g", std::max(1, digits - 1), value);
-  else
-    std::snprintf(text, sizeof text, "%.*g", std::max(digits, static_cast<int>(std::ceil(std::log10(size)))),
-                  value);
-  return text;
+  if (size < 1e9 && value == std::round(value)) return number_text(value, 9);
+  if (size < 1e-3 || size >= 1e6) return number_text(value, std::max(1, digits - 1));
+  return number_text(value, std::max(digits, static_cast<int>(std::ceil(std::log10(size)))));
 }
 
 }  // namespace coapt

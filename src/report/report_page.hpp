@@ -117,6 +117,9 @@ bool has_plots();
 // The whole HTML file.
 std::string report_page(const Page& page);
 
+// A name in words: "iteration limit" for "iteration_limit".
+std::string spaced(std::string_view name);
+
 // A number for people: `digits` significant ones, no needless zeros, 1.2e-09 where it is small or large, and
 // "–" for one that is not finite.
 std::string page_number(double value, int digits = 4);

@@ -4,6 +4,7 @@
 #include "core/timing.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/metric_words.hpp"
+#include "report/page_table.hpp"
 #include "report/solve_view.hpp"
 #include "results/result_warnings.hpp"
 
@@ -64,55 +65,49 @@ PageTable metric_table(const Report& report) {
 }
 
 PageTable leaflet_table(const std::vector<LeafletMetrics>& leaflets) {
-  PageTable table{.caption = "Leaflet by leaflet", .columns = {{"figure", true}}};
-  for (const MetricRow& row : leaflet_rows(leaflets.front())) table.rows.push_back({{metric_title(row)}});
+  Table table{.columns = {text_column("figure")}};
+  for (const MetricRow& row : leaflet_rows(leaflets.front())) table.rows.push_back({metric_title(row)});
   for (const LeafletMetrics& leaflet : leaflets) {
-    table.columns.push_back({leaflet.name});
+    table.columns.push_back({leaflet.name, "", "", 5});
     const std::vector<MetricRow> rows = leaflet_rows(leaflet);
-    for (size_t r = 0; r < rows.size(); ++r)
-      table.rows[r].push_back({rows[r].value ? page_number(*rows[r].value, 5) : "–"});
+    for (size_t r = 0; r < rows.size(); ++r) table.rows[r].emplace_back(rows[r].value);
   }
-  return table;
+  return page_table(table, "Leaflet by leaflet");
 }
 
 PageTable orifice_table(const std::vector<Orifice>& orifices) {
-  PageTable table{
-      .caption = "Open places seen from the atrium; a negative area is a covered island in one",
-      .columns = {{"orifice", true}, {"area [mm²]"}, {"regurgitant area [mm²]"}, {"perimeter [mm]"}}};
+  Table table{.columns = {text_column("orifice"),
+                          {"area", "", "mm2"},
+                          {"regurgitant area", "", "mm2"},
+                          {"perimeter", "", "mm"}}};
   for (const Orifice& orifice : orifices)
-    table.rows.push_back({{std::to_string(table.rows.size() + 1)},
-                          {page_number(orifice.outline.area)},
-                          {page_number(orifice.regurgitant_area_mm2)},
-                          {page_number(orifice.outline.perimeter)}});
-  return table;
+    table.rows.push_back({table.rows.size() + 1, orifice.outline.area, orifice.regurgitant_area_mm2,
+                          orifice.outline.perimeter});
+  return page_table(table, "Open places seen from the atrium; a negative area is a covered island in one");
 }
 
 PageTable distance_table(const ReferenceDistance& distance) {
-  PageTable table{.caption = "Distance to the given closed surface [mm]",
-                  .columns = {{"direction", true}, {"mean"}, {"95 %"}, {"greatest"}}};
+  Table table{.columns = {text_column("direction"), {"mean"}, {"95 %"}, {"greatest"}}};
+  std::string caption = "Distance to the given closed surface [mm]";
   const auto add = [&table](const char* name, const DistanceFigures& figures) {
-    table.rows.push_back(
-        {{name}, {page_number(figures.mean)}, {page_number(figures.p95)}, {page_number(figures.max)}});
+    table.rows.push_back({name, figures.mean, figures.p95, figures.max});
   };
   add("from the result to it", distance.to_reference);
   add("from it to the result", distance.from_reference);
-  if (distance.same_vertex)
-    table.rows.push_back({{"each vertex from itself"},
-                          {page_number(distance.same_vertex->mean)},
-                          {""},
-                          {page_number(distance.same_vertex->max)}});
+  if (const auto& vertex = distance.same_vertex)
+    table.rows.push_back({"each vertex from itself", vertex->mean, "", vertex->max});
   if (const auto& registration = distance.registration) {
     add("before its registration, from the result", registration->to_reference_before);
     add("before its registration, from it", registration->from_reference_before);
     const Registration& found = registration->found;
-    table.caption += std::string("; registered by ") + registration_method_name(found.method) +
-                     ": turned by " + page_number(found.motion.angle_deg()) + "°, moved by " +
-                     page_number(registration->translation_mm) + " mm, scale " +
-                     page_number(found.motion.scale) + ", overlap " + page_number(found.overlap);
+    caption += std::string("; registered by ") + registration_method_name(found.method) + ": turned by " +
+               page_number(found.motion.angle_deg()) + "°, moved by " +
+               page_number(registration->translation_mm) + " mm, scale " + page_number(found.motion.scale) +
+               ", overlap " + page_number(found.overlap);
   }
   if (distance.left_out > 0)
-    table.caption += "; nodes that can move at no cost, left out: " + std::to_string(distance.left_out);
-  return table;
+    caption += "; nodes that can move at no cost, left out: " + std::to_string(distance.left_out);
+  return page_table(table, caption);
 }
 
 PageSection figures(const Report& report) {
@@ -127,12 +122,11 @@ PageSection figures(const Report& report) {
 
 // Energies and the figures that differ, equilibrium by equilibrium.
 PageTable branch_table(const Branches& branches) {
-  PageTable table{.caption = "Equilibria, that of this result first",
-                  .columns = {{"equilibrium", true},
-                              {"perturbed starts"},
-                              {"energy [mJ]"},
-                              {"stability", true},
-                              {"greatest distance [mm]"}}};
+  Table table{.columns = {text_column("equilibrium"),
+                          {"perturbed starts"},
+                          {"energy", "", "mJ", 8},
+                          text_column("stability"),
+                          {"greatest distance", "", "mm"}}};
   std::vector<size_t> shown;
   const std::vector<MetricRow> own = metric_rows(branches.equilibria.front().metrics);
   for (size_t row = 0; row < own.size(); ++row)
@@ -140,19 +134,17 @@ PageTable branch_table(const Branches& branches) {
                              "tenting_height_mm", "max_chord_force_n"})
       if (own[row].name == name && own[row].value) {
         shown.push_back(row);
-        table.columns.push_back({metric_title(own[row])});
+        table.columns.push_back({metric_in_words(own[row]), "", own[row].unit, 5});
       }
   for (const NearbyEquilibrium& equilibrium : branches.equilibria) {
-    table.rows.push_back({{table.rows.empty() ? "this result" : std::to_string(table.rows.size() + 1)},
-                          {std::to_string(equilibrium.found)},
-                          {page_number(equilibrium.energy, 8)},
-                          {std::string(stability_name(equilibrium.stability))},
-                          {page_number(equilibrium.greatest_mm)}});
+    const size_t number = table.rows.size() + 1;
+    table.rows.push_back({number == 1 ? "this result" : std::to_string(number), equilibrium.found,
+                          equilibrium.energy, stability_name(equilibrium.stability),
+                          equilibrium.greatest_mm});
     const std::vector<MetricRow> rows = metric_rows(equilibrium.metrics);
-    for (const size_t row : shown)
-      table.rows.back().push_back({rows[row].value ? page_number(*rows[row].value, 5) : "–"});
+    for (const size_t row : shown) table.rows.back().emplace_back(rows[row].value);
   }
-  return table;
+  return page_table(table, "Equilibria, that of this result first");
 }
 
 PageSection other_equilibria(const Report& report) {
@@ -211,12 +203,12 @@ PageTable solve_table(const Model& model, const Report& report) {
 }
 
 PageTable term_table(const Result& result) {
-  PageTable table{.caption = "Energies and loads",
-                  .columns = {{"term", true}, {"type", true}, {"energy [mJ]"}, {"greatest nodal force [N]"}}};
-  for (const TermReport& term : result.terms)
-    table.rows.push_back(
-        {{term.name}, {term.type}, {page_number(term.energy, 6)}, {page_number(term.greatest_force)}});
-  return table;
+  return page_table(
+      table_of<TermReport>(result.terms, {{text_column("term"), &TermReport::name},
+                                          {text_column("type"), &TermReport::type},
+                                          {{"energy", "", "mJ", 6}, &TermReport::energy},
+                                          {{"greatest nodal force", "", "N"}, &TermReport::greatest_force}}),
+      "Energies and loads");
 }
 
 PageTable phase_table(const Result& result) {
@@ -227,16 +219,13 @@ PageTable phase_table(const Result& result) {
 }
 
 PageTable level_table(const std::vector<CascadeLevel>& levels) {
-  PageTable table{
-      .caption = "Meshes of the cascade; the shapes in the view are those of the last",
-      .columns = {{"triangles", true}, {"iterates"}, {"status", true}, {"residual"}, {"CPU time [s]"}}};
-  for (const CascadeLevel& level : levels)
-    table.rows.push_back({{std::to_string(level.triangles)},
-                          {std::to_string(level.iterations)},
-                          {std::string(status_name(level.status))},
-                          {page_number(level.residual, 3)},
-                          {page_number(level.cpu_s, 3)}});
-  return table;
+  using Level = CascadeLevel;
+  return page_table(table_of<Level>(levels, {{text_column("triangles"), &Level::triangles},
+                                             {{"iterates"}, &Level::iterations},
+                                             {text_column("status"), along(&Level::status, status_name)},
+                                             {{"residual", "", "", 3}, &Level::residual},
+                                             {{"CPU time", "", "s", 3}, &Level::cpu_s}}),
+                    "Meshes of the cascade; the shapes in the view are those of the last");
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "report/solve_view.hpp"
 
+#include "core/number_text.hpp"
+
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace coapt {
@@ -91,17 +92,15 @@ void add_regions(const Model& model, std::vector<ViewField>& all) {
 
 std::string label(const Iteration& iteration, bool is_start) {
   if (is_start) return "start, as given";
-  char text[128];
-  std::snprintf(text, sizeof text, "iterate %d, residual %.1e", iteration.iteration, iteration.residual);
-  std::string label = text;
+  std::string label =
+      "iterate " + std::to_string(iteration.iteration) + ", residual " + number_text(iteration.residual, 2);
   if (iteration.time > 0) label += ", after " + page_number(iteration.time, 3) + " s of motion";
   return label;
 }
 
 std::string label(const Result& result) {
-  char text[128];
-  std::snprintf(text, sizeof text, ", residual %.1e", result.residual);
-  return "result: " + std::string(status_name(result.status)) + text;
+  return "result: " + std::string(status_name(result.status)) + ", residual " +
+         number_text(result.residual, 2);
 }
 
 // The input's x axis to the right, or where one looks along it, its y axis: the same valve stands the same

@@ -3,7 +3,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "energy/term_access.hpp"
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
@@ -16,7 +16,6 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <sstream>
 #include <system_error>
 
 namespace coapt {
@@ -25,16 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// JSON knows no NaN and no infinity.
-OrderedJson number(double value) { return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr); }
-
 OrderedJson terms_json(const Result& result) {
   OrderedJson terms = OrderedJson::array();
   for (const TermReport& term : result.terms)
     terms.push_back({{"name", term.name},
                      {"type", term.type},
-                     {"energy_mj", number(term.energy)},
-                     {"greatest_force_n", number(term.greatest_force)},
+                     {"energy_mj", number_json(term.energy)},
+                     {"greatest_force_n", number_json(term.greatest_force)},
                      {"counters",
                       {{"elements", term.counters.elements},
                        {"candidates", term.counters.candidates},
@@ -50,7 +46,7 @@ OrderedJson rows_json(const std::vector<MetricRow>& rows) {
     else if (row.is_count)
       json[row.name] = std::lround(*row.value);
     else
-      json[row.name] = number(*row.value);
+      json[row.name] = number_json(*row.value);
   }
   return json;
 }
@@ -95,18 +91,19 @@ OrderedJson certificate_json(const Model& model, const Result& result) {
   const StabilityReport& stability = certificate.stability;
   const bool is_judged = stability.verdict != Stability::NotKnown;
   OrderedJson smallest = OrderedJson::array(), parts = OrderedJson::array();
-  for (const double value : stability.smallest) smallest.push_back(number(value));
+  for (const double value : stability.smallest) smallest.push_back(number_json(value));
   for (const FreePart& part : certificate.free_parts)
     parts.push_back({{"node", part.node}, {"nodes", part.node_count}, {"free_motions", part.free_motions}});
   OrderedJson lowest = nullptr;
   if (stability.is_tangent_checked)
-    lowest = {{"real", number(stability.lowest.real())}, {"imaginary", number(stability.lowest.imag())}};
+    lowest = {{"real", number_json(stability.lowest.real())},
+              {"imaginary", number_json(stability.lowest.imag())}};
   OrderedJson json = {
       {"summary", summary(certificate)},
       {"stability", stability_name(stability.verdict)},
       {"conservative", certificate.is_conservative},
       {"smallest_pivot_ratio",
-       stability.pivot_ratio > 0 ? number(stability.pivot_ratio) : OrderedJson(nullptr)},
+       stability.pivot_ratio > 0 ? number_json(stability.pivot_ratio) : OrderedJson(nullptr)},
       {"doubt", doubt.empty() ? OrderedJson(nullptr) : OrderedJson(doubt)},
       {"zero_modes", counted(is_judged ? stability.zero_modes : -1)},
       {"negative_modes", counted(is_judged ? stability.negative_modes : -1)},
@@ -117,15 +114,15 @@ OrderedJson certificate_json(const Model& model, const Result& result) {
       {"free_nodes", certificate.free_nodes},
       {"smallest_eigenvalues", smallest},
       {"free_parts", parts},
-      {"force_balance", number(certificate.balance.force)},
-      {"moment_balance", number(certificate.balance.moment)}};
+      {"force_balance", number_json(certificate.balance.force)},
+      {"moment_balance", number_json(certificate.balance.moment)}};
   if (const auto& worst = certificate.imbalance) {
     const Vec3 at = worst->position + model.origin;
     json["imbalance"] = {{"node", worst->node},
-                         {"position_mm", {number(at[0]), number(at[1]), number(at[2])}},
-                         {"force_n", number(worst->force)},
+                         {"position_mm", {number_json(at[0]), number_json(at[1]), number_json(at[2])}},
+                         {"force_n", number_json(worst->force)},
                          {"term", worst->term},
-                         {"share_n", number(worst->share)}};
+                         {"share_n", number_json(worst->share)}};
   }
   return json;
 }
@@ -136,34 +133,30 @@ OrderedJson levels_json(const std::vector<CascadeLevel>& levels) {
     json.push_back({{"triangles", level.triangles},
                     {"iterations", level.iterations},
                     {"status", status_name(level.status)},
-                    {"residual", number(level.residual)},
-                    {"wall_s", number(level.wall_s)},
-                    {"cpu_s", number(level.cpu_s)}});
+                    {"residual", number_json(level.residual)},
+                    {"wall_s", number_json(level.wall_s)},
+                    {"cpu_s", number_json(level.cpu_s)}});
   return json;
 }
 
 OrderedJson accuracy_json(const AccuracyEstimate& accuracy) {
-  const auto optional = [](const std::optional<double>& value) {
-    return value ? number(*value) : OrderedJson(nullptr);
-  };
   OrderedJson levels = OrderedJson::array();
   for (const AccuracyLevel& level : accuracy.levels)
     levels.push_back({{"triangles", level.triangles},
-                      {"tolerance", number(level.tolerance)},
+                      {"tolerance", number_json(level.tolerance)},
                       {"status", status_name(level.status)},
                       {"iterations", level.iterations},
-                      {"wall_s", number(level.wall_s)},
-                      {"cpu_s", number(level.cpu_s)},
-                      {"distance_to_previous",
-                       level.to_previous ? distances_json(*level.to_previous) : OrderedJson(nullptr)}});
-  return {{"wanted_mm", number(accuracy.wanted_mm)},
+                      {"wall_s", number_json(level.wall_s)},
+                      {"cpu_s", number_json(level.cpu_s)},
+                      {"distance_to_previous", distances_json(level.to_previous)}});
+  return {{"wanted_mm", number_json(accuracy.wanted_mm)},
           {"reached", accuracy.is_reached},
           {"message", accuracy.message},
-          {"total_mm", optional(accuracy.total_mm())},
-          {"greatest_mm", optional(accuracy.greatest_mm())},
-          {"discretisation_mm", optional(accuracy.discretisation_mm)},
-          {"algebraic_mm", optional(accuracy.algebraic_mm)},
-          {"order", optional(accuracy.order)},
+          {"total_mm", number_json(accuracy.total_mm())},
+          {"greatest_mm", number_json(accuracy.greatest_mm())},
+          {"discretisation_mm", number_json(accuracy.discretisation_mm)},
+          {"algebraic_mm", number_json(accuracy.algebraic_mm)},
+          {"order", number_json(accuracy.order)},
           {"cuts", accuracy.cuts},
           {"solves", levels}};
 }
@@ -172,7 +165,7 @@ OrderedJson branch_changes_json(const std::vector<BranchChange>& changes) {
   OrderedJson json = OrderedJson::array();
   for (const BranchChange& change : changes)
     json.push_back(
-        {{"step", change.step}, {"before", change.before}, {"distance_mm", number(change.distance)}});
+        {{"step", change.step}, {"before", change.before}, {"distance_mm", number_json(change.distance)}});
   return json;
 }
 
@@ -189,40 +182,40 @@ OrderedJson potential_changes_json(const std::vector<Iteration>& trace) {
   return json;
 }
 
+constexpr int kDigits = 10;  // in trace.csv and metrics.csv
+
 std::string trace_csv(const Result& result) {
-  std::ostringstream out;
-  out.precision(10);
-  out << "iteration,round,energy_mj,residual,step_mm,seconds,gradient_evaluations,time_s\n";
-  for (const Iteration& it : result.trace)
-    out << it.iteration << ',' << it.outer_iteration << ',' << it.energy << ',' << it.residual << ','
-        << it.step << ',' << it.seconds << ',' << it.evaluations << ',' << it.time << '\n';
-  return out.str();
+  return csv_table(table_of<Iteration>(result.trace, {{{"iteration"}, &Iteration::iteration},
+                                                      {{"round"}, &Iteration::outer_iteration},
+                                                      {{"energy_mj"}, &Iteration::energy},
+                                                      {{"residual"}, &Iteration::residual},
+                                                      {{"step_mm"}, &Iteration::step},
+                                                      {{"seconds"}, &Iteration::seconds},
+                                                      {{"gradient_evaluations"}, &Iteration::evaluations},
+                                                      {{"time_s"}, &Iteration::time}}),
+                   kDigits);
 }
 
 // The range over other equilibria stands in two more columns where there are such; leaflets have none.
 std::string metrics_csv(const Report& report) {
-  std::ostringstream out;
-  out.precision(10);
+  Table table{.columns = {text_column("metric"), {"value"}, text_column("unit")}};
   const bool has_others = report.branches && !report.branches->others.empty();
-  out << "metric,value,unit" << (has_others ? ",others_lowest,others_highest" : "") << '\n';
-  const auto write = [&](const std::string& prefix, const std::vector<MetricRow>& rows) {
+  if (has_others)
+    for (const char* name : {"others_lowest", "others_highest"}) table.columns.push_back({name});
+  const auto add = [&](const std::string& prefix, const std::vector<MetricRow>& rows) {
     for (const MetricRow& row : rows) {
-      out << csv_text(prefix + row.name) << ',';
-      if (row.value && std::isfinite(*row.value)) out << *row.value;
-      out << ',' << row.unit;
+      table.rows.push_back({prefix + row.name, row.value, row.unit});
+      if (!has_others) continue;
       const BranchRange* others = prefix.empty() ? range_of(report.branches, row.name) : nullptr;
-      if (others != nullptr)
-        out << ',' << others->lowest << ',' << others->highest;
-      else if (has_others)
-        out << ",,";
-      out << '\n';
+      table.rows.back().emplace_back(others ? TableCell(others->lowest) : TableCell());
+      table.rows.back().emplace_back(others ? TableCell(others->highest) : TableCell());
     }
   };
-  write("", metric_rows(report.metrics));
+  add("", metric_rows(report.metrics));
   if (has_leaflets(report))
     for (const LeafletMetrics& leaflet : report.metrics.closure->leaflets)
-      write(leaflet.name + ".", leaflet_rows(leaflet));
-  return out.str();
+      add(leaflet.name + ".", leaflet_rows(leaflet));
+  return csv_table(table, kDigits);
 }
 
 bool has_line(const Report& report) {
@@ -257,15 +250,15 @@ std::string pressure_route(const Model& model, const Result& result) {
 std::string result_json(const Model& model, const Report& report) {
   const Result& result = report.result;
   OrderedJson phases = OrderedJson::object();
-  for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number(seconds);
+  for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number_json(seconds);
   OrderedJson json = {
       {"version", version()},
       {"scene", report.scene_file},
       {"status", status_name(result.status)},
       {"message", result.message},
       {"converged", result.status == Status::Converged},
-      {"residual", number(result.residual)},
-      {"energy_mj", number(result.energy)},
+      {"residual", number_json(result.residual)},
+      {"energy_mj", number_json(result.energy)},
       {"certificate", certificate_json(model, result)},
       {"terms", terms_json(result)},
       {"iterations", result.iterations},
@@ -278,8 +271,9 @@ std::string result_json(const Model& model, const Report& report) {
         {"gradient", result.evaluations.gradient},
         {"hessian", result.evaluations.hessian},
         {"factorisations", result.factorisations}}},
-      {"time", {{"wall_s", number(result.wall_s)}, {"cpu_s", number(result.cpu_s)}, {"by_phase", phases}}},
-      {"peak_memory_mb", number(peak_memory_mb())},
+      {"time",
+       {{"wall_s", number_json(result.wall_s)}, {"cpu_s", number_json(result.cpu_s)}, {"by_phase", phases}}},
+      {"peak_memory_mb", number_json(peak_memory_mb())},
       {"mesh",
        {{"vertices", model.mesh.vertex_count()},
         {"triangles", model.mesh.triangle_count()},
@@ -291,8 +285,9 @@ std::string result_json(const Model& model, const Report& report) {
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   if (report.accuracy) json["accuracy"] = accuracy_json(*report.accuracy);
   json["counters"] = counters_json(model, result);
-  json["solver"] = {
-      {"type", report.solver}, {"tolerance", number(report.tolerance)}, {"route", report.pressure_route}};
+  json["solver"] = {{"type", report.solver},
+                    {"tolerance", number_json(report.tolerance)},
+                    {"route", report.pressure_route}};
   if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
   json["files"] = result_files(model, report);
   json["warnings"] = report.warnings;

@@ -1,6 +1,7 @@
 // The files of the studies: JSON and CSV.
 #include "results/study_files.hpp"
 
+#include "formats/csv_table.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 
@@ -11,23 +12,17 @@ OrderedJson number_json(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
-OrderedJson distances_json(const DistanceFigures& distance) {
-  return {{"mean_mm", number_json(distance.mean)},
-          {"p95_mm", number_json(distance.p95)},
-          {"max_mm", number_json(distance.max)}};
+OrderedJson distances_json(const std::optional<DistanceFigures>& distance) {
+  if (!distance) return nullptr;
+  return {{"mean_mm", number_json(distance->mean)},
+          {"p95_mm", number_json(distance->p95)},
+          {"max_mm", number_json(distance->max)}};
 }
 
 void write_study(const std::filesystem::path& folder, const std::string& name, const OrderedJson& json,
-                 const std::string& csv) {
+                 const Table& table) {
   formats::write_whole(folder / (name + ".json"), json_text(json, 2) + "\n");
-  formats::write_whole(folder / (name + ".csv"), csv);
-}
-
-std::ostringstream csv_with_header(const std::string& header) {
-  std::ostringstream out;
-  out.precision(12);
-  out << header << '\n';
-  return out;
+  formats::write_whole(folder / (name + ".csv"), csv_table(table));
 }
 
 }  // namespace coapt

@@ -3,8 +3,7 @@
 #include "core/components.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
-#include "report/report_page.hpp"
-#include "results/csv_row.hpp"
+#include "report/page_table.hpp"
 #include "results/study_files.hpp"
 
 namespace coapt {
@@ -61,30 +60,22 @@ Tone tone_of(StressVerdict verdict) {
   return Tone::Plain;
 }
 
-std::string number_cell(const std::optional<double>& value) { return value ? page_number(*value, 3) : ""; }
-
-std::vector<PageCell> page_row(const StressResult& result) {
-  const StressRow& row = result.row;
-  const StressOutcome& outcome = result.outcome;
-  const std::string unit = row.unit.empty() ? "" : " " + row.unit;
-  return {{row.name, Tone::Plain, row.scene},
-          {std::string(stress_verdict_name(outcome.verdict)), tone_of(outcome.verdict), outcome.message},
-          {number_cell(outcome.figure) + (outcome.figure ? unit : ""), Tone::Plain, row.measure},
-          {number_cell(outcome.limit)},
-          {outcome.iterations ? std::to_string(*outcome.iterations) : ""},
-          {page_number(result.wall_s, 2)}};
-}
-
-PageTable table_of(const std::string& caption) {
-  return {caption,
-          {{"what is varied", true, 25},
-           {"verdict", true, 34},
-           {"figure", false, 18},
-           {"limit", false, 7},
-           {"iterations", false, 8},
-           {"wall [s]", false, 8}},
-          {},
-          ""};
+// Columns of one share in all tables of the page, so that they stand in line.
+PageTable page_rows(std::span<const StressResult> results, const std::string& caption) {
+  PageTable page = page_table(
+      chosen(stress_table(results), {"name", "verdict", "figure", "limit", "iterations", "wall_s"}), caption);
+  constexpr int kShares[] = {25, 34, 18, 7, 8, 8};
+  for (size_t c = 0; c < page.columns.size(); ++c) page.columns[c].share = kShares[c];
+  for (size_t r = 0; r < results.size(); ++r) {
+    const StressRow& row = results[r].row;
+    const StressOutcome& outcome = results[r].outcome;
+    std::vector<PageCell>& cells = page.rows[r];
+    cells[0].remark = row.scene;
+    cells[1] = {cells[1].text, tone_of(outcome.verdict), outcome.message};
+    if (outcome.figure && !row.unit.empty()) cells[2].text += " " + row.unit;
+    cells[2].remark = row.measure;
+  }
+  return page;
 }
 
 PageSection reading_section() {
@@ -105,24 +96,24 @@ PageSection reading_section() {
 
 std::string stress_json(const StressMatrix& matrix) { return json_text(matrix_json(matrix), 2) + "\n"; }
 
-std::string stress_csv(const StressMatrix& matrix) {
-  std::ostringstream csv = csv_with_header(
-      "id,scene,name,verdict,figure,limit,unit,status,residual,iterations,wall_s,cpu_s,measure,message");
-  for (const StressResult& result : matrix.results) {
-    const StressOutcome& outcome = result.outcome;
-    Row row(csv);
-    for (const std::string& text : {result.row.id, result.row.scene, result.row.name,
-                                    std::string(stress_verdict_name(outcome.verdict))})
-      row.text(text);
-    for (const auto& value : {outcome.figure, outcome.limit}) row.number(value);
-    for (const std::string& text : {result.row.unit, outcome.status}) row.text(text);
-    row.number(outcome.residual);
-    row.number(outcome.iterations);
-    for (const double seconds : {result.wall_s, result.cpu_s}) row.number(seconds);
-    for (const std::string& text : {result.row.measure, outcome.message}) row.text(text);
-    csv << '\n';
-  }
-  return csv.str();
+Table stress_table(std::span<const StressResult> results) {
+  const auto row = [](auto text) { return along(&StressResult::row, text); };
+  const auto outcome = [](auto... figure) { return along(&StressResult::outcome, figure...); };
+  return table_of<StressResult>(
+      results, {{text_column("id", "row", 4), row(&StressRow::id)},
+                {text_column("scene", "", 24), row(&StressRow::scene)},
+                {text_column("name", "what is varied", 58), row(&StressRow::name)},
+                {text_column("verdict", "", 7), outcome(&StressOutcome::verdict, stress_verdict_name)},
+                {{"figure", "", "", 3}, outcome(&StressOutcome::figure)},
+                {{"limit", "", "", 3}, outcome(&StressOutcome::limit)},
+                {text_column("unit"), row(&StressRow::unit)},
+                {text_column("status"), outcome(&StressOutcome::status)},
+                {{"residual"}, outcome(&StressOutcome::residual)},
+                {{"iterations"}, outcome(&StressOutcome::iterations)},
+                {{"wall_s", "wall", "s", 2, 2}, &StressResult::wall_s},
+                {{"cpu_s"}, &StressResult::cpu_s},
+                {text_column("measure"), row(&StressRow::measure)},
+                {text_column("message"), outcome(&StressOutcome::message)}});
 }
 
 std::string stress_summary(const StressMatrix& matrix) {
@@ -144,20 +135,20 @@ std::string stress_page(const StressMatrix& matrix) {
   const bool is_whole = !matrix.is_cancelled && matrix.count(StressVerdict::Stall) == 0;
   page.tone = matrix.has_failed() ? Tone::Bad : (is_whole ? Tone::Good : Tone::Caution);
   if (matrix.has_failed()) {
-    PageTable failed = table_of("Rows that fail");
+    std::vector<StressResult> failed;
     for (const StressResult& result : matrix.results)
-      if (result.outcome.verdict == StressVerdict::Fail) failed.rows.push_back(page_row(result));
-    page.sections.push_back({"Failures", {std::move(failed)}});
+      if (result.outcome.verdict == StressVerdict::Fail) failed.push_back(result);
+    page.sections.push_back({"Failures", {page_rows(failed, "Rows that fail")}});
   }
   page.sections.push_back(reading_section());
   if (matrix.shown) page.sections.push_back(shape_section("The scene's own solution", *matrix.shown));
   PageSection all{"The matrix", {}};
-  for (size_t k = 0; k < matrix.results.size();) {
-    const std::string& id = matrix.results[k].row.id;
-    PageBlock& block = all.blocks.emplace_back(table_of(id + ": " + std::string(stress_topic(id))));
-    std::vector<std::vector<PageCell>>& rows = std::get<PageTable>(block).rows;
-    for (; k < matrix.results.size() && matrix.results[k].row.id == id; ++k)
-      rows.push_back(page_row(matrix.results[k]));
+  const std::span<const StressResult> results = matrix.results;
+  for (size_t k = 0, end = 0; k < results.size(); k = end) {
+    const std::string& id = results[k].row.id;
+    while (end < results.size() && results[end].row.id == id) ++end;
+    all.blocks.emplace_back(
+        page_rows(results.subspan(k, end - k), id + ": " + std::string(stress_topic(id))));
   }
   page.sections.push_back(std::move(all));
   if (matrix.shown)
@@ -167,7 +158,7 @@ std::string stress_page(const StressMatrix& matrix) {
 }
 
 void write_stress(const std::filesystem::path& folder, const StressMatrix& matrix) {
-  write_study(folder, "stress", matrix_json(matrix), stress_csv(matrix));
+  write_study(folder, "stress", matrix_json(matrix), stress_table(matrix.results));
   formats::write_whole(folder / "stress.html", stress_page(matrix));
 }
 

@@ -1,8 +1,10 @@
 // What a stability matrix is told as: JSON, a table, and a page to look at. Fields: docs/stress.md.
 #pragma once
 
+#include "formats/table.hpp"
 #include "stress/stress.hpp"
 
+#include <span>
 #include <string>
 
 namespace coapt {
@@ -10,8 +12,8 @@ namespace coapt {
 // The text of stress.json. Numbers that are not finite are null.
 std::string stress_json(const StressMatrix& matrix);
 
-// The text of stress.csv: one line per row of the matrix, cells empty where there is no number.
-std::string stress_csv(const StressMatrix& matrix);
+// One row for each of some results: stress.csv, and what the page and `coapt stress` show.
+Table stress_table(std::span<const StressResult> results);
 
 // The text of stress.html.
 std::string stress_page(const StressMatrix& matrix);

@@ -1,6 +1,7 @@
 // report.html of a comparison.
 #include "formats/json/suggestion.hpp"
 #include "report/compared_view.hpp"
+#include "report/page_table.hpp"
 #include "report/solve_page.hpp"
 #include "results/result_warnings.hpp"
 #include "study/comparison_report.hpp"
@@ -15,57 +16,31 @@ bool has_converged(const ComparedMethod& method) {
   return method.run && method.run->report.result.status == Status::Converged;
 }
 
-std::optional<DistanceFigures> to_reference(const ComparedMethod& method) {
-  if (!method.gap || !method.gap->surfaces) return std::nullopt;
-  return both_directions(*method.gap->surfaces);
-}
-
-std::optional<DistanceFigures> to_closed(const ComparedMethod& method) {
-  if (!method.run || !method.run->report.reference) return std::nullopt;
-  return both_directions(*method.run->report.reference);
-}
-
 // Mean distance to the reference's shape: of the surfaces, or of the nodes where there are none [mm].
 std::optional<double> mean_gap(const ComparedMethod& method) {
-  if (const auto surfaces = to_reference(method)) return surfaces->mean;
+  if (method.gap && method.gap->surfaces) return both_directions(*method.gap->surfaces).mean;
   return method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt;
 }
 
-PageCell number_cell(const std::optional<double>& value, int digits = 3) {
-  return {value ? page_number(*value, digits) : "–"};
-}
-
-void add_cells(const std::optional<DistanceFigures>& figures, std::vector<PageCell>& row) {
-  for (const auto figure : {&DistanceFigures::mean, &DistanceFigures::p95, &DistanceFigures::max})
-    row.push_back(number_cell(figures ? std::optional((*figures).*figure) : std::nullopt));
-}
-
 PageTable distance_table(const Comparison& comparison) {
-  PageTable table{
-      .caption = "Distance of the closed surfaces to that of " + comparison.reference().name + " [mm]",
-      .columns = {{"method", true}, {"status", true}, {"verdict", true}, {"mean"}, {"95 %"}, {"greatest"}}};
-  table.columns.insert(table.columns.end(), {{"same vertex, mean"}, {"same vertex, greatest"}});
+  std::vector<std::string> columns = {"method", "status", "verdict"};
+  columns.insert(columns.end(), {"mean_to_reference_mm", "p95_to_reference_mm", "max_to_reference_mm",
+                                 "same_vertex_mean_mm", "same_vertex_max_mm"});
   const bool has_closed = !comparison.closed_surface.empty();
   if (has_closed)
-    for (const char* figure : {"mean", "95 %", "greatest"})
-      table.columns.push_back({"to " + comparison.closed_surface + ", " + figure});
-  for (const ComparedMethod& method : comparison.methods) {
-    std::string status =
-        method.run ? std::string(status_name(method.run->report.result.status)) : std::string("failed");
-    std::replace(status.begin(), status.end(), '_', ' ');
-    std::vector<PageCell> row = {{method.name},
-                                 {status, has_converged(method) ? Tone::Good : Tone::Bad},
-                                 {std::string(verdict_name(method.verdict))}};
-    add_cells(to_reference(method), row);
-    row.push_back(number_cell(method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt));
-    row.push_back(number_cell(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt));
-    if (has_closed) add_cells(to_closed(method), row);
-    table.rows.push_back(row);
+    columns.insert(columns.end(), {"mean_to_closed_mm", "p95_to_closed_mm", "max_to_closed_mm"});
+  PageTable table = page_table(chosen(comparison_table(comparison.methods), columns),
+                               "Distance of the closed surfaces to that of " + comparison.reference().name);
+  for (size_t k = 0; k < table.rows.size(); ++k) {
+    PageCell& status = table.rows[k][1];
+    status = {spaced(status.text), has_converged(comparison.methods[k]) ? Tone::Good : Tone::Bad};
   }
   table.note =
       "In both directions: mean of the means, greater 95th percentile, greater maximum. Same vertex: of each "
-      "vertex from itself. One equilibrium: no vertex farther than " +
-      page_number(kSameShape * comparison.extent_mm, 3) + " mm from itself.";
+      "vertex from itself. " +
+      (has_closed ? "Closed: to the given surface " + comparison.closed_surface + ". " : "") +
+      "One equilibrium: no vertex farther than " + page_number(kSameShape * comparison.extent_mm, 3) +
+      " mm from itself.";
   return table;
 }
 
@@ -78,29 +53,10 @@ PageList messages(const Comparison& comparison) {
 }
 
 PageTable figure_table(const Comparison& comparison) {
-  PageTable table{.caption = "Figures of each result, and what it took",
-                  .columns = {{"method", true}, {"orifice [mm²]"}, {"coaptation area [mm²]"}}};
-  for (const char* title : {"coaptation height [mm]", "intersections", "residual", "energy [mJ]", "iterates",
-                            "CPU time [s]", "wall time [s]"})
-    table.columns.push_back({title});
-  for (const ComparedMethod& method : comparison.methods) {
-    std::vector<PageCell> row = {{method.name}};
-    if (method.run) {
-      const Metrics& metrics = method.run->report.metrics;
-      const Result& result = method.run->report.result;
-      for (const auto& value :
-           {metrics.orifice_area_mm2, metrics.coaptation_area_mm2, metrics.coaptation_height_mm})
-        row.push_back(number_cell(value, 4));
-      row.push_back({std::to_string(metrics.intersections)});
-      row.push_back(number_cell(result.residual));
-      row.push_back(number_cell(result.energy, 8));
-      row.push_back({std::to_string(result.iterations)});
-      row.push_back(number_cell(result.cpu_s));
-      row.push_back(number_cell(result.wall_s));
-    }
-    table.rows.push_back(row);
-  }
-  return table;
+  return page_table(chosen(comparison_table(comparison.methods),
+                           {"method", "orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
+                            "intersections", "residual", "energy_mj", "iterations", "cpu_s", "wall_s"}),
+                    "Figures of each result, and what it took");
 }
 
 PagePlot work_plot(const Comparison& comparison) {

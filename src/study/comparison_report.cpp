@@ -4,7 +4,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "results/branches_json.hpp"
-#include "results/csv_row.hpp"
+#include "results/study_files.hpp"
 #include "study/detail/comparison_json.hpp"
 
 #include <cmath>
@@ -75,42 +75,12 @@ OrderedJson method_json(const ComparedMethod& method) {
   return json;
 }
 
-constexpr const char* kHeader =
-    "method,model,verdict,status,residual,energy_mj,iterations,gradients,factorisations,simulated_s,wall_s,"
-    "cpu_s,intersections,mean_to_reference_mm,p95_to_reference_mm,max_to_reference_mm,same_vertex_mean_mm,"
-    "same_vertex_max_mm,mean_to_closed_mm,p95_to_closed_mm,max_to_closed_mm,orifice_area_mm2,"
-    "leaflet_area_change_mm2,coaptation_area_mm2,coaptation_length_mm,coaptation_height_mm,tenting_height_mm,"
-    "max_chord_force_n,max_principal_strain,message";
-
-// None where there is no membrane.
-std::optional<double> area_change(const Metrics& m) {
-  return m.leaflet_area_open_mm2 > 0 ? std::optional(m.leaflet_area_change_mm2) : std::nullopt;
+std::optional<double> area_change(const Metrics& metrics) {
+  if (!(metrics.leaflet_area_open_mm2 > 0)) return std::nullopt;  // there is no membrane
+  return metrics.leaflet_area_change_mm2;
 }
 
-void add_figures(const ComparedMethod& method, Row& row) {
-  const Report& report = method.run->report;
-  const Result& result = report.result;
-  const Metrics& m = report.metrics;
-  row.text(std::string(status_name(result.status)));
-  for (const double value : {result.residual, result.energy}) row.number(value);
-  for (const long count : {long{result.iterations}, result.evaluations.gradient, result.factorisations})
-    row.count(count);
-  row.number(simulated_s(result));
-  for (const double value : {result.wall_s, result.cpu_s}) row.number(value);
-  row.count(m.intersections);
-  const bool has_surfaces = method.gap && method.gap->surfaces, has_closed = report.reference.has_value();
-  const DistanceFigures to_reference =
-                            has_surfaces ? both_directions(*method.gap->surfaces) : DistanceFigures{},
-                        to_closed = has_closed ? both_directions(*report.reference) : DistanceFigures{};
-  row.distance(has_surfaces ? &to_reference : nullptr);
-  row.number(method.gap ? std::optional(method.gap->same_vertex.mean) : std::nullopt);
-  row.number(method.gap ? std::optional(method.gap->same_vertex.max) : std::nullopt);
-  row.distance(has_closed ? &to_closed : nullptr);
-  for (const auto& value :
-       {m.orifice_area_mm2, area_change(m), m.coaptation_area_mm2, m.coaptation_length_mm,
-        m.coaptation_height_mm, m.tenting_height_mm, m.max_chord_force_n, m.max_principal_strain})
-    row.number(value);
-}
+DistanceFigures distance_of(const ReferenceDistance& distance) { return both_directions(distance); }
 
 }  // namespace
 
@@ -142,26 +112,58 @@ std::string comparison_json(const Comparison& comparison) {
   return json_text(comparison_as_json(comparison), 2) + "\n";
 }
 
-std::string comparison_csv(const Comparison& comparison) {
-  std::ostringstream csv = csv_with_header(kHeader);
-  constexpr int kFigures = 26;  // columns between the verdict and the message
-  for (const ComparedMethod& method : comparison.methods) {
-    Row row(csv);
-    row.text(method.name);
-    row.text(std::string(method_model_name(method.model)));
-    row.text(std::string(verdict_name(method.verdict)));
-    if (method.run)
-      add_figures(method, row);
-    else
-      for (int column = 0; column < kFigures; ++column) row.text("");
-    row.text(method.message);
-    csv << '\n';
-  }
-  return csv.str();
+Table comparison_table(std::span<const ComparedMethod> methods) {
+  using Distance = DistanceFigures;
+  const auto result = [](auto... figure) {
+    return along(&ComparedMethod::run, &RunReport::report, &Report::result, figure...);
+  };
+  const auto metric = [](auto figure) {
+    return along(&ComparedMethod::run, &RunReport::report, &Report::metrics, figure);
+  };
+  const auto gap = [](auto figure) {
+    return along(&ComparedMethod::gap, &MethodGap::surfaces, distance_of, figure);
+  };
+  const auto vertex = [](auto figure) {
+    return along(&ComparedMethod::gap, &MethodGap::same_vertex, figure);
+  };
+  const auto closed = [](auto figure) {
+    return along(&ComparedMethod::run, &RunReport::report, &Report::reference, distance_of, figure);
+  };
+  return table_of<ComparedMethod>(
+      methods, {{text_column("method", "", 12), &ComparedMethod::name},
+                {text_column("model"), along(&ComparedMethod::model, method_model_name)},
+                {text_column("verdict"), along(&ComparedMethod::verdict, verdict_name)},
+                {text_column("status", "", 16), result(&Result::status, status_name)},
+                {{"residual", "", "", 3}, result(&Result::residual)},
+                {{"energy_mj", "energy", "mJ", 8, -1, 12}, result(&Result::energy)},
+                {{"iterations", "iterates"}, result(&Result::iterations)},
+                {{"gradients"}, result(&Result::evaluations, &EvaluationCounts::gradient)},
+                {{"factorisations"}, result(&Result::factorisations)},
+                {{"simulated_s"}, result(simulated_s)},
+                {{"wall_s", "wall", "s", 3, 2}, result(&Result::wall_s)},
+                {{"cpu_s", "CPU", "s", 3, 2}, result(&Result::cpu_s)},
+                {{"intersections"}, metric(&Metrics::intersections)},
+                {{"mean_to_reference_mm", "mean", "mm", 3}, gap(&Distance::mean)},
+                {{"p95_to_reference_mm", "95 %", "mm", 3}, gap(&Distance::p95)},
+                {{"max_to_reference_mm", "max", "mm", 3}, gap(&Distance::max)},
+                {{"same_vertex_mean_mm", "same vertex mean", "mm", 3}, vertex(&VertexDistance::mean)},
+                {{"same_vertex_max_mm", "same vertex max", "mm", 3}, vertex(&VertexDistance::max)},
+                {{"mean_to_closed_mm", "closed mean", "mm", 3}, closed(&Distance::mean)},
+                {{"p95_to_closed_mm", "closed 95 %", "mm", 3}, closed(&Distance::p95)},
+                {{"max_to_closed_mm", "closed max", "mm", 3}, closed(&Distance::max)},
+                {{"orifice_area_mm2", "orifice", "mm2", 4, 2}, metric(&Metrics::orifice_area_mm2)},
+                {{"leaflet_area_change_mm2", "area +-", "mm2", 4, 2}, metric(area_change)},
+                {{"coaptation_area_mm2", "coaptation", "mm2", 4, 2}, metric(&Metrics::coaptation_area_mm2)},
+                {{"coaptation_length_mm"}, metric(&Metrics::coaptation_length_mm)},
+                {{"coaptation_height_mm", "coaptation height", "mm"}, metric(&Metrics::coaptation_height_mm)},
+                {{"tenting_height_mm"}, metric(&Metrics::tenting_height_mm)},
+                {{"max_chord_force_n"}, metric(&Metrics::max_chord_force_n)},
+                {{"max_principal_strain"}, metric(&Metrics::max_principal_strain)},
+                {text_column("message"), &ComparedMethod::message}});
 }
 
 void write_comparison(const std::filesystem::path& folder, const Comparison& comparison) {
-  write_study(folder, "compare", comparison_as_json(comparison), comparison_csv(comparison));
+  write_study(folder, "compare", comparison_as_json(comparison), comparison_table(comparison.methods));
   formats::write_whole(folder / "report.html", comparison_page(comparison));
 }
 

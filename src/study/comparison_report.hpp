@@ -1,8 +1,10 @@
 // What a comparison of methods is told as: a table, JSON, and a page to look at. Fields: docs/studies.md.
 #pragma once
 
+#include "formats/table.hpp"
 #include "study/comparison.hpp"
 
+#include <span>
 #include <string>
 
 namespace coapt {
@@ -10,8 +12,8 @@ namespace coapt {
 // The text of compare.json. Numbers that are not finite are null.
 std::string comparison_json(const Comparison& comparison);
 
-// The text of compare.csv: one row per method, cells empty where there is no number.
-std::string comparison_csv(const Comparison& comparison);
+// One row for each method: compare.csv, and what the page and `coapt compare` show.
+Table comparison_table(std::span<const ComparedMethod> methods);
 
 // The text of report.html: tables, error against run time, and the closed shape of every method, coloured by
 // its distance to the reference's. It needs nothing but itself.

@@ -48,18 +48,8 @@ BeforeAfter intervene(const std::filesystem::path& scene, const SolverTable& sol
 }
 
 std::vector<ChangedFigure> changed_figures(const BeforeAfter& found) {
-  std::vector<ChangedFigure> figures;
-  if (!found.before) return figures;
-  const std::vector<MetricRow> after =
-      found.after ? metric_rows(found.after->report.metrics) : std::vector<MetricRow>();
-  const std::vector<MetricRow> before = metric_rows(found.before->report.metrics);
-  for (size_t k = 0; k < before.size(); ++k) {
-    ChangedFigure figure{before[k], {}, {}};
-    if (k < after.size()) figure.after = after[k].value;
-    if (figure.after && before[k].value) figure.change = *figure.after - *before[k].value;
-    figures.push_back(std::move(figure));
-  }
-  return figures;
+  if (!found.before) return {};
+  return changed_figures(found.before->report.metrics, found.after ? &found.after->report.metrics : nullptr);
 }
 
 }  // namespace coapt

@@ -1,6 +1,7 @@
 // A valve before and after its interventions: both solved from the same start, and every figure of both.
 #pragma once
 
+#include "results/changed_figures.hpp"
 #include "run/run.hpp"
 
 #include <filesystem>
@@ -33,12 +34,7 @@ struct BeforeAfter {
 BeforeAfter intervene(const std::filesystem::path& scene, const SolverTable& solvers,
                       const InterveneOptions& options, const RunOptions& run);
 
-// One figure of both states.
-struct ChangedFigure {
-  MetricRow before;  // name, unit, meaning, value
-  std::optional<double> after;
-  std::optional<double> change;  // after less before
-};
+// Every figure of both states.
 std::vector<ChangedFigure> changed_figures(const BeforeAfter& found);
 
 // The text of intervene.json. Numbers that are not finite or not defined are null.

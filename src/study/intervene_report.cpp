@@ -2,8 +2,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/compared_view.hpp"
-#include "report/metric_words.hpp"
-#include "results/csv_row.hpp"
+#include "report/page_table.hpp"
 #include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
 #include "study/intervene.hpp"
@@ -25,34 +24,6 @@ OrderedJson state_json(const std::optional<RunReport>& run) {
           {"intersections_judge", run->report.metrics.intersection_judge},
           {"folder", run->folder.filename().string()},
           {"warnings", run->report.warnings}};
-}
-
-std::string csv_of(const BeforeAfter& found) {
-  std::ostringstream csv = csv_with_header("figure,unit,before,after,change");
-  for (const ChangedFigure& figure : changed_figures(found)) {
-    Row row(csv);
-    row.text(figure.before.name);
-    row.text(figure.before.unit);
-    for (const auto& value : {figure.before.value, figure.after, figure.change}) row.number(value);
-    csv << '\n';
-  }
-  return csv.str();
-}
-
-PageCell figure_cell(const std::optional<double>& value) { return {value ? page_number(*value) : "–"}; }
-
-PageTable figure_table(const BeforeAfter& found) {
-  PageTable table{.caption = "Every figure before and after",
-                  .columns = {{"figure", true}, {"unit", true}, {"before"}, {"after"}, {"change"}},
-                  .note = "Definitions: docs/metrics.md."};
-  for (const ChangedFigure& figure : changed_figures(found))
-    if (figure.before.value || figure.after)
-      table.rows.push_back({{metric_in_words(figure.before), Tone::Plain, figure.before.meaning},
-                            {unit_sign(figure.before.unit)},
-                            figure_cell(figure.before.value),
-                            figure_cell(figure.after),
-                            figure_cell(figure.change)});
-  return table;
 }
 
 // "ring: size 30 mm, stiffness flexible"
@@ -119,13 +90,13 @@ std::string intervene_page(const BeforeAfter& found) {
   if (!shapes.empty())
     if (const auto view = compared_view(shapes, shapes.size() - 1, "intervention", "Before ↔ after"))
       page.sections.push_back({"Shapes", {shape_view_html(*view)}});
-  page.sections.push_back({"Figures", {figure_table(found)}});
+  page.sections.push_back({"Figures", {change_page_table(changed_figures(found))}});
   return report_page(page);
 }
 
 void write_intervene(const BeforeAfter& found) {
-  formats::write_whole(found.folder / "intervene.json", intervene_json(found));
-  formats::write_whole(found.folder / "intervene.csv", csv_of(found));
+  write_study(found.folder, "intervene", OrderedJson::parse(intervene_json(found)),
+              change_table(changed_figures(found)));
   formats::write_whole(found.folder / "report.html", intervene_page(found));
 }
 

@@ -46,15 +46,6 @@ void compare(MeshLevel& level, const MeshLevel& before) {
     level.order = std::log2(before.to_previous->mean / level.to_previous->mean);
 }
 
-OrderedJson optional_number(const std::optional<double>& value) {
-  return value ? OrderedJson(*value) : OrderedJson(nullptr);
-}
-
-OrderedJson mean_of(const std::optional<DistanceFigures>& distance) {
-  if (!distance) return nullptr;
-  return {{"mean_mm", distance->mean}, {"p95_mm", distance->p95}, {"max_mm", distance->max}};
-}
-
 std::string surface_file(const MeshLevel& level) {
   return "closed_" + std::to_string(level.triangles) + ".obj";
 }
@@ -88,52 +79,53 @@ MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels,
   return study;
 }
 
+Table level_table(std::span<const MeshLevel> levels) {
+  using Distance = DistanceFigures;
+  return table_of<MeshLevel>(
+      levels, {{{"triangles"}, &MeshLevel::triangles},
+               {{"vertices"}, &MeshLevel::vertices},
+               {text_column("status", "", 9), along(&MeshLevel::status, status_name)},
+               {{"residual", "", "", 2}, &MeshLevel::residual},
+               {{"iterations"}, &MeshLevel::iterations},
+               {{"wall_s", "wall", "s", 4, 2}, &MeshLevel::wall_s},
+               {{"cpu_s", "CPU", "s", 4, 2}, &MeshLevel::cpu_s},
+               {{"intersections", "inter."}, &MeshLevel::intersections},
+               {{"mean_to_previous_mm", "to level before", "mm", 4, 4},
+                along(&MeshLevel::to_previous, &Distance::mean)},
+               {{"p95_to_previous_mm", "95 %", "mm", 4, 4}, along(&MeshLevel::to_previous, &Distance::p95)},
+               {{"max_to_previous_mm"}, along(&MeshLevel::to_previous, &Distance::max)},
+               {{"order", "", "", 4, 2}, &MeshLevel::order},
+               {{"orifice_area_mm2", "orifice", "mm2", 4, 2}, &MeshLevel::orifice_area_mm2},
+               {{"max_chord_force_n"}, &MeshLevel::max_chord_force_n},
+               {{"mean_to_reference_mm"}, along(&MeshLevel::to_reference, &Distance::mean)}});
+}
+
 void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& study) {
   OrderedJson json = {{"scene", study.scene_file},
                       {"solver", study.solver},
                       {"tolerance", study.tolerance},
                       {"converged", study.has_converged()},
                       {"levels", OrderedJson::array()}};
-  std::ostringstream csv = csv_with_header(
-      "triangles,vertices,status,residual,iterations,wall_s,cpu_s,intersections,mean_to_previous_mm,"
-      "p95_to_previous_mm,max_to_previous_mm,order,orifice_area_mm2,max_chord_force_n,mean_to_reference_mm");
-  const auto cell = [&](const std::optional<double>& value) {
-    csv << ',';
-    if (value) csv << *value;
-  };
   for (const MeshLevel& level : study.levels) {
-    json["levels"].push_back(
-        {{"triangles", level.triangles},
-         {"vertices", level.vertices},
-         {"status", std::string(status_name(level.status))},
-         {"residual", std::isfinite(level.residual) ? OrderedJson(level.residual) : OrderedJson(nullptr)},
-         {"iterations", level.iterations},
-         {"wall_s", level.wall_s},
-         {"cpu_s", level.cpu_s},
-         {"intersections", level.intersections},
-         {"distance_to_previous", mean_of(level.to_previous)},
-         {"order", optional_number(level.order)},
-         {"orifice_area_mm2", optional_number(level.orifice_area_mm2)},
-         {"max_chord_force_n", optional_number(level.max_chord_force_n)},
-         {"distance_to_reference", mean_of(level.to_reference)},
-         {"file", surface_file(level)}});
-    csv << level.triangles << ',' << level.vertices << ',' << status_name(level.status) << ','
-        << level.residual << ',' << level.iterations << ',' << level.wall_s << ',' << level.cpu_s << ','
-        << level.intersections;
-    const bool is_compared = level.to_previous.has_value();
-    cell(is_compared ? std::optional(level.to_previous->mean) : std::nullopt);
-    cell(is_compared ? std::optional(level.to_previous->p95) : std::nullopt);
-    cell(is_compared ? std::optional(level.to_previous->max) : std::nullopt);
-    cell(level.order);
-    cell(level.orifice_area_mm2);
-    cell(level.max_chord_force_n);
-    cell(level.to_reference ? std::optional(level.to_reference->mean) : std::nullopt);
-    csv << '\n';
+    json["levels"].push_back({{"triangles", level.triangles},
+                              {"vertices", level.vertices},
+                              {"status", std::string(status_name(level.status))},
+                              {"residual", number_json(level.residual)},
+                              {"iterations", level.iterations},
+                              {"wall_s", level.wall_s},
+                              {"cpu_s", level.cpu_s},
+                              {"intersections", level.intersections},
+                              {"distance_to_previous", distances_json(level.to_previous)},
+                              {"order", number_json(level.order)},
+                              {"orifice_area_mm2", number_json(level.orifice_area_mm2)},
+                              {"max_chord_force_n", number_json(level.max_chord_force_n)},
+                              {"distance_to_reference", distances_json(level.to_reference)},
+                              {"file", surface_file(level)}});
     TriangleMesh closed = level.closed;
     closed.vertices.colwise() += study.origin;
     write_mesh(folder / surface_file(level), closed);
   }
-  write_study(folder, "mesh_study", json, csv.str());
+  write_study(folder, "mesh_study", json, level_table(study.levels));
 }
 
 }  // namespace coapt

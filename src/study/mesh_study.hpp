@@ -6,10 +6,12 @@
 // scene. Where contact takes its range from the edges of the mesh, that shrinks with them.
 #pragma once
 
+#include "formats/table.hpp"
 #include "results/reference_distance.hpp"
 #include "run/run.hpp"
 
 #include <functional>
+#include <span>
 
 namespace coapt {
 
@@ -44,6 +46,9 @@ struct MeshStudy {
 // options: as for run(); its time limit is that of each level. Throws InputError for bad input.
 MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels, const RunOptions& options,
                      const std::function<void(const MeshLevel&)>& report = {});
+
+// One row for each level: mesh_study.csv, and what `coapt mesh-study` prints.
+Table level_table(std::span<const MeshLevel> levels);
 
 // Writes mesh_study.json, mesh_study.csv and the closed surface of each level, closed_<triangles>.obj.
 // Throws InputError when a file cannot be written.

@@ -4,6 +4,7 @@
 // left to the caller. A finished point is a file, so that a study that was stopped goes on where it was.
 #pragma once
 
+#include "formats/table.hpp"
 #include "run/run.hpp"
 
 #include <filesystem>
@@ -80,6 +81,9 @@ void check_metric(const std::string& name);
 // Places in results: converged points by the metric, the best first, then converged ones without it, then the
 // others. Equal ones keep the order of the grid.
 std::vector<size_t> ranked(const ParameterStudy& study);
+
+// One row for each point, the best first: study.csv, and what the page and `coapt study` show.
+Table point_table(const ParameterStudy& study);
 
 std::string parameter_study_json(const ParameterStudy& study);
 std::string parameter_study_page(const ParameterStudy& study);

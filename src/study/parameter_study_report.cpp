@@ -3,8 +3,7 @@
 #include "formats/text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/metric_words.hpp"
-#include "report/report_page.hpp"
-#include "results/csv_row.hpp"
+#include "report/page_table.hpp"
 #include "results/study_files.hpp"
 #include "study/parameter_study.hpp"
 
@@ -51,30 +50,6 @@ OrderedJson as_json(const ParameterStudy& study) {
   return json;
 }
 
-std::string csv_of(const ParameterStudy& study) {
-  std::string header = "rank,number";
-  for (const Sweep& sweep : study.sweeps) header += "," + csv_text(sweep.path);
-  header += ",status,residual,iterations,wall_s";
-  const std::vector<MetricRow> metrics = metric_rows(Metrics());
-  for (const MetricRow& row : metrics) header += "," + row.name;
-  std::ostringstream csv = csv_with_header(header);
-  long rank = 0;
-  for (const size_t place : ranked(study)) {
-    const PointResult& result = study.results[place];
-    Row row(csv);
-    row.count(++rank);
-    row.count(static_cast<long>(result.number));
-    for (const std::string& value : result.values) row.text(value);
-    row.text(result.status);
-    row.number(result.residual);
-    row.count(result.iterations);
-    row.number(result.wall_s);
-    for (const MetricRow& metric : metrics) row.number(result.metric(metric.name));
-    csv << '\n';
-  }
-  return csv.str();
-}
-
 std::vector<std::string> shown_metrics(const ParameterStudy& study) {
   std::vector<std::string> names{study.metric};
   for (const char* name : kShown)
@@ -88,27 +63,26 @@ MetricRow row_of(const std::string& metric) {
   return {metric, "", "", false, std::nullopt};
 }
 
-PageTable point_table(const ParameterStudy& study) {
-  PageTable table{.caption = "Points, the best first", .columns = {{"rank"}}};
-  for (const Sweep& sweep : study.sweeps) table.columns.push_back({sweep.path, true});
-  table.columns.push_back({"status", true});
-  for (const std::string& name : shown_metrics(study)) table.columns.push_back({metric_title(row_of(name))});
-  int rank = 0;
-  for (const size_t place : ranked(study)) {
-    const PointResult& result = study.results[place];
-    std::vector<PageCell> row{{std::to_string(++rank)}};
-    for (const std::string& value : result.values) row.push_back({value});
-    row.push_back({result.status, result.has_converged() ? Tone::Good : Tone::Bad,
-                   result.has_converged() ? "" : result.message});
-    for (const std::string& name : shown_metrics(study)) {
-      const std::optional<double> value = result.metric(name);
-      row.push_back({value ? page_number(*value) : "–"});
-    }
-    table.rows.push_back(std::move(row));
+PageTable page_points(const ParameterStudy& study) {
+  std::vector<std::string> columns{"rank"};
+  for (const Sweep& sweep : study.sweeps) columns.push_back(sweep.path);
+  columns.emplace_back("status");
+  const std::vector<std::string> metrics = shown_metrics(study);
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
+  PageTable table =
+      page_table(chosen(point_table(study), columns), "Points, the best first",
+                 "Ranked by " + metric_in_words(row_of(study.metric)) + ", the " +
+                     (study.is_greatest_best ? "greatest" : "least") +
+                     " first. All figures stand in study.csv, and each point's own page in its folder.");
+  for (size_t k = 0; k < metrics.size(); ++k)
+    table.columns[columns.size() - metrics.size() + k].title = metric_title(row_of(metrics[k]));
+  const std::vector<size_t> order = ranked(study);
+  for (size_t k = 0; k < order.size(); ++k) {
+    const PointResult& result = study.results[order[k]];
+    PageCell& status = table.rows[k][1 + study.sweeps.size()];
+    status.tone = result.has_converged() ? Tone::Good : Tone::Bad;
+    if (!result.has_converged()) status.remark = result.message;
   }
-  table.note = "Ranked by " + metric_in_words(row_of(study.metric)) + ", the " +
-               (study.is_greatest_best ? "greatest" : "least") +
-               " first. All figures stand in study.csv, and each point's own page in its folder.";
   return table;
 }
 
@@ -163,6 +137,30 @@ PagePlot metric_plot(const ParameterStudy& study, const std::string& metric) {
 
 }  // namespace
 
+Table point_table(const ParameterStudy& study) {
+  struct RankedPoint {
+    size_t rank;
+    const PointResult* result;
+  };
+  std::vector<RankedPoint> points;
+  for (const size_t place : ranked(study)) points.push_back({points.size() + 1, &study.results[place]});
+  const auto of_result = [](auto figure) { return along(&RankedPoint::result, figure); };
+  std::vector<ColumnOf<RankedPoint>> columns{{{"rank"}, &RankedPoint::rank},
+                                             {{"number"}, of_result(&PointResult::number)}};
+  for (size_t k = 0; k < study.sweeps.size(); ++k)
+    columns.push_back({text_column(study.sweeps[k].path),
+                       of_result([k](const PointResult& result) { return result.values[k]; })});
+  columns.push_back({text_column("status"), of_result(&PointResult::status)});
+  columns.push_back({{"residual"}, of_result(&PointResult::residual)});
+  columns.push_back({{"iterations"}, of_result(&PointResult::iterations)});
+  columns.push_back({{"wall_s"}, of_result(&PointResult::wall_s)});
+  for (const MetricRow& metric : metric_rows(Metrics()))
+    columns.push_back({{metric.name}, of_result([name = metric.name](const PointResult& result) {
+                         return result.metric(name);
+                       })});
+  return table_of<RankedPoint>(points, columns);
+}
+
 std::string parameter_study_json(const ParameterStudy& study) { return json_text(as_json(study), 2) + "\n"; }
 
 std::string parameter_study_page(const ParameterStudy& study) {
@@ -170,7 +168,7 @@ std::string parameter_study_page(const ParameterStudy& study) {
   page.lead = std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
               (study.has_converged() ? ", all converged" : "; not every point converged");
   page.tone = study.has_converged() ? Tone::Good : Tone::Bad;
-  page.sections.push_back({"Points", {point_table(study)}});
+  page.sections.push_back({"Points", {page_points(study)}});
   PageSection plots{"Figures", {}};
   for (const std::string& name : shown_metrics(study)) {
     const bool has_values = std::any_of(study.results.begin(), study.results.end(),
@@ -182,7 +180,7 @@ std::string parameter_study_page(const ParameterStudy& study) {
 }
 
 void write_parameter_study(const std::filesystem::path& folder, const ParameterStudy& study) {
-  write_study(folder, "study", as_json(study), csv_of(study));
+  write_study(folder, "study", as_json(study), point_table(study));
   formats::write_whole(folder / "report.html", parameter_study_page(study));
 }
 

@@ -2,6 +2,7 @@
 // docs/tuning.md.
 #pragma once
 
+#include "formats/table.hpp"
 #include "optim/bounded_minimiser.hpp"
 #include "run/run.hpp"
 #include "sensitivity/determinacy.hpp"
@@ -122,6 +123,12 @@ std::string chord_tuning_json(const ChordTuning& found);
 
 // report.html: the history, every figure before and after, the lengths, what determines them, both shapes.
 std::string chord_tuning_page(const ChordTuning& found);
+
+// One row for each length: tuning.csv but for the columns "change_mm" and "remarks", and what the page and
+// `coapt tune` show of it.
+Table length_table(const ChordTuning& found);
+inline const std::vector<std::string> kShownOfLengths = {
+    "name", "before_mm", "after_mm", "change_mm", "standard_deviation_mm", "remarks"};
 
 // Writes tuning.json, tuning.csv (a row for each length) and report.html. Throws InputError when a file
 // cannot be written.

@@ -2,8 +2,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "report/compared_view.hpp"
-#include "report/metric_words.hpp"
-#include "results/csv_row.hpp"
+#include "report/page_table.hpp"
 #include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
 #include "tuning/chord_tuning.hpp"
@@ -82,16 +81,16 @@ OrderedJson trial_json(const ChordTuning& found, const TuningTrial& trial, int n
   return json;
 }
 
+std::vector<ChangedFigure> metrics_of(const ChordTuning& found) {
+  return changed_figures(found.before.report.metrics, found.after ? &found.after->report.metrics : nullptr);
+}
+
 OrderedJson metrics_json(const ChordTuning& found) {
   OrderedJson metrics = OrderedJson::object();
-  const std::vector<MetricRow> before = metric_rows(found.before.report.metrics);
-  const std::vector<MetricRow> after =
-      found.after ? metric_rows(found.after->report.metrics) : std::vector<MetricRow>();
-  for (size_t k = 0; k < before.size(); ++k)
-    metrics[before[k].name] = {
-        {"unit", before[k].unit},
-        {"before", number_json(before[k].value)},
-        {"after", k < after.size() ? number_json(after[k].value) : OrderedJson(nullptr)}};
+  for (const ChangedFigure& figure : metrics_of(found))
+    metrics[figure.before.name] = {{"unit", figure.before.unit},
+                                   {"before", number_json(figure.before.value)},
+                                   {"after", number_json(figure.after)}};
   return metrics;
 }
 
@@ -102,82 +101,38 @@ OrderedJson state_json(const RunReport& run) {
           {"folder", run.folder.filename().string()},          {"warnings", run.report.warnings}};
 }
 
-std::string csv_of(const ChordTuning& found) {
-  std::ostringstream csv = csv_with_header(
-      "name,chords,before_mm,after_mm,factor,low_mm,high_mm,bound,slack,extension_mm,standard_deviation_mm,"
-      "determined");
-  for (const TunedLength& length : found.lengths) {
-    Row row(csv);
-    row.text(length.name);
-    row.count(length.chords);
-    for (const double value : {length.before, length.after, length.factor, length.low, length.high})
-      row.number(value);
-    row.text(bound_name(length));
-    row.text(length.is_slack ? "yes" : "no");
-    row.number(length.extension);
-    row.number(length.deviation);
-    row.text(std::isnan(length.deviation) ? "" : length.is_determined ? "yes" : "no");
-    csv << '\n';
-  }
-  return csv.str();
-}
-
 PageTable figure_table(const ChordTuning& found) {
-  PageTable table{.caption = "Every figure before and after",
-                  .columns = {{"figure", true}, {"unit", true}, {"before"}, {"after"}, {"change"}},
-                  .note = "Definitions: docs/metrics.md."};
-  const auto cell = [](const std::optional<double>& value) {
-    return PageCell{value ? page_number(*value) : "–"};
-  };
+  std::vector<ChangedFigure> figures = metrics_of(found);
   if (std::isfinite(found.misfit_before()))
-    table.rows.push_back(
-        {{"rms distance", Tone::Plain, "Root mean square distance of the vertices from the target."},
-         {"mm"},
-         cell(found.misfit_before()),
-         cell(found.misfit_after()),
-         cell(found.misfit_after() - found.misfit_before())});
-  const std::vector<MetricRow> before = metric_rows(found.before.report.metrics);
-  const std::vector<MetricRow> after =
-      found.after ? metric_rows(found.after->report.metrics) : std::vector<MetricRow>();
-  for (size_t k = 0; k < before.size(); ++k) {
-    const std::optional<double> then = k < after.size() ? after[k].value : std::nullopt;
-    std::optional<double> change;
-    if (then && before[k].value) change = *then - *before[k].value;
-    if (before[k].value || then)
-      table.rows.push_back({{metric_in_words(before[k]), Tone::Plain, before[k].meaning},
-                            {unit_sign(before[k].unit)},
-                            cell(before[k].value),
-                            cell(then),
-                            cell(change)});
-  }
-  return table;
+    figures.insert(figures.begin(),
+                   changed_figure({.name = "rms_distance_mm",
+                                   .unit = "mm",
+                                   .meaning = "Root mean square distance of the vertices from the target.",
+                                   .value = found.misfit_before()},
+                                  found.misfit_after()));
+  return change_page_table(figures);
 }
 
-PageTable length_table(const ChordTuning& found) {
-  PageTable table{.caption = "Rest lengths",
-                  .columns = {{"name", true},
-                              {"before [mm]"},
-                              {"after [mm]"},
-                              {"change [mm]"},
-                              {"standard deviation [mm]"},
-                              {"remarks", true}}};
-  for (const TunedLength& length : found.lengths) {
-    std::string remarks;
-    const auto remark = [&](bool holds, const std::string& text) {
-      if (holds) remarks += (remarks.empty() ? "" : ", ") + text;
-    };
-    remark(length.chords > 1, "mean of " + std::to_string(length.chords) + " chords");
-    remark(length.at_bound != 0, std::string("at its ") + bound_name(length) + " bound");
-    remark(length.is_slack, "slack");
+std::string remarks_on(const TunedLength& length, bool has_determinacy) {
+  std::string remarks;
+  const auto remark = [&](bool holds, const std::string& text) {
+    if (holds) remarks += (remarks.empty() ? "" : ", ") + text;
+  };
+  remark(length.chords > 1, "mean of " + std::to_string(length.chords) + " chords");
+  remark(length.at_bound != 0, std::string("at its ") + bound_name(length) + " bound");
+  remark(length.is_slack, "slack");
+  const bool is_open = has_determinacy && !length.is_determined;
+  remark(is_open, "not determined by the target");
+  remark(is_open && !length.is_slack && length.is_hardly_taut, "hardly taut");
+  return remarks;
+}
+
+PageTable page_lengths(const ChordTuning& found) {
+  PageTable table = page_table(chosen(length_table(found), kShownOfLengths), "Rest lengths");
+  for (size_t k = 0; k < table.rows.size(); ++k) {
+    const TunedLength& length = found.lengths[k];
     const bool is_open = found.determinacy && !length.is_determined;
-    remark(is_open, "not determined by the target");
-    remark(is_open && !length.is_slack && length.is_hardly_taut, "hardly taut");
-    table.rows.push_back({{length.name},
-                          {page_number(length.before, 6)},
-                          {page_number(length.after, 6)},
-                          {page_number(length.after - length.before)},
-                          {page_number(length.deviation)},
-                          {remarks, is_open || length.at_bound != 0 ? Tone::Caution : Tone::Plain}});
+    if (is_open || length.at_bound != 0) table.rows[k].back().tone = Tone::Caution;
   }
   if (found.determinacy)
     table.note = "Standard deviation where the distance of every vertex from the target is off by " +
@@ -254,26 +209,23 @@ std::string combination_text(const ChordTuning& found, Eigen::Index k) {
 }
 
 PageTable spectrum_table(const ChordTuning& found) {
-  PageTable table{.caption = "Combinations of lengths",
-                  .columns = {{"combination"},
-                              {"singular value [mm/mm]"},
-                              {"standard deviation [mm]"},
-                              {"determined", true},
-                              {"lengths with the greatest shares", true}}};
+  Table table{.columns = {text_column("combination"),
+                          {"singular value", "", "mm/mm"},
+                          {"standard deviation", "", "mm"},
+                          text_column("determined"),
+                          text_column("lengths with the greatest shares")}};
   const Determinacy& spectrum = *found.determinacy;
-  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k) {
-    const bool is_known = is_determined(found, k);
-    table.rows.push_back({{std::to_string(k + 1)},
-                          {page_number(spectrum.singular_values[k])},
-                          {page_number(spectrum.direction_deviation[k])},
-                          {is_known ? "yes" : "no", is_known ? Tone::Plain : Tone::Caution},
-                          {combination_text(found, k)}});
-  }
-  table.note =
+  for (Eigen::Index k = 0; k < spectrum.singular_values.size(); ++k)
+    table.rows.push_back({k + 1, spectrum.singular_values[k], spectrum.direction_deviation[k],
+                          is_determined(found, k) ? "yes" : "no", combination_text(found, k)});
+  PageTable page = page_table(
+      table, "Combinations of lengths",
       "Unit directions in the lengths, from the singular values of the derivatives of all distances: "
       "docs/tuning.md. Lengths with a share above " +
-      page_number(kMainShare) + " are named; – is a standard deviation without bound.";
-  return table;
+          page_number(kMainShare) + " are named; – is a standard deviation without bound.");
+  for (std::vector<PageCell>& row : page.rows)
+    if (row[3].text == "no") row[3].tone = Tone::Caution;
+  return page;
 }
 
 PageList messages(const ChordTuning& found) {
@@ -317,6 +269,32 @@ OrderedJson anchor_json(const std::optional<AnchorCheck>& anchor) {
 }
 
 }  // namespace
+
+Table length_table(const ChordTuning& found) {
+  const auto change = [](const TunedLength& length) { return length.after - length.before; };
+  const auto slack = [](const TunedLength& length) { return length.is_slack ? "yes" : "no"; };
+  const auto determined = [](const TunedLength& length) {
+    return std::isnan(length.deviation) ? "" : length.is_determined ? "yes" : "no";
+  };
+  const auto remarks = [&](const TunedLength& length) {
+    return remarks_on(length, found.determinacy.has_value());
+  };
+  return table_of<TunedLength>(
+      found.lengths, {{text_column("name", "rest length"), &TunedLength::name},
+                      {{"chords"}, &TunedLength::chords},
+                      {{"before_mm", "before", "mm", 6, 4}, &TunedLength::before},
+                      {{"after_mm", "after", "mm", 6, 4}, &TunedLength::after},
+                      {{"change_mm", "change", "mm", 4, 4}, change},
+                      {{"factor"}, &TunedLength::factor},
+                      {{"low_mm"}, &TunedLength::low},
+                      {{"high_mm"}, &TunedLength::high},
+                      {text_column("bound"), bound_name},
+                      {text_column("slack"), slack},
+                      {{"extension_mm"}, &TunedLength::extension},
+                      {{"standard_deviation_mm", "standard deviation", "mm"}, &TunedLength::deviation},
+                      {text_column("determined"), determined},
+                      {text_column("remarks"), remarks}});
+}
 
 std::string chord_tuning_json(const ChordTuning& found) {
   const Tuning& tuning = found.tuning;
@@ -377,7 +355,7 @@ std::string chord_tuning_page(const ChordTuning& found) {
   if (found.after) shapes.push_back({"after", &found.after->model, &found.after->report});
   if (const auto view = compared_view(shapes, shapes.size() - 1, "tuning", "Before ↔ after"))
     page.sections.push_back({"Shapes", {shape_view_html(*view)}});
-  page.sections.push_back({"Lengths", {length_table(found)}});
+  page.sections.push_back({"Lengths", {page_lengths(found)}});
   if (found.determinacy)
     page.sections.push_back({"What the target determines", {spectrum_plot(found), spectrum_table(found)}});
   page.sections.push_back({"Figures", {figure_table(found)}});
@@ -385,7 +363,8 @@ std::string chord_tuning_page(const ChordTuning& found) {
 }
 
 void write_chord_tuning(const ChordTuning& found) {
-  write_study(found.folder, "tuning", OrderedJson::parse(chord_tuning_json(found)), csv_of(found));
+  write_study(found.folder, "tuning", OrderedJson::parse(chord_tuning_json(found)),
+              without(length_table(found), {"change_mm", "remarks"}));
   formats::write_whole(found.folder / "report.html", chord_tuning_page(found));
 }
 

@@ -1,6 +1,7 @@
 #include "tuning/region_tuning.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "core/timing.hpp"
 #include "results/orifice_area.hpp"
 #include "scene/build/build.hpp"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -38,15 +38,13 @@ bool is_good(const TuningState& state, const std::optional<double>& orifice_limi
 }
 
 std::string refusal(const RegionTuning& found, const RegionTuningOptions& options) {
-  char text[256];
-  std::snprintf(
-      text, sizeof text,
-      "no factors from %g to %g were found: %d chords stay above a strain of %g, the most at %.4f, with an "
-      "orifice of %.2f mm2 (limit %.2f)",
-      1 / options.greatest_factor, options.greatest_factor, found.after.strained_chords, options.yield_strain,
-      found.after.max_chord_strain, found.after.orifice_area_mm2.value_or(0),
-      found.orifice_limit_mm2.value_or(0));
-  return text;
+  return "no factors from " + number_text(1 / options.greatest_factor, 6) + " to " +
+         number_text(options.greatest_factor, 6) +
+         " were found: " + std::to_string(found.after.strained_chords) + " chords stay above a strain of " +
+         number_text(options.yield_strain, 6) + ", the most at " +
+         fixed_text(found.after.max_chord_strain, 4) + ", with an orifice of " +
+         fixed_text(found.after.orifice_area_mm2.value_or(0), 2) + " mm2 (limit " +
+         fixed_text(found.orifice_limit_mm2.value_or(0), 2) + ")";
 }
 
 // From the scene's own equilibrium, which exceeds a limit.

@@ -7,6 +7,7 @@
 // tuning is (sensitivity/tuning.hpp): each trial is a warm solve, with exact derivatives by all factors.
 #pragma once
 
+#include "formats/table.hpp"
 #include "run/run.hpp"
 
 #include <functional>
@@ -59,6 +60,10 @@ struct RegionTuning {
 // reached, with the reason.
 RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const RegionTuningOptions& options,
                           const RunOptions& run);
+
+// One row for each region and each cable term: region_tuning.csv but for the column "of", and what
+// `coapt tune-regions` prints.
+Table factor_table(const RegionTuning& tuning);
 
 // Writes region_tuning.json, region_tuning.csv (factors) and triangle_factors.csv (region and factor of each
 // triangle). Throws InputError when a file cannot be written.

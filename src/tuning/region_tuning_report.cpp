@@ -1,10 +1,20 @@
 // region_tuning.json and region_tuning.csv.
-#include "formats/json/csv_text.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/whole_file.hpp"
 #include "results/study_files.hpp"
 #include "tuning/region_tuning.hpp"
 
 namespace coapt {
+
+Table factor_table(const RegionTuning& tuning) {
+  Table table{.columns = {text_column("name"), {"triangles"}, {"factor", "", "", 4, 4}, text_column("of")}};
+  for (const TunedFactor& region : tuning.regions)
+    table.rows.push_back({region.name, region.triangles, region.factor,
+                          region.is_tuned ? "the stiffness" : "not tuned: no term with a modulus"});
+  for (const TunedFactor& chord : tuning.chords)
+    table.rows.push_back({chord.name, {}, chord.factor, "the cross-sections"});
+  return table;
+}
 
 void write_region_tuning(const std::filesystem::path& folder, const RegionTuning& tuning) {
   const auto state = [](const TuningState& s) -> OrderedJson {
@@ -25,25 +35,20 @@ void write_region_tuning(const std::filesystem::path& folder, const RegionTuning
                       {"wall_s", tuning.wall_s},
                       {"regions", OrderedJson::array()},
                       {"chords", OrderedJson::array()}};
-  std::ostringstream csv = csv_with_header("name,triangles,factor"),
-                     triangles = csv_with_header("triangle,region,factor");
-  for (const TunedFactor& region : tuning.regions) {
+  for (const TunedFactor& region : tuning.regions)
     json["regions"].push_back({{"name", region.name},
                                {"triangles", region.triangles},
                                {"tuned", region.is_tuned},
                                {"factor", region.factor}});
-    csv << csv_text(region.name) << ',' << region.triangles << ',' << region.factor << '\n';
-  }
-  for (const TunedFactor& chord : tuning.chords) {
+  for (const TunedFactor& chord : tuning.chords)
     json["chords"].push_back({{"name", chord.name}, {"area_scale", chord.factor}});
-    csv << csv_text(chord.name) << ",," << chord.factor << '\n';
+  Table triangles{.columns = {{"triangle"}, text_column("region"), {"factor"}}};
+  for (const int number : tuning.region_of_triangle) {
+    const TunedFactor& region = tuning.regions[static_cast<size_t>(number)];
+    triangles.rows.push_back({triangles.rows.size(), region.name, region.factor});
   }
-  for (size_t t = 0; t < tuning.region_of_triangle.size(); ++t) {
-    const TunedFactor& region = tuning.regions[static_cast<size_t>(tuning.region_of_triangle[t])];
-    triangles << t << ',' << csv_text(region.name) << ',' << region.factor << '\n';
-  }
-  write_study(folder, "region_tuning", json, csv.str());
-  formats::write_whole(folder / "triangle_factors.csv", triangles.str());
+  write_study(folder, "region_tuning", json, without(factor_table(tuning), {"of"}));
+  formats::write_whole(folder / "triangle_factors.csv", csv_table(triangles));
 }
 
 }  // namespace coapt

@@ -1,5 +1,4 @@
 // sensitivity.json and sensitivity.csv.
-#include "formats/json/csv_text.hpp"
 #include "results/study_files.hpp"
 #include "tuning/sensitivity_study.hpp"
 
@@ -13,35 +12,45 @@ OrderedJson run_json(const SensitivityRun& run) {
                       {"iterations", run.iterations},
                       {"wall_s", number_json(run.wall_s)},
                       {"distance_to_base", distances_json(run.to_base)}};
-  json["distance_to_reference"] = run.to_reference ? distances_json(*run.to_reference) : OrderedJson(nullptr);
+  json["distance_to_reference"] = distances_json(run.to_reference);
   return json;
 }
 
-// A solve; the columns of what follows from both signs are the parameter's.
-void add_run(std::ostream& out, const std::string& name, const SensitivityRun& run) {
-  out << csv_text(name) << ',' << run.factor << ',' << status_name(run.status) << ',' << run.residual << ','
-      << run.iterations << ',' << run.wall_s << ',' << run.to_base.mean << ',' << run.to_base.p95 << ','
-      << run.to_base.max << ',';
-  if (run.to_reference) out << run.to_reference->mean;
-}
+// A line of sensitivity.csv: a solve, of a parameter but for the first, or the derivative by a parameter.
+struct SensitivityRow {
+  const SensitivityRun* run = nullptr;
+  const ParameterSensitivity* parameter = nullptr;
+};
 
-void add_sensitivity(std::ostream& out, const ParameterSensitivity& found) {
-  out << ',';
-  if (found.movement) out << *found.movement;
-  out << ',';
-  if (found.error_change) out << *found.error_change;
-  out << '\n';
-}
-
-void add_rows(std::ostream& out, const ParameterSensitivity& found) {
-  if (found.runs.empty()) {
-    out << csv_text(found.name) << ",,derivative,,," << found.wall_s << ",,,,";
-    add_sensitivity(out, found);
+Table sensitivity_table(const SensitivityStudy& study) {
+  std::vector<SensitivityRow> rows = {{&study.base}};
+  for (const ParameterSensitivity& parameter : study.parameters) {
+    if (parameter.runs.empty()) rows.push_back({nullptr, &parameter});
+    for (const SensitivityRun& run : parameter.runs) rows.push_back({&run, &parameter});
   }
-  for (const SensitivityRun& run : found.runs) {
-    add_run(out, found.name, run);
-    add_sensitivity(out, found);
-  }
+  const auto status = [](const SensitivityRow& row) {
+    return row.run != nullptr ? status_name(row.run->status) : "derivative";
+  };
+  const auto wall_s = [](const SensitivityRow& row) {
+    return row.run != nullptr ? row.run->wall_s : row.parameter->wall_s;
+  };
+  const auto run = [](auto... figure) { return along(&SensitivityRow::run, figure...); };
+  const auto parameter = [](auto figure) { return along(&SensitivityRow::parameter, figure); };
+  using Run = SensitivityRun;
+  using Distance = DistanceFigures;
+  return table_of<SensitivityRow>(
+      rows, {{text_column("parameter"), parameter(&ParameterSensitivity::name)},
+             {{"factor"}, run(&Run::factor)},
+             {text_column("status"), status},
+             {{"residual"}, run(&Run::residual)},
+             {{"iterations"}, run(&Run::iterations)},
+             {{"wall_s"}, wall_s},
+             {{"mean_to_base_mm"}, run(&Run::to_base, &Distance::mean)},
+             {{"p95_to_base_mm"}, run(&Run::to_base, &Distance::p95)},
+             {{"max_to_base_mm"}, run(&Run::to_base, &Distance::max)},
+             {{"mean_to_reference_mm"}, run(&Run::to_reference, &Distance::mean)},
+             {{"movement_mm_per_100_percent"}, parameter(&ParameterSensitivity::movement)},
+             {{"error_change_mm_per_100_percent"}, parameter(&ParameterSensitivity::error_change)}});
 }
 
 }  // namespace
@@ -58,11 +67,6 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                       {"wall_s", number_json(study.wall_s)},
                       {"first", run_json(study.base)},
                       {"parameters", OrderedJson::array()}};
-  std::ostringstream csv = csv_with_header(
-      "parameter,factor,status,residual,iterations,wall_s,mean_to_base_mm,p95_to_base_mm,max_to_base_mm,"
-      "mean_to_reference_mm,movement_mm_per_100_percent,error_change_mm_per_100_percent");
-  add_run(csv, "", study.base);
-  csv << ",,\n";
   for (const ParameterSensitivity& parameter : study.parameters) {
     OrderedJson runs = OrderedJson::array();
     for (const SensitivityRun& run : parameter.runs) runs.push_back(run_json(run));
@@ -75,9 +79,8 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                                   {"message", parameter.message},
                                   {"wall_s", number_json(parameter.wall_s)},
                                   {"runs", std::move(runs)}});
-    add_rows(csv, parameter);
   }
-  write_study(folder, "sensitivity", json, csv.str());
+  write_study(folder, "sensitivity", json, sensitivity_table(study));
 }
 
 }  // namespace coapt

@@ -1,6 +1,7 @@
 #include "xpbd/solver_xpbd.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "optim/monitor.hpp"
 #include "xpbd/driving_forces.hpp"
@@ -8,7 +9,6 @@
 #include "xpbd/system.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 namespace coapt {
 namespace {
@@ -20,12 +20,6 @@ constexpr int kMostAdvances = 8;       // by planes placed anew, in which a step
 
 constexpr const char* kNotConverged =
     "; the sweeps have not converged: more iterations or a shorter time_step";
-
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 // The sign of the forces, and the part of the prescribed motion that goes with it.
 struct Phase {
@@ -108,11 +102,12 @@ class SolverXpbd final : public Solver {
       if (status != Status::Converged && status != Status::Stalled) break;
     }
     motion_ = {};
-    if (body_->triangles.cols() > 0)
-      remark_ += "; membrane area " +
-                 text("%+.3g", surface_area(objective.positions(q), body_->triangles) -
-                                   surface_area(body_->rest, body_->triangles)) +
+    if (body_->triangles.cols() > 0) {
+      const double change = surface_area(objective.positions(q), body_->triangles) -
+                            surface_area(body_->rest, body_->triangles);
+      remark_ += std::string("; membrane area ") + (std::signbit(change) ? "" : "+") + number_text(change) +
                  " mm2 against rest";
+    }
     return status;
   }
 
@@ -156,7 +151,7 @@ class SolverXpbd final : public Solver {
 
   // How far a phase has come, for the remark.
   std::string account(const Phase& phase, int steps) const {
-    std::string said = std::to_string(steps) + " steps" + text(" (%.3g s)", time_);
+    std::string said = std::to_string(steps) + " steps (" + number_text(time_) + " s)";
     if (phase.heart == HeartPhase::Diastole) said += " of opening";
     if (!has_arrived_) said += ", before the end of the prescribed motion";
     if (held_ > 0) said += ", " + std::to_string(held_) + " nodes held off";

@@ -1,7 +1,6 @@
-#include "report/report_page.hpp"
-
 #include "energy/objective.hpp"
 #include "formats/json/base64.hpp"
+#include "report/page_table.hpp"
 #include "report/plot_data.hpp"
 #include "results/shape_record.hpp"
 
@@ -43,6 +42,24 @@ TEST(ReportPage, RowsAreNamedAndShortOnesFilled) {
   EXPECT_NE(html.find("<th scope=\"row\" class=\"plain text\">row</th><td class=\"plain\">1</td><td "
                       "class=\"plain\"></td>"),
             std::string::npos);
+}
+
+TEST(ReportPage, ATableOfAStudyHasUnitsAndDashes) {
+  const Table runs{.columns = {text_column("name", "method"), {"area_mm2", "area", "mm2", 3}, {"count"}},
+                   .rows = {{"newton", 1.23456, 7}, {"lbfgs", {}, 123456789}}};
+  const PageTable page = page_table(runs, "Runs", "All of them.");
+  EXPECT_EQ(page.caption, "Runs");
+  EXPECT_EQ(page.note, "All of them.");
+  ASSERT_EQ(page.columns.size(), 3u);
+  EXPECT_EQ(page.columns[0].title, "method");
+  EXPECT_TRUE(page.columns[0].is_text);
+  EXPECT_EQ(page.columns[1].title, "area [mm²]");
+  EXPECT_FALSE(page.columns[1].is_text);
+  ASSERT_EQ(page.rows.size(), 2u);
+  EXPECT_EQ(page.rows[0][1].text, "1.23");
+  EXPECT_EQ(page.rows[1][0].text, "lbfgs");
+  EXPECT_EQ(page.rows[1][1].text, "–");
+  EXPECT_EQ(page.rows[1][2].text, "123456789");
 }
 
 // Its page, and the data of its plot.

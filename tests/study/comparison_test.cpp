@@ -1,6 +1,7 @@
 // Several methods on one scene: who agrees with whom, and what is said where they do not.
 #include "core/error.hpp"
 #include "exchange/import.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/json/base64.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
@@ -351,17 +352,15 @@ TEST_F(ComparisonTest, TellsItInJson) {
 }
 
 TEST_F(ComparisonTest, TellsItInRowsOfOneLength) {
-  std::istringstream csv(comparison_csv(compare(disc_scene(), {"newton", "idle", "broken"})));
+  const Comparison found = compare(disc_scene(), {"newton", "idle", "broken"});
+  std::istringstream csv(csv_table(comparison_table(found.methods)));
   std::string line;
-  long columns = 0;
-  int rows = 0;
+  long columns = 0, rows = 0;
   while (std::getline(csv, line)) {
     if (const size_t quote = line.find('"'); quote != std::string::npos) line.resize(quote);  // the message
     const long here = std::count(line.begin(), line.end(), ',');
-    if (rows == 0) columns = here;
-    // A message without a comma stands without quotes.
+    if (rows++ == 0) columns = here;
     EXPECT_EQ(here, columns) << line;
-    ++rows;
   }
   EXPECT_EQ(rows, 4);
   EXPECT_GT(columns, 20);

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "exchange/detail/law_terms.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/mesh_check.hpp"
 #include "valve/repair_valve.hpp"
@@ -101,21 +102,24 @@ void write_repairs(const std::filesystem::path& path, const MeshRepair& repair) 
     std::filesystem::remove(path, none);
     return;
   }
-  std::string text = "step,triangles,edge_from,edge_to,apex,moved_mm\n";
-  for (const RepairStep& step : repair.steps) {
-    const char* kind = step.kind == RepairKind::Drop   ? "drop"
-                       : step.kind == RepairKind::Flip ? "flip"
-                       : step.kind == RepairKind::Cut  ? "cut"
-                                                       : "collapse";
-    std::string triangles;
-    for (const int t : step.triangles)
-      triangles.append(triangles.empty() ? "" : " ").append(std::to_string(t));
-    text.append(kind).append(",").append(triangles);
-    for (const int v : step.edge) text.append(",").append(std::to_string(v));
-    text.append(",").append(step.apex < 0 ? "" : std::to_string(step.apex));
-    text.append(",").append(exact_text(step.moved)).append("\n");
-  }
-  formats::write_whole(path, text);
+  const auto kind = [](RepairKind made) {
+    constexpr const char* kNames[] = {"drop", "flip", "cut", "collapse"};
+    return kNames[static_cast<int>(made)];
+  };
+  const auto triangles = [](const RepairStep& step) {
+    std::string text;
+    for (const int t : step.triangles) text.append(text.empty() ? "" : " ").append(std::to_string(t));
+    return text;
+  };
+  const auto apex = [](const RepairStep& step) { return step.apex < 0 ? TableCell() : step.apex; };
+  const Table steps =
+      table_of<RepairStep>(repair.steps, {{text_column("step"), along(&RepairStep::kind, kind)},
+                                          {text_column("triangles"), triangles},
+                                          {{"edge_from"}, [](const auto& step) { return step.edge[0]; }},
+                                          {{"edge_to"}, [](const auto& step) { return step.edge[1]; }},
+                                          {{"apex"}, apex},
+                                          {{"moved_mm"}, &RepairStep::moved}});
+  formats::write_whole(path, csv_table(steps, kAllDigits));
 }
 
 }  // namespace coapt::detail

@@ -1,11 +1,11 @@
 #include "formats/json/closed_curve.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/json/read_points.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -30,11 +30,8 @@ void refuse_open(const Points& x, const std::string& name) {
   for (Eigen::Index k = 0; k + 1 < n; ++k) longest = std::max(longest, (x.col(k + 1) - x.col(k)).norm());
   const double gap = (x.col(n - 1) - x.col(0)).norm();
   if (gap <= kWidest * longest) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                ": the curve is open: its ends are %.3g mm apart, its neighbours at most %.3g mm; close it",
-                gap, longest);
-  throw InputError(name + text);
+  throw InputError(name + ": the curve is open: its ends are " + number_text(gap) +
+                   " mm apart, its neighbours at most " + number_text(longest) + " mm; close it");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/detail/report_files.hpp"
+#include "report/page_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -194,25 +195,25 @@ std::vector<PageTable> plot_numbers(const PagePlot& plot) {
   std::vector<PageTable> tables;
   for (const PageSeries& series : plot.series) {
     const size_t count = series.points.size(), rows = std::min(count, kMostRows);
-    PageTable table;
-    table.caption =
-        series.name + " (" +
-        (rows < count ? std::to_string(rows) + " of " + std::to_string(count) : std::to_string(count)) +
-        (count == 1 ? " point)" : " points)");
-    table.columns = {{"point", true}, {plot.x.title}, {plot.y.title}, {"remark", true}};
+    Table table{.columns = {text_column("point"),
+                            {plot.x.title, "", "", 6},
+                            {plot.y.title, "", "", 6},
+                            text_column("remark")}};
     for (size_t r = 0; r < rows; ++r) {
       const size_t k = rows > 1 ? r * (count - 1) / (rows - 1) : 0;
       const PagePoint& point = series.points[k];
       const double place = std::round(point.x) - 1;
       const bool is_named = place >= 0 && place < static_cast<double>(plot.x.names.size());
-      table.rows.push_back({{point.label.empty() ? std::to_string(k + 1) : point.label},
-                            {is_named ? plot.x.names[static_cast<size_t>(place)] : page_number(point.x, 6)},
-                            {page_number(point.y, 6)},
-                            {point.is_crossed               ? plot.crossed
-                             : point.begins_outer_iteration ? "another energy from here on"
-                                                            : ""}});
+      table.rows.push_back(
+          {point.label.empty() ? std::to_string(k + 1) : point.label,
+           is_named ? TableCell(plot.x.names[static_cast<size_t>(place)]) : TableCell(point.x), point.y,
+           point.is_crossed               ? plot.crossed
+           : point.begins_outer_iteration ? "another energy from here on"
+                                          : ""});
     }
-    tables.push_back(std::move(table));
+    const std::string all = std::to_string(count) + (count == 1 ? " point)" : " points)");
+    tables.push_back(
+        page_table(table, series.name + " (" + (rows < count ? std::to_string(rows) + " of " : "") + all));
   }
   return tables;
 }

@@ -1,11 +1,11 @@
 // Edge-to-edge clips: vertices of two leaflets joined at places along their free edges.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/interventions/leaflet_coordinates.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace coapt {
@@ -83,14 +83,12 @@ void clip_leaflets(const InterventionSpec& spec, ValveEdit& valve) {
   for (size_t k = 0; k < p.numbers("at").size(); ++k) {
     const double at = p.numbers("at")[k];
     const auto joined = pairs(grasped(edges[0], first, at, p), grasped(edges[1], second, at, p));
-    if (joined.empty()) {
-      char text[120];
-      std::snprintf(text, sizeof text,
-                    "; make it wider or deeper than the mesh, whose edges are %.3g mm long",
-                    mean_edge_length(valve.mesh.vertices, valve.mesh.triangles));
-      defects.push_back(p.where("at") + "[" + std::to_string(k) +
-                        "]: the clip grasps no vertex on one of the leaflets" + text);
-    }
+    if (joined.empty())
+      defects.push_back(
+          p.where("at") + "[" + std::to_string(k) +
+          "]: the clip grasps no vertex on one of the leaflets; make it wider or deeper than the "
+          "mesh, whose edges are " +
+          number_text(mean_edge_length(valve.mesh.vertices, valve.mesh.triangles)) + " mm long");
     if (reaches(held, edges[0], first, at, p) || reaches(held, edges[1], second, at, p))
       defects.push_back(p.where("depth") + ": the clip at[" + std::to_string(k) +
                         "] reaches the annulus; make it less deep");

@@ -1,10 +1,10 @@
 // A patch: part of a leaflet replaced by another material.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "scene/interventions/leaflet_coordinates.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace coapt {
@@ -27,13 +27,11 @@ void cover_by_patch(const InterventionSpec& spec, ValveEdit& valve) {
   const double radius = p.number("radius");
   const auto [middle, away] = nearest_vertex(edge, mesh, p.number("at") * edge.length(), p.number("depth"));
   constexpr double kNear = 2;  // mean edges; on the leaflet no place is that far from a vertex
-  if (away > kNear * mean_edge_length(mesh.vertices, mesh.triangles)) {
-    char text[80];
-    std::snprintf(text, sizeof text, "; the nearest is %.3g mm off, at a depth of %.3g mm", away,
-                  place_on(edge, mesh.vertices, mesh.vertices.col(middle)).depth);
+  if (away > kNear * mean_edge_length(mesh.vertices, mesh.triangles))
     throw InputError(p.where("depth") + ": \"" + edge.leaflet +
-                     "\" has no place so far from its free edge there" + text);
-  }
+                     "\" has no place so far from its free edge there; the nearest is " + number_text(away) +
+                     " mm off, at a depth of " +
+                     number_text(place_on(edge, mesh.vertices, mesh.vertices.col(middle)).depth) + " mm");
   Vector patch = Vector::Zero(mesh.triangle_count());
   for (const int t : triangles_of(edge.leaflet, mesh)) {
     const Vec3 centroid = mesh.vertices(Eigen::all, mesh.triangles.col(t)).rowwise().mean();

@@ -1,7 +1,8 @@
 #include "stress/scenes/bad_meshes.hpp"
 
+#include "core/number_text.hpp"
+
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace coapt {
@@ -10,9 +11,7 @@ namespace {
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n", kFaces = "f 1 2 3\nf 1 3 4\n";
 
 std::string vertex(double x, double y, double z) {
-  char text[96];
-  std::snprintf(text, sizeof text, "v %.17g %.17g %.17g\n", x, y, z);
-  return text;
+  return "v " + number_text(x, 17) + " " + number_text(y, 17) + " " + number_text(z, 17) + "\n";
 }
 
 std::string face(int a, int b, int c) {

@@ -1,22 +1,19 @@
 #include "stress/scenes/built_in.hpp"
 
 #include "core/number_text.hpp"
+#include "formats/csv_table.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "results/results.hpp"
 
-#include <sstream>
-
 namespace coapt {
 namespace {
 
 std::string csv_of(const Points& points) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "x,y,z\n";
-  for (const auto& x : points.colwise()) text << x[0] << ',' << x[1] << ',' << x[2] << '\n';
-  return text.str();
+  Table table{.columns = {{"x"}, {"y"}, {"z"}}};
+  for (const auto& x : points.colwise()) table.rows.push_back({x[0], x[1], x[2]});
+  return csv_table(table, 17);
 }
 
 }  // namespace

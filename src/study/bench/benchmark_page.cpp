@@ -1,24 +1,14 @@
 // The page of a benchmark.
-#include "report/report_page.hpp"
+#include "report/page_table.hpp"
 #include "study/bench/benchmark_report.hpp"
 #include "study/bench/benchmark_summary.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <set>
 
 namespace coapt {
 namespace {
-
-PageCell number_cell(const std::optional<double>& value, int digits = 3) {
-  return {value ? page_number(*value, digits) : ""};
-}
-
-std::string words(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
 
 // How high a run is drawn, and what that height is where it is not the error. Without a height: at the upper
 // edge.
@@ -76,7 +66,7 @@ PagePlot error_plot(const Benchmark& bench, ErrorKind kind, const std::string& t
                                  .y = height->mm.value_or(edge),
                                  .is_crossed = run.status != Status::Converged,
                                  .label = "tolerance " + page_number(run.tolerance) + ", " +
-                                          words(status_name(run.status)) +
+                                          spaced(status_name(run.status)) +
                                           (height->remark.empty() ? "" : ", " + height->remark)});
       }
       if (!series.points.empty()) plot.series.push_back(std::move(series));
@@ -111,198 +101,119 @@ PageSection plots_section(const Benchmark& bench) {
   return section;
 }
 
-PageTable times_table(const Benchmark& bench) {
-  PageTable table{.caption = "Median wall time to an accuracy [s]"};
-  table.columns = {{"method", true}, {"error", true}};
-  for (const double mm : kAlgebraicAccuracies) table.columns.push_back({page_number(mm) + " mm"});
-  for (size_t method = 0; method < bench.methods.size(); ++method) {
-    std::vector<PageCell> total = {{bench.methods[method].name}, {"total"}};
-    for (const double mm : kTotalAccuracies) {
-      const BenchRun* run = fastest_run(bench, ErrorKind::Total, mm, {.method = method});
-      PageCell cell = number_cell(run ? std::optional(run->wall.median) : std::nullopt);
-      if (run != nullptr) cell.remark = mesh_text(bench.meshes[run->mesh]);
-      total.push_back(std::move(cell));
-    }
-    table.rows.push_back(std::move(total));
-    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh) {
-      if (!bench.meshes[mesh].is_benchmarked) continue;
-      std::vector<PageCell> row = {{bench.methods[method].name},
-                                   {"algebraic, " + mesh_text(bench.meshes[mesh])}};
-      for (const double mm : kAlgebraicAccuracies) {
-        const BenchRun* run = fastest_run(bench, ErrorKind::Algebraic, mm, {method, mesh});
-        row.push_back(number_cell(run ? std::optional(run->wall.median) : std::nullopt));
-      }
-      table.rows.push_back(std::move(row));
-    }
+PageTable page_times(const Benchmark& bench) {
+  PageTable table =
+      page_table(times_table(bench), "Median wall time to an accuracy",
+                 "Of the tolerances that were run the fastest that is good enough. –: none of them.");
+  size_t method = 0;
+  for (std::vector<PageCell>& row : table.rows) {
+    if (row[1].text != "total") continue;
+    for (size_t k = 0; k < kAlgebraicAccuracies.size(); ++k)
+      if (const BenchRun* run =
+              fastest_run(bench, ErrorKind::Total, kAlgebraicAccuracies[k], {.method = method}))
+        row[2 + k].remark = mesh_text(bench.meshes[run->mesh]);
+    ++method;
   }
-  table.note = "Of the tolerances that were run the fastest that is good enough. Empty: none of them.";
   return table;
 }
 
 PageTable meshes_table(const Benchmark& bench) {
-  PageTable table{.caption = "Equilibria from mesh to mesh"};
-  table.columns = {{"mesh", true},
-                   {"mean distance to the next [mm]"},
-                   {"95 % [mm]"},
-                   {"greatest [mm]"},
-                   {"observed order"},
-                   {"discretisation error [mm]"},
-                   {"residual of the equilibrium"},
-                   {"Hessian and factorisation [CPU s]"}};
-  using Figures = std::optional<DistanceFigures>;
-  const auto figure = [](const Figures& to_next, double DistanceFigures::*member) {
-    return number_cell(to_next ? std::optional((*to_next).*member) : std::nullopt);
-  };
-  for (const BenchMesh& mesh : bench.meshes) {
-    const Figures& to_next = mesh.to_next;
-    table.rows.push_back({{mesh_text(mesh)},
-                          figure(to_next, &DistanceFigures::mean),
-                          figure(to_next, &DistanceFigures::p95),
-                          figure(to_next, &DistanceFigures::max),
-                          number_cell(mesh.order),
-                          number_cell(mesh.error_mm),
-                          number_cell(mesh.residual),
-                          number_cell(mesh.factorisation_s)});
-  }
-  table.note = "Beyond the last mesh distances are taken to fall with order " +
-               page_number(bench.assumed_order, 3) + ". An equilibrium is what has a residual of at most " +
-               page_number(bench.equilibrium_residual()) + ".";
-  return table;
+  using Mesh = BenchMesh;
+  using Distance = DistanceFigures;
+  return page_table(
+      table_of<Mesh>(bench.meshes,
+                     {{text_column("mesh"), mesh_text},
+                      {{"mean distance to the next", "", "mm", 3}, along(&Mesh::to_next, &Distance::mean)},
+                      {{"95 %", "", "mm", 3}, along(&Mesh::to_next, &Distance::p95)},
+                      {{"greatest", "", "mm", 3}, along(&Mesh::to_next, &Distance::max)},
+                      {{"observed order", "", "", 3}, &Mesh::order},
+                      {{"discretisation error", "", "mm", 3}, &Mesh::error_mm},
+                      {{"residual of the equilibrium", "", "", 3}, &Mesh::residual},
+                      {{"Hessian and factorisation", "", "CPU s", 3}, &Mesh::factorisation_s}}),
+      "Equilibria from mesh to mesh",
+      "Beyond the last mesh distances are taken to fall with order " + page_number(bench.assumed_order, 3) +
+          ". An equilibrium is what has a residual of at most " + page_number(bench.equilibrium_residual()) +
+          ".");
 }
 
 PageTable growth_table(const Benchmark& bench) {
-  PageTable table{.caption = "Growth of the CPU time with the number of triangles"};
-  table.columns = {{"method", true}, {"exponent"}, {"tolerance"}, {"meshes"}};
+  Table table{.columns = {text_column("method"), {"exponent", "", "", 3}, {"tolerance"}, {"meshes"}}};
   for (size_t method = 0; method < bench.methods.size(); ++method)
     if (const auto found = growth(bench, method))
-      table.rows.push_back({{bench.methods[method].name},
-                            number_cell(found->exponent),
-                            number_cell(found->tolerance),
-                            {std::to_string(found->meshes)}});
-  return table;
+      table.rows.push_back({bench.methods[method].name, found->exponent, found->tolerance, found->meshes});
+  return page_table(table, "Growth of the CPU time with the number of triangles");
 }
 
 PageTable ends_table(const Benchmark& bench) {
-  PageTable table{.caption = "Where each method ends, beside " + bench.methods.front().name};
-  table.columns = {{"method", true}, {"mesh", true}, {"verdict", true}, {"95 % [mm]"}, {"same vertex [mm]"}};
-  for (const BenchEnd& end : bench.ends) {
-    const bool has_surfaces = end.gap && end.gap->surfaces;
+  const auto method = [&](const BenchEnd& end) { return bench.methods[end.method].name; };
+  const auto mesh = [&](const BenchEnd& end) { return mesh_text(bench.meshes[end.mesh]); };
+  const auto p95 = [](const ReferenceDistance& distance) { return both_directions(distance).p95; };
+  const auto vertex = along(&BenchEnd::gap, &MethodGap::same_vertex, &VertexDistance::max);
+  PageTable table =
+      page_table(table_of<BenchEnd>(
+                     bench.ends, {{text_column("method"), method},
+                                  {text_column("mesh"), mesh},
+                                  {text_column("verdict"), along(&BenchEnd::verdict, verdict_name)},
+                                  {{"95 %", "", "mm", 3}, along(&BenchEnd::gap, &MethodGap::surfaces, p95)},
+                                  {{"same vertex", "", "mm", 3}, vertex}}),
+                 "Where each method ends, beside " + bench.methods.front().name);
+  for (size_t k = 0; k < bench.ends.size(); ++k) {
+    const BenchEnd& end = bench.ends[k];
     const bool is_good = end.verdict == Verdict::Reference || end.verdict == Verdict::SameEquilibrium;
-    PageCell verdict{std::string(verdict_name(end.verdict)), is_good ? Tone::Good : Tone::Caution,
-                     end.failure};
-    table.rows.push_back(
-        {{bench.methods[end.method].name},
-         {mesh_text(bench.meshes[end.mesh])},
-         std::move(verdict),
-         number_cell(has_surfaces ? std::optional(both_directions(*end.gap->surfaces).p95) : std::nullopt),
-         number_cell(end.gap ? std::optional(end.gap->same_vertex.max) : std::nullopt)});
-  }
-  return table;
-}
-
-// The first cells of a row: which run it is.
-std::vector<PageCell> run_cells(const Benchmark& bench, const BenchRun& run) {
-  return {{bench.methods[run.method].name}, {mesh_text(bench.meshes[run.mesh])}, number_cell(run.tolerance)};
-}
-
-PageTable runs_table(const Benchmark& bench, const std::string& caption,
-                     const std::vector<PageColumn>& columns,
-                     const std::function<std::vector<PageCell>(const BenchRun&)>& cells) {
-  PageTable table{.caption = caption, .columns = {{"method", true}, {"mesh"}, {"tolerance"}}};
-  table.columns.insert(table.columns.end(), columns.begin(), columns.end());
-  for (const BenchRun& run : bench.runs) {
-    const std::vector<PageCell> more = cells(run);
-    std::vector<PageCell>& row = table.rows.emplace_back(run_cells(bench, run));
-    row.insert(row.end(), more.begin(), more.end());
+    table.rows[k][2].tone = is_good ? Tone::Good : Tone::Caution;
+    table.rows[k][2].remark = end.failure;
   }
   return table;
 }
 
 PageTable work_table(const Benchmark& bench) {
-  const auto cells = [&](const BenchRun& run) {
-    return std::vector<PageCell>{number_cell(run.wall.median),
-                                 number_cell(run.wall.best),
-                                 number_cell(run.cpu.median),
-                                 number_cell(factorisations_worth(bench, run)),
-                                 {std::to_string(run.iterations)},
-                                 {std::to_string(run.evaluations.gradient)},
-                                 {std::to_string(run.evaluations.hessian)},
-                                 {std::to_string(run.factorisations)},
-                                 number_cell(run.peak_memory_mb)};
-  };
-  PageTable table = runs_table(bench, "Work of every run",
-                               {{"wall [s]"},
-                                {"best [s]"},
-                                {"CPU [s]"},
-                                {"CPU [units]"},
-                                {"iterations"},
-                                {"gradients"},
-                                {"Hessians"},
-                                {"factors"},
-                                {"memory [MB]"}},
-                               cells);
-  table.note =
+  return page_table(
+      chosen(run_table(bench, bench.runs), {"method", "mesh", "tolerance", "wall_median_s", "wall_best_s",
+                                            "cpu_median_s", "cpu_in_factorisations", "iterations",
+                                            "gradients", "hessians", "factorisations", "peak_memory_mb"}),
+      "Work of every run",
       "Wall and CPU time are medians over the repeats, best: the least wall time of one. A unit is the CPU "
       "time of a Hessian and its factorisation on the same mesh in the same run. Memory is what terms and "
-      "solve add to the process.";
-  return table;
+      "solve add to the process.");
 }
 
 PageTable errors_table(const Benchmark& bench) {
-  const auto cells = [](const BenchRun& run) {
-    const RunErrors& errors = run.errors;
-    const bool is_good = run.status == Status::Converged;
-    return std::vector<PageCell>{
-        {words(status_name(run.status)), is_good ? Tone::Plain : Tone::Caution},
-        number_cell(run.residual, 2),
-        number_cell(error_of(run, ErrorKind::Algebraic), 2),
-        number_cell(errors.algebraic ? std::optional(errors.algebraic->rms) : std::nullopt, 2),
-        number_cell(errors.discretisation, 2),
-        number_cell(errors.method, 2),
-        number_cell(errors.total, 2),
-        number_cell(errors.model ? std::optional(errors.model->mean) : std::nullopt)};
-  };
-  PageTable table = runs_table(bench, "Errors of every run [mm]",
-                               {{"status", true},
-                                {"residual"},
-                                {"algebraic"},
-                                {"root mean square"},
-                                {"of the mesh"},
-                                {"of the method"},
-                                {"total"},
-                                {"to the closed surface"}},
-                               cells);
-  table.note =
+  PageTable table = page_table(
+      chosen(run_table(bench, bench.runs),
+             {"method", "mesh", "tolerance", "status", "residual", "algebraic_max_mm", "algebraic_rms_mm",
+              "discretisation_mm", "method_mm", "total_mm", "mean_to_closed_mm"}),
+      "Errors of every run",
       "Algebraic: of the vertex farthest from the equilibrium on the same mesh, and the root of the mean "
-      "square over all. Total: greatest algebraic, mesh and method together. Distances to a given closed "
-      "surface are means of both directions.";
+      "square (rms) over all. Total: greatest algebraic, mesh and method together. Distances to a given "
+      "closed "
+      "surface are means of both directions.");
+  for (size_t k = 0; k < table.rows.size(); ++k) {
+    PageCell& status = table.rows[k][3];
+    status = {spaced(status.text), bench.runs[k].status == Status::Converged ? Tone::Plain : Tone::Caution};
+  }
   return table;
 }
 
 PageTable phases_table(const Benchmark& bench) {
-  PageTable table{.caption = "Wall time by phase, of the fastest repeat at the tightest tolerance run [s]"};
-  std::vector<const BenchRun*> last;
-  std::vector<std::string> phases;
+  std::vector<BenchRun> last;
+  std::set<std::string> phases;
   for (size_t k = 0; k < bench.runs.size(); ++k) {
     const BenchRun& run = bench.runs[k];
     if (k + 1 < bench.runs.size() && bench.runs[k + 1].method == run.method &&
         bench.runs[k + 1].mesh == run.mesh)
       continue;
-    last.push_back(&run);
-    for (const auto& [phase, seconds] : run.phase_s)
-      if (std::find(phases.begin(), phases.end(), phase) == phases.end()) phases.push_back(phase);
+    last.push_back(run);
+    for (const auto& [phase, seconds] : run.phase_s) phases.insert(phase);
   }
-  table.columns = {{"method", true}, {"mesh"}};
-  for (const std::string& phase : phases) table.columns.push_back({words(phase)});
-  for (const BenchRun* run : last) {
-    std::vector<PageCell> row = {{bench.methods[run->method].name}, {mesh_text(bench.meshes[run->mesh])}};
-    for (const std::string& phase : phases) {
-      const auto found = run->phase_s.find(phase);
-      row.push_back(number_cell(found == run->phase_s.end() ? std::nullopt : std::optional(found->second)));
+  Table table = chosen(run_table(bench, last), {"method", "mesh"});
+  for (const std::string& phase : phases) {
+    table.columns.push_back({spaced(phase), "", "s", 3});
+    for (size_t r = 0; r < last.size(); ++r) {
+      const auto found = last[r].phase_s.find(phase);
+      table.rows[r].emplace_back(found == last[r].phase_s.end() ? TableCell() : TableCell(found->second));
     }
-    table.rows.push_back(std::move(row));
   }
-  return table;
+  return page_table(table, "Wall time by phase, of the fastest repeat at the tightest tolerance run");
 }
 
 }  // namespace
@@ -315,7 +226,7 @@ std::string benchmark_page(const Benchmark& bench) {
   page.sections.push_back(recommendation_section(bench));
   page.sections.push_back(plots_section(bench));
   if (bench.shown) page.sections.push_back(shape_section("Shape", *bench.shown));
-  page.sections.push_back({"Time to an accuracy", {times_table(bench)}});
+  page.sections.push_back({"Time to an accuracy", {page_times(bench)}});
   if (PageTable grown = growth_table(bench); !grown.rows.empty())
     page.sections.back().blocks.emplace_back(std::move(grown));
   page.sections.push_back({"What the mesh leaves", {meshes_table(bench)}});

@@ -1,14 +1,13 @@
 #include "study/bench/benchmark_report.hpp"
 
 #include "core/components.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "results/branches_json.hpp"
-#include "results/csv_row.hpp"
+#include "results/study_files.hpp"
 #include "study/bench/benchmark_summary.hpp"
 #include "study/detail/comparison_json.hpp"
-
-#include <sstream>
 
 namespace coapt {
 namespace {
@@ -30,7 +29,7 @@ OrderedJson errors_json(const RunErrors& errors) {
     json["algebraic"] = {{"max_mm", number_json(algebraic->max)}, {"rms_mm", number_json(algebraic->rms)}};
   json["discretisation_mm"] = number_json(errors.discretisation);
   json["method_mm"] = number_json(errors.method);
-  json["model"] = errors.model ? distances_json(*errors.model) : OrderedJson(nullptr);
+  json["model"] = distances_json(errors.model);
   json["total_mm"] = number_json(errors.total);
   return json;
 }
@@ -67,7 +66,7 @@ OrderedJson mesh_json(const BenchMesh& mesh) {
                       {"benchmarked", mesh.is_benchmarked},
                       {"residual_of_equilibrium", number_json(mesh.residual)}};
   json["no_equilibrium"] = mesh.missing.empty() ? OrderedJson(nullptr) : OrderedJson(mesh.missing);
-  json["distance_to_next"] = mesh.to_next ? distances_json(*mesh.to_next) : OrderedJson(nullptr);
+  json["distance_to_next"] = distances_json(mesh.to_next);
   json["order"] = number_json(mesh.order);
   json["discretisation_mm"] = number_json(mesh.error_mm);
   json["factorisation_s"] = number_json(mesh.factorisation_s);
@@ -156,60 +155,86 @@ OrderedJson benchmark_as_json(const Benchmark& bench) {
   return json;
 }
 
-constexpr const char* kHeader =
-    "method,model,triangles,tolerance,status,residual,energy_mj,iterations,values,gradients,hessians,"
-    "factorisations,repeats,wall_median_s,wall_best_s,cpu_median_s,cpu_best_s,cpu_in_factorisations,"
-    "peak_memory_mb,"
-    "algebraic_max_mm,algebraic_rms_mm,discretisation_mm,method_mm,mean_to_closed_mm,p95_to_closed_mm,"
-    "max_to_closed_mm,total_mm,phases_s,message";
-
 // "factorise=0.12;gradient=0.03", wall time [s].
 std::string phases_text(const BenchRun& run) {
-  std::ostringstream text;
+  std::string text;
   for (const auto& [phase, seconds] : run.phase_s)
-    text << (text.tellp() > 0 ? ";" : "") << phase << '=' << seconds;
-  return text.str();
-}
-
-void add_row(const Benchmark& bench, const BenchRun& run, std::ostream& csv) {
-  Row row(csv);
-  row.text(bench.methods[run.method].name);
-  row.text(std::string(method_model_name(bench.methods[run.method].model)));
-  row.count(bench.meshes[run.mesh].triangles);
-  row.number(run.tolerance);
-  row.text(std::string(status_name(run.status)));
-  for (const double value : {run.residual, run.energy}) row.number(value);
-  for (const long count : {long{run.iterations}, run.evaluations.value, run.evaluations.gradient,
-                           run.evaluations.hessian, run.factorisations, long{run.repeats}})
-    row.count(count);
-  for (const double seconds : {run.wall.median, run.wall.best, run.cpu.median, run.cpu.best})
-    row.number(seconds);
-  row.number(factorisations_worth(bench, run));
-  row.number(run.peak_memory_mb);
-  const RunErrors& errors = run.errors;
-  row.number(errors.algebraic ? std::optional(errors.algebraic->max) : std::nullopt);
-  row.number(errors.algebraic ? std::optional(errors.algebraic->rms) : std::nullopt);
-  row.number(errors.discretisation);
-  row.number(errors.method);
-  row.distance(errors.model ? &*errors.model : nullptr);
-  row.number(errors.total);
-  row.text(phases_text(run));
-  row.text(run.message);
-  csv << '\n';
+    text.append(text.empty() ? "" : ";").append(phase).append("=").append(number_text(seconds, 6));
+  return text;
 }
 
 }  // namespace
 
 std::string benchmark_json(const Benchmark& bench) { return json_text(benchmark_as_json(bench), 2) + "\n"; }
 
-std::string benchmark_csv(const Benchmark& bench) {
-  std::ostringstream csv = csv_with_header(kHeader);
-  for (const BenchRun& run : bench.runs) add_row(bench, run, csv);
-  return csv.str();
+Table run_table(const Benchmark& bench, std::span<const BenchRun> runs) {
+  using Counts = EvaluationCounts;
+  using Distance = DistanceFigures;
+  const auto method = [&](const BenchRun& run) { return bench.methods[run.method].name; };
+  const auto model = [&](const BenchRun& run) { return method_model_name(bench.methods[run.method].model); };
+  const auto mesh = [&](const BenchRun& run) { return mesh_text(bench.meshes[run.mesh]); };
+  const auto triangles = [&](const BenchRun& run) { return bench.meshes[run.mesh].triangles; };
+  const auto worth = [&](const BenchRun& run) { return factorisations_worth(bench, run); };
+  return table_of<BenchRun>(
+      runs,
+      {{text_column("method", "", 12), method},
+       {text_column("model"), model},
+       {text_column("mesh", "", 18), mesh},
+       {{"triangles"}, triangles},
+       {{"tolerance", "", "", 2}, &BenchRun::tolerance},
+       {text_column("status", "", 16), along(&BenchRun::status, status_name)},
+       {{"residual", "", "", 2}, &BenchRun::residual},
+       {{"energy_mj"}, &BenchRun::energy},
+       {{"iterations"}, &BenchRun::iterations},
+       {{"values"}, along(&BenchRun::evaluations, &Counts::value)},
+       {{"gradients"}, along(&BenchRun::evaluations, &Counts::gradient)},
+       {{"hessians", "Hessians"}, along(&BenchRun::evaluations, &Counts::hessian)},
+       {{"factorisations", "factors"}, &BenchRun::factorisations},
+       {{"repeats"}, &BenchRun::repeats},
+       {{"wall_median_s", "wall", "s", 3, 4}, along(&BenchRun::wall, &Spread::median)},
+       {{"wall_best_s", "best", "s", 3}, along(&BenchRun::wall, &Spread::best)},
+       {{"cpu_median_s", "CPU", "s", 3, 4}, along(&BenchRun::cpu, &Spread::median)},
+       {{"cpu_best_s"}, along(&BenchRun::cpu, &Spread::best)},
+       {{"cpu_in_factorisations", "CPU", "units", 3}, worth},
+       {{"peak_memory_mb", "memory", "MB", 3, 1}, &BenchRun::peak_memory_mb},
+       {{"algebraic_max_mm", "algebraic", "mm", 3},
+        along(&BenchRun::errors, &RunErrors::algebraic, &NodeError::max)},
+       {{"algebraic_rms_mm", "rms", "mm", 3},
+        along(&BenchRun::errors, &RunErrors::algebraic, &NodeError::rms)},
+       {{"discretisation_mm", "of the mesh", "mm", 3}, along(&BenchRun::errors, &RunErrors::discretisation)},
+       {{"method_mm", "of the method", "mm", 3}, along(&BenchRun::errors, &RunErrors::method)},
+       {{"mean_to_closed_mm", "to closed", "mm", 3},
+        along(&BenchRun::errors, &RunErrors::model, &Distance::mean)},
+       {{"p95_to_closed_mm"}, along(&BenchRun::errors, &RunErrors::model, &Distance::p95)},
+       {{"max_to_closed_mm"}, along(&BenchRun::errors, &RunErrors::model, &Distance::max)},
+       {{"total_mm", "total", "mm", 3}, along(&BenchRun::errors, &RunErrors::total)},
+       {text_column("phases_s"), phases_text},
+       {text_column("message"), &BenchRun::message}});
+}
+
+Table times_table(const Benchmark& bench) {
+  Table table{.columns = {text_column("method"), text_column("error")}};
+  for (const double mm : kAlgebraicAccuracies)
+    table.columns.push_back({number_text(mm) + " mm", number_text(mm) + " mm", "s", 3});
+  for (size_t method = 0; method < bench.methods.size(); ++method) {
+    const auto add = [&](const std::string& error, ErrorKind kind, const RunFilter& filter) {
+      std::vector<TableCell>& row = table.rows.emplace_back();
+      row = {bench.methods[method].name, error};
+      for (const double mm : kAlgebraicAccuracies) {
+        const BenchRun* run = fastest_run(bench, kind, mm, filter);
+        row.emplace_back(run != nullptr ? TableCell(run->wall.median) : TableCell());
+      }
+    };
+    add("total", ErrorKind::Total, {.method = method});
+    for (size_t mesh = 0; mesh < bench.meshes.size(); ++mesh)
+      if (bench.meshes[mesh].is_benchmarked)
+        add("algebraic, " + mesh_text(bench.meshes[mesh]), ErrorKind::Algebraic, {method, mesh});
+  }
+  return table;
 }
 
 void write_benchmark(const std::filesystem::path& folder, const Benchmark& bench) {
-  write_study(folder, "bench", benchmark_as_json(bench), benchmark_csv(bench));
+  write_study(folder, "bench", benchmark_as_json(bench), without(run_table(bench, bench.runs), {"mesh"}));
   formats::write_whole(folder / "bench.html", benchmark_page(bench));
 }
 

@@ -1,17 +1,10 @@
 #include "study/detail/method_verdict.hpp"
 
 #include "core/number_text.hpp"
-
-#include <algorithm>
+#include "report/report_page.hpp"
 
 namespace coapt {
 namespace {
-
-std::string spaced(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
 
 const Result& result_of(const ComparedMethod& method) { return method.run->report.result; }
 
