@@ -43,6 +43,10 @@ void print_summary(const Benchmark& bench) {
   print_table(chosen(run_table(bench, bench.runs),
                      {"method", "mesh", "tolerance", "status", "algebraic_max_mm", "discretisation_mm",
                       "method_mm", "mean_to_closed_mm", "total_mm", "cpu_median_s", "peak_memory_mb"}));
+  for (const BenchRun& run : bench.runs)
+    if (run.status != Status::Converged)
+      std::printf("  %s on %s to %g stopped early: %s\n", bench.methods[run.method].name.c_str(),
+                  mesh_text(bench.meshes[run.mesh]).c_str(), run.tolerance, run.message.c_str());
   for (const BenchEnd& end : bench.ends)
     if (!end.failure.empty())
       std::printf("  %s failed: %s\n", bench.methods[end.method].name.c_str(), end.failure.c_str());
