@@ -1,8 +1,10 @@
 // Time of one step of xpbd on the generated valve as it closes: membrane, bending and chords, with and
-// without contact, by sweeps per step and threads. The first 200 steps of a closure, again and again.
+// without contact and by the model of Walczak et al. 2019, by sweeps per step and threads. The first 200
+// steps of a closure, again and again.
 #include "energy/load_pressure.hpp"
 #include "support/xpbd_bodies.hpp"
 #include "valve/generators/mitral.hpp"
+#include "xpbd/heart_forces.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -38,6 +40,7 @@ struct ClosingValve {
       body.tethers.push_back(tether);
     }
     body.has_contact = has_contact;
+    body.annulus = valve.annulus;
     fixed = FixedMask::Constant(3, body.rest.cols(), false);
     for (const int k : valve.annulus) fixed.col(k).setConstant(true);
     fixed.middleCols(first_tip, network.papillary.cols()).setConstant(true);
@@ -52,10 +55,10 @@ struct ClosingValve {
   double pressure = 0;
 };
 
-// The pressure at full size from the first step on, as in a solve.
-void step(benchmark::State& state, bool has_contact) {
+// The pressure, or the paper's forces, at full size from the first step on, as in a solve.
+void step(benchmark::State& state, bool has_contact, bool is_paper) {
   const ClosingValve valve(static_cast<int>(state.range(0)), has_contact);
-  XpbdOptions options;
+  XpbdOptions options = is_paper ? walczak_2019() : XpbdOptions{};
   options.iterations = static_cast<int>(state.range(1));
   options.threads = static_cast<int>(state.range(2));
   std::optional<XpbdSystem> system;
@@ -66,7 +69,9 @@ void step(benchmark::State& state, bool has_contact) {
       system.emplace(valve.body, valve.body.rest, valve.fixed, valve.masses, options);
       state.ResumeTiming();
     }
-    system->step(follower_pressure_forces(system->positions(), valve.body.triangles, -valve.pressure));
+    const Points& x = system->positions();
+    system->step(is_paper ? heart_forces(valve.body, x, options.paper, HeartPhase::Systole)
+                          : follower_pressure_forces(x, valve.body.triangles, -valve.pressure));
   }
   state.counters["triangles"] = static_cast<double>(valve.body.triangles.cols());
   state.counters["constraints"] = static_cast<double>(system->constraint_count());
@@ -82,8 +87,9 @@ void sizes(benchmark::internal::Benchmark* bench) {
       ->Args({2500, 20, 1});
 }
 
-BENCHMARK_CAPTURE(step, no_contact, false)->Apply(sizes);
-BENCHMARK_CAPTURE(step, contact, true)->Apply(sizes);
+BENCHMARK_CAPTURE(step, no_contact, false, false)->Apply(sizes);
+BENCHMARK_CAPTURE(step, contact, true, false)->Apply(sizes);
+BENCHMARK_CAPTURE(step, walczak_2019, true, true)->Apply(sizes);
 
 }  // namespace
 

@@ -12,9 +12,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ChordsArguments {
-  std::string input, output;
+  std::string input, output, lengths;
+  bool leaves_tips_out = false;
+  std::vector<std::string> insertions;  // one text of numbers for each group
   std::vector<std::array<double, 3>> tips, closed_tips;
   std::vector<std::string> zones = {"free_edge"};
   LeafletChordOptions options;
@@ -35,6 +39,21 @@ Points points_of(const std::vector<std::array<double, 3>>& list) {
   for (size_t k = 0; k < list.size(); ++k)
     points.col(static_cast<Eigen::Index>(k)) = Vec3(list[k][0], list[k][1], list[k][2]);
   return points;
+}
+
+// "3,17,25" as numbers of vertices.
+std::vector<int> numbers_of(const std::string& text) {
+  std::vector<int> numbers;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    int number = 0;
+    const char *begin = word.data(), *end = begin + word.size();
+    if (const auto [rest, error] = std::from_chars(begin, end, number); error != std::errc() || rest != end)
+      throw InputError("--insertions: read \"" + word + "\" in \"" + text +
+                       "\"; give numbers of vertices, from 0 on, with commas between them");
+    numbers.push_back(number);
+  }
+  return numbers;
 }
 
 // The valve without its chords: from a valve JSON, or a mesh alone. mm.
@@ -59,8 +78,10 @@ Valve read_input(const ChordsArguments& arguments) {
     if (defect.severity == Severity::Error) defects.push_back(arguments.input + ": " + defect.message);
   if (!defects.empty()) throw InputError(defects);
   ChordNetwork tips;
-  tips.papillary = valve.chords.papillary;
-  tips.papillary_closed = valve.chords.papillary_closed;
+  if (!arguments.leaves_tips_out) {
+    tips.papillary = valve.chords.papillary;
+    tips.papillary_closed = valve.chords.papillary_closed;
+  }
   valve.chords = std::move(tips);
   if (!arguments.tips.empty()) {
     valve.chords.papillary = points_of(arguments.tips);
@@ -68,9 +89,10 @@ Valve read_input(const ChordsArguments& arguments) {
   } else if (!arguments.closed_tips.empty()) {
     valve.chords.papillary_closed = points_of(arguments.closed_tips);
   }
-  if (valve.chords.papillary.cols() == 0)
+  if (valve.chords.papillary.cols() == 0 && valve.chords.papillary_closed.cols() > 0)
     throw InputError(arguments.input +
-                     ": names no papillary points; give them as --tip X Y Z, once for each");
+                     ": names closed papillary points and no open ones; give these as --tip X Y Z, once for "
+                     "each");
   return valve;
 }
 
@@ -87,11 +109,41 @@ void check_output(const ChordsArguments& arguments) {
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }
 
+// What was not known and has been chosen.
+void say_tips(const Valve& valve, ChordLengths lengths) {
+  std::printf(
+      "tips:    not known; two are placed by the centroids of the insertions, as far below them as they are\n"
+      "         below the annulus plane (Walczak et al. 2019); --tip X Y Z, once for each, gives others\n");
+  for (int tip = 0; tip < valve.chords.papillary.cols(); ++tip) {
+    const Vec3 at = valve.chords.papillary.col(tip);
+    const auto& chords = valve.chords.chords;
+    const auto count = std::count_if(chords.begin(), chords.end(), [&](const Chord& chord) {
+      return chord.from.kind == ChordEnd::Kind::Papillary && chord.from.index == tip;
+    });
+    std::printf("         tip %d at %.2f %.2f %.2f mm, with %ld chords\n", tip, at[0], at[1], at[2],
+                static_cast<long>(count));
+  }
+  std::printf("lengths: %s\n",
+              lengths == ChordLengths::Sum
+                  ? "distance of the insertion from the annulus plane and from the tip, summed"
+                  : "distance of the tip from where the insertion is expected on the plane");
+}
+
+void choose_lengths(ChordsArguments& arguments, bool has_tips) {
+  const bool sums =
+      arguments.lengths.empty() ? !has_tips && arguments.options.levels == 1 : arguments.lengths == "sum";
+  arguments.options.lengths = sums ? ChordLengths::Sum : ChordLengths::ToPlane;
+}
+
 void make_chords(ChordsArguments& arguments) {
   check_output(arguments);
+  for (const std::string& group : arguments.insertions)
+    arguments.options.insertions.push_back(numbers_of(group));
   arguments.options.zones.clear();
   for (const std::string& zone : arguments.zones) arguments.options.zones.push_back(chord_zone(zone));
   Valve valve = read_input(arguments);
+  const bool has_tips = valve.chords.papillary.cols() > 0;
+  choose_lengths(arguments, has_tips);
   try {
     find_rims(valve);
     valve.chords = leaflet_chords(valve, arguments.options);
@@ -108,6 +160,7 @@ void make_chords(ChordsArguments& arguments) {
     };
     return (at(chord.from) - at(chord.to)).norm() > (1 + 1e-9) * chord.rest_length;
   });
+  if (!has_tips) say_tips(valve, arguments.options.lengths);
   std::printf(
       "written: %s\n         %zu chords, %d branch points; %ld chords pull in the open valve\n"
       "next:    coapt import %s -o FOLDER\n",
@@ -129,17 +182,36 @@ void add_chords_command(CLI::App& app, int& /*exit_code*/) {
       ->required();
   command
       ->add_option("--tip", arguments->tips,
-                   "Papillary tip X Y Z [mm], once for each; default: those of the JSON")
+                   "Papillary tip X Y Z [mm], once for each; default: those of the JSON, or else two "
+                   "placed by the insertions (Walczak et al. 2019)")
       ->take_all();
   command
       ->add_option("--closed-tip", arguments->closed_tips,
                    "The same in the closed valve, for all tips or none")
       ->take_all();
-  command->add_option("--zones", arguments->zones, "Where chords end: some of free_edge, rough, basal")
-      ->check(CLI::IsMember(chord_zone_names()))
-      ->capture_default_str();
-  command->add_option("--count", options.count, "Chords of each zone that leave the tips")
-      ->capture_default_str();
+  command->add_flag("--unseen-tips", arguments->leaves_tips_out,
+                    "Leave out the tips of the JSON: two are placed by the insertions");
+  CLI::Option* zones =
+      command->add_option("--zones", arguments->zones, "Where chords end: some of free_edge, rough, basal")
+          ->check(CLI::IsMember(chord_zone_names()))
+          ->capture_default_str();
+  CLI::Option* count =
+      command->add_option("--count", options.count, "Chords of each zone that leave the tips")
+          ->capture_default_str();
+  command
+      ->add_option(
+          "--insertions", arguments->insertions,
+          "Vertices (from 0 on, \"3,17,25\") at which chords end, in the place of zones; once, or once for "
+          "each tip")
+      ->excludes(zones)
+      ->excludes(count)
+      ->take_all();
+  command
+      ->add_option("--lengths", arguments->lengths,
+                   "Rest lengths: from the tip to the insertion's place on the annulus plane in the closed "
+                   "valve, or the sum of its distances from plane and tip (default: plane; sum for straight "
+                   "chords from tips that are not known)")
+      ->check(CLI::IsMember({"plane", "sum"}));
   command->add_option("--levels", options.levels, "1: straight chords, 2: trunks with fans, ...")
       ->capture_default_str();
   command->add_option("--branches", options.branches, "Branches at each branch point")->capture_default_str();

@@ -91,7 +91,7 @@ void write_rough(const GenerateArguments& arguments) {
 }
 
 void write_mitral(const GenerateArguments& arguments) {
-  if (!arguments.model.empty() && is_given(arguments, "--membrane"))
+  if (arguments.model.starts_with("hammer") && is_given(arguments, "--membrane"))
     throw InputError(
         "generate mitral: --membrane has no meaning beside --model, which says what the leaflets are; leave "
         "one out");
@@ -138,7 +138,7 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
       "chords, tissue, motion, pressure, and 300 to 20000 triangles unless they are given");
   command
       ->add_option("--model", arguments->model,
-                   "Mitral: tissue, chords and pressure of a published model of springs")
+                   "Mitral: tissue, chords and pressure of a published model of springs, or its method")
       ->check(CLI::IsMember(valve_model_names()));
   command->add_option(
       "--annulus", arguments->annulus,

@@ -6,6 +6,7 @@
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/valve_curves.hpp"
 #include "exchange/valve_doubts.hpp"
+#include "exchange/valve_models.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/json/read_json.hpp"
@@ -133,19 +134,29 @@ std::string terms_text(const Valve& valve, const ImportOptions& options) {
   return listed_text(terms);
 }
 
+std::string solver_text(const Valve& valve, const ImportOptions& options) {
+  if (!options.xpbd_model.empty())
+    return "  // The paper's constraints, masses and flow field move the valve; moduli and pressure above "
+           "are those\n"
+           "  // of its energy, which the result states, and of other solvers (--solver newton).\n"
+           "  \"solver\": { \"type\": \"xpbd\", \"xpbd\": { \"model\": " +
+           quoted(options.xpbd_model) + " } }";
+  return "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
+         "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
+         "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n"
+         "  \"solver\": { \"type\": \"newton\", \"tolerance\": " +
+         exact_text(options.tolerance) +
+         ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
+         (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
+}
+
 std::string scene_text(const Valve& valve, const ImportOptions& options) {
   std::string text = "{ // lengths in mm unless a unit is written\n";
   text += "  \"name\": " + quoted(valve.name.empty() ? "valve" : valve.name) + ",\n";
   text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
   text += "  \"boundary\": " + boundary_text(valve) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
-  text +=
-      "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
-      "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
-      "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n";
-  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + exact_text(options.tolerance) +
-          ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
-          (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
+  text += solver_text(valve, options);
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
   return text + "\n}\n";
 }
@@ -307,6 +318,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
       !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
   if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
   take_moduli(options, valve);
+  if (!options.model.empty()) apply_valve_model(options.model, valve, options);
   if (complete_thickness(options, valve))
     warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
                        exact_text(options.default_thickness) + " mm.");

@@ -22,6 +22,8 @@ struct ImportOptions {
                                     // what the file says, else follower
   std::string contact = "";         // none, barrier or facet; empty: barrier, or none where a model has none
   bool bends = true;                // false: no term `bending`, whatever the membrane
+  std::string model = "";           // of import_valve: one of valve_model_names(); empty: none
+  std::string xpbd_model = "";      // key "model" of the solver xpbd; empty: the scene is solved by newton
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
   bool takes_any_size = false;  // also a valve whose sizes no heart has: a unit misread

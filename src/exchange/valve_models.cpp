@@ -11,6 +11,8 @@
 namespace coapt {
 namespace {
 
+constexpr const char* kWalczak = "walczak-2019";
+
 struct ValveModel {
   const char *name, *title;
   double thickness;  // [mm]
@@ -43,10 +45,17 @@ std::vector<ValveModel> models() {
 std::vector<std::string> valve_model_names() {
   std::vector<std::string> names;
   for (const ValveModel& model : models()) names.emplace_back(model.name);
+  names.emplace_back(kWalczak);
   return names;
 }
 
 void apply_valve_model(const std::string& name, Valve& valve, ImportOptions& options) {
+  if (name == kWalczak) {
+    valve.name += ", moved after Walczak et al. 2019";
+    options.xpbd_model = name;
+    if (options.contact.empty()) options.contact = "facet";
+    return;
+  }
   const std::vector<ValveModel> all = models();
   const auto model = std::find_if(all.begin(), all.end(),
                                   [&](const ValveModel& candidate) { return candidate.name == name; });
@@ -56,6 +65,7 @@ void apply_valve_model(const std::string& name, Valve& valve, ImportOptions& opt
   Material law{"spring", model->spring};
   law.keys.emplace_back("thickness", detail::quoted(exact_text(model->thickness) + " mm"));
   for (const std::string& region : valve.leaflets.region_names) valve.membranes[region] = law;
+  if (valve.leaflets.region_names.empty()) valve.membranes[""] = law;
   valve.thickness = model->thickness;
   valve.name += ", " + std::string(model->title);
   options.chord_young = model->chord_young;

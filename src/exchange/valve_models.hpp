@@ -9,7 +9,7 @@
 
 namespace coapt {
 
-// "hammer-2008", "hammer-2011".
+// "hammer-2008", "hammer-2011", "walczak-2019".
 std::vector<std::string> valve_model_names();
 
 // Gives the valve the leaflet thickness and the law of every region, and the scene the pressure and the
@@ -21,7 +21,10 @@ std::vector<std::string> valve_model_names();
 //                2011: the kinds of curves, chords that pull only and the pressure are theirs; it states no
 //                numbers of the curves, which are those of docs/studies.md, nor thickness and modulus of the
 //                chords, which are those of 2008)
-// Pre: the leaflets have regions. Throws InputError for a model that is not known.
+// "walczak-2019" leaves the valve as it is: the scene is moved by xpbd with the paper's own masses,
+// constraints, flow field and contact (xpbd/options.hpp), and has facet contact, which limits no step, where
+// the options name none. Leaflets without regions have the law as a whole. Throws InputError for a model that
+// is not known.
 void apply_valve_model(const std::string& name, Valve& valve, ImportOptions& options);
 
 }  // namespace coapt

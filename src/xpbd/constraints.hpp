@@ -1,4 +1,4 @@
-// The constraints of position-based dynamics (Walczak et al. 2019, eq. 9-16): each is a value C(x) that is
+// The constraints of position-based dynamics (Walczak et al. 2019, eq. 12-15): each is a value C(x) that is
 // zero where it is met, its gradients, a compliance alpha (C^2/(2 alpha) is its energy) and a stiffness, the
 // share of a correction that is applied at once (1: all of it).
 //
@@ -52,13 +52,15 @@ struct StretchConstraint {
   }
 };
 
-// C = theta - theta0, the angle of a hinge; nodes and sign as in BendingHinge.
+// C = theta - theta0, the angle of a hinge; nodes and sign as in BendingHinge. Without sign C = |theta| -
+// |theta0| (Walczak et al. 2019, eq. 13: the arc cosine), which does not tell the two ways to fold apart.
 struct BendingConstraint {
   static constexpr int kNodes = 4;
   std::array<int, 4> nodes{};
   double angle = 0;  // theta0
   double alpha = 0;  // [1/(force x length)]
   double stiffness = 1;
+  bool is_unsigned = false;
   static constexpr ConstraintSense sense = ConstraintSense::BothWays;
 
   double compliance(double /*value*/) const { return alpha; }
@@ -71,10 +73,13 @@ struct BendingConstraint {
     const double ee = e.squaredNorm(), nn1 = n1.squaredNorm(), nn2 = n2.squaredNorm();
     if (!(nn1 > 0 && nn2 > 0)) return undefined_constraint<4>();
     const double edge = std::sqrt(ee);
-    double change = std::atan2(-edge * n1.dot(b), n1.dot(n2)) - angle;
+    const double theta = std::atan2(-edge * n1.dot(b), n1.dot(n2));
+    if (is_unsigned && theta == 0 && angle != 0) return undefined_constraint<4>();
+    const double sign = is_unsigned && theta < 0 ? -1 : 1;
+    double change = is_unsigned ? std::abs(theta) - std::abs(angle) : theta - angle;
     if (change > M_PI) change -= 2 * M_PI;
     if (change < -M_PI) change += 2 * M_PI;
-    const Vec3 g2 = -edge / nn1 * n1, g3 = -edge / nn2 * n2;
+    const Vec3 g2 = -sign * edge / nn1 * n1, g3 = -sign * edge / nn2 * n2;
     const double s2 = a.dot(e) / ee, s3 = b.dot(e) / ee;
     return {change, {-(1 - s2) * g2 - (1 - s3) * g3, -s2 * g2 - s3 * g3, g2, g3}};
   }
@@ -106,6 +111,25 @@ struct AreaConstraint {
     ConstraintValue<3> v = triangle_area(x, nodes);
     v.value -= area;
     return v;
+  }
+};
+
+// C = |n|^2 - a0 with the cross product n of two edges, four times the squared area (Walczak et al. 2019,
+// eq. 14).
+struct SquaredAreaConstraint {
+  static constexpr int kNodes = 3;
+  std::array<int, 3> nodes{};
+  double square = 0;  // a0 [length^4]
+  double alpha = 0;   // [length^7/force]
+  double stiffness = 1;
+  static constexpr ConstraintSense sense = ConstraintSense::BothWays;
+
+  double compliance(double /*value*/) const { return alpha; }
+
+  ConstraintValue<3> at(const Points& x) const {
+    const Vec3 x0 = x.col(nodes[0]), e1 = x.col(nodes[1]) - x0, e2 = x.col(nodes[2]) - x0;
+    const Vec3 normal = e1.cross(e2), g1 = 2 * e2.cross(normal), g2 = 2 * normal.cross(e1);
+    return {normal.squaredNorm() - square, {-(g1 + g2), g1, g2}};
   }
 };
 

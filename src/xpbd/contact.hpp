@@ -1,13 +1,14 @@
-// Contact of xpbd (Walczak et al. 2019, section 3.6): vertices keep a distance h from triangles, edges from
+// Contact of xpbd (Walczak et al. 2019, section 3.3): vertices keep a distance h from triangles, edges from
 // edges, on the side on which they were when the step began.
 //   C = +-d - h >= 0,   d the distance of the two features, - once they have passed through each other
 // Features of one sheet that are near each other at rest keep half their distance at rest, where that is
-// less; those that are joined by an edge do not meet. Edges are our addition: vertices alone let coarse
-// sheets cross between their nodes.
+// less; those that are joined by an edge do not meet. Edges are our addition, which options may leave out:
+// vertices alone let coarse sheets cross between their nodes.
 #pragma once
 
 #include "energy/contact/contact_surface.hpp"
 #include "xpbd/body.hpp"
+#include "xpbd/options.hpp"
 #include "xpbd/projection.hpp"
 
 #include <memory>
@@ -28,10 +29,15 @@ struct ContactConstraint {
   ConstraintValue<4> at(const Points& x) const;
 };
 
+struct ContactOptions {
+  double thickness = 0;  // h [length]
+  XpbdContactFeatures features = XpbdContactFeatures::VerticesAndEdges;
+  double alpha = 0, stiffness = 1;  // of each constraint
+};
+
 class XpbdContact {
  public:
-  // thickness: h [length]. alpha, stiffness: of each constraint.
-  XpbdContact(const XpbdBody& body, double thickness, double alpha, double stiffness);
+  XpbdContact(const XpbdBody& body, const ContactOptions& options);
 
   // Finds the pairs that may meet in a step from x to about `predicted`, and the side of each at x. Pre: no
   // node is predicted to go farther than longest_move().
@@ -50,10 +56,13 @@ class XpbdContact {
 
  private:
   bool is_joined(const FeaturePair& pair) const;
+  bool are_joined(int s, int t) const;
+  void find_joined_triangles();
 
   ContactSurface surface_;
   std::vector<std::vector<int>> neighbours_;  // of each node by an edge, ascending
-  double thickness_, alpha_, stiffness_;
+  std::vector<std::vector<int>> joined_;  // of each triangle those of which it meets no feature, ascending
+  ContactOptions options_;
   double longest_;
   ColouredConstraints<ContactConstraint> active_;
 };

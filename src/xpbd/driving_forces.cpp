@@ -43,7 +43,7 @@ DrivingForces::DrivingForces(const Objective& objective, const XpbdBody& body, c
 
 Points DrivingForces::at(const Points& x, HeartPhase phase) const {
   if (options_.forces == XpbdForces::Scene) return factor_ * scene_forces(objective_, x, phase);
-  return factor_ * heart_forces(body_, x, options_.paper.flow, options_.paper.pressure, phase);
+  return factor_ * heart_forces(body_, x, options_.paper, phase);
 }
 
 }  // namespace coapt

@@ -43,7 +43,7 @@ double sense_of_loop(const XpbdBody& body) {
   return axis.along.dot(axis.middle - middle_of_membrane(body, body.rest)) < 0 ? -1 : 1;
 }
 
-// +1 where the normals of the surface at rest point away from the axis, else -1.
+// +1 where the normals of the surface at rest point towards the axis, else -1.
 double sense_of_normals(const XpbdBody& body) {
   const Axis axis = axis_of(body, body.rest);
   double outward = 0;
@@ -51,7 +51,7 @@ double sense_of_normals(const XpbdBody& body) {
     const Vec3 centre = (body.rest.col(t[0]) + body.rest.col(t[1]) + body.rest.col(t[2])) / 3;
     outward += area_vector(body.rest, t).dot(axis.offset(centre).normalized());
   }
-  return outward < 0 ? -1 : 1;
+  return outward > 0 ? -1 : 1;
 }
 
 Points normals(const XpbdBody& body, const Points& x) {
@@ -65,7 +65,7 @@ Points normals(const XpbdBody& body, const Points& x) {
 
 }  // namespace
 
-Points heart_forces(const XpbdBody& body, const Points& x, double w, double p, HeartPhase phase) {
+Points heart_forces(const XpbdBody& body, const Points& x, const XpbdPaper& weights, HeartPhase phase) {
   Axis axis = axis_of(body, x);
   axis.along *= sense_of_loop(body);
   const double sign = phase == HeartPhase::Systole ? 1 : -1;
@@ -73,10 +73,14 @@ Points heart_forces(const XpbdBody& body, const Points& x, double w, double p, H
   std::vector<bool> is_membrane(static_cast<size_t>(x.cols()), false);
   for (const int node : body.triangles.reshaped()) is_membrane[static_cast<size_t>(node)] = true;
   Points forces = Points::Zero(3, x.cols());
-  for (int node = 0; node < x.cols(); ++node)
-    if (is_membrane[static_cast<size_t>(node)])
-      forces.col(node) =
-          sign * (w * axis.along - p * n.col(node) - p * axis.offset(x.col(node)).stableNormalized());
+  const Vec3 flow = weights.flow * axis.along;
+  for (int node = 0; node < x.cols(); ++node) {
+    if (!is_membrane[static_cast<size_t>(node)]) continue;
+    const Vec3 normal = n.col(node);
+    Vec3 force = flow + (flow.dot(normal) + weights.pressure) * normal;
+    if (weights.radial != 0) force -= weights.radial * axis.offset(x.col(node)).stableNormalized();
+    forces.col(node) = sign * force;
+  }
   return forces;
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/triangle_mesh.hpp"
 #include "optim/monitor.hpp"
 #include "xpbd/driving_forces.hpp"
+#include "xpbd/paper_numbers.hpp"
 #include "xpbd/separating_planes.hpp"
 #include "xpbd/system.hpp"
 
@@ -207,7 +208,9 @@ class SolverXpbd final : public Solver {
         say("after ");
         return *stop;
       }
-      resting = has_arrived_ && system.largest_move() <= kRestingMove * extent ? resting + 1 : 0;
+      const bool rests = options_.rest_move > 0 ? system.mean_move() <= options_.rest_move
+                                                : system.largest_move() <= kRestingMove * extent;
+      resting = has_arrived_ && rests ? resting + 1 : 0;
       if (resting < kRestingSteps) continue;
       is_at_rest_ = true;
       say("at rest after ");
@@ -245,18 +248,15 @@ std::vector<std::string> check_xpbd_options(const XpbdOptions& options) {
           "motion_time: must be a time above 0, or 0 for the default");
   require(options.damping >= 0 && options.damping <= 1, "damping: must be a share, from 0 to 1");
   require(options.thickness > 0 && std::isfinite(options.thickness), "thickness: must be a length above 0");
-  const XpbdPaper& paper = options.paper;
-  for (const auto& [share, name] : {std::pair{paper.stretch, "stretch"},
-                                    {paper.bending, "bending"},
-                                    {paper.area, "area"},
-                                    {paper.tether, "tether"},
-                                    {paper.contact, "contact"}})
-    if (!(share >= 0 && share <= 1))
-      defects.push_back(std::string("paper.") + name + ": must be a share, from 0 to 1");
-  for (const auto& [number, name] :
-       {std::pair{paper.compliance, "compliance"}, {paper.flow, "flow"}, {paper.pressure, "pressure"}})
-    if (!(number >= 0 && std::isfinite(number)))
-      defects.push_back(std::string("paper.") + name + ": must be a number from 0 on");
+  require(options.rest_move >= 0 && std::isfinite(options.rest_move),
+          "rest_move: must be a length above 0, or 0 for the default");
+  for (const PaperNumber& number : kPaperNumbers) {
+    const double value = options.paper.*number.value;
+    if (!(value >= 0 && (number.is_share ? value <= 1 : std::isfinite(value))))
+      defects.push_back(
+          std::string("paper.") + number.name +
+          (number.is_share ? ": must be a share, from 0 to 1" : ": must be a number from 0 on"));
+  }
   require(options.threads >= 1, "threads: must be at least 1");
   return defects;
 }

@@ -15,6 +15,9 @@ struct Hardness {
   XpbdPaper paper = {};
 
   double alpha(double stiffness) const { return is_paper ? paper.compliance : 1 / stiffness; }
+  double alpha(const XpbdTether& tether) const {
+    return is_paper && !tether.is_edge ? paper.tether_compliance : alpha(tether.stiffness);
+  }
   double share(double of_paper) const { return is_paper ? of_paper : 1; }
 };
 
@@ -32,10 +35,19 @@ std::vector<StretchConstraint> stretch_constraints(const XpbdBody& body, const H
 
 std::vector<AreaConstraint> area_constraints(const XpbdBody& body, const Hardness& hardness) {
   std::vector<AreaConstraint> all;
+  if (hardness.is_paper) return all;
   for (const XpbdArea& a : body.areas)
     if (a.stiffness > 0)
-      all.push_back({a.nodes, a.area, hardness.alpha(a.stiffness), hardness.share(hardness.paper.area),
-                     pulls(a.only_growth && !hardness.is_paper)});
+      all.push_back({a.nodes, a.area, hardness.alpha(a.stiffness), 1, pulls(a.only_growth)});
+  return all;
+}
+
+std::vector<SquaredAreaConstraint> squared_area_constraints(const XpbdBody& body, const Hardness& hardness) {
+  std::vector<SquaredAreaConstraint> all;
+  if (!hardness.is_paper) return all;
+  for (const XpbdArea& a : body.areas)
+    if (a.stiffness > 0)
+      all.push_back({a.nodes, 4 * a.area * a.area, hardness.paper.compliance, hardness.paper.area});
   return all;
 }
 
@@ -58,18 +70,20 @@ std::vector<BendingConstraint> bending_constraints(const XpbdBody& body, const H
   std::vector<BendingConstraint> all;
   for (const XpbdHinge& hinge : body.hinges)
     if (hinge.stiffness > 0)
-      all.push_back({hinge.nodes, hinge.angle, hardness.alpha(hinge.stiffness),
-                     hardness.share(hardness.paper.bending)});
+      all.push_back(
+          {hinge.nodes, hardness.is_paper && hardness.paper.rest_angle == HingeRest::Flat ? 0 : hinge.angle,
+           hardness.alpha(hinge.stiffness), hardness.share(hardness.paper.bending), hardness.is_paper});
   return all;
 }
 
 std::vector<StretchConstraint> tether_constraints(const XpbdBody& body, const Hardness& hardness) {
   std::vector<StretchConstraint> all;
   for (const XpbdTether& t : body.tethers)
-    if (hardness.is_paper ? t.length > 0 : !t.law && t.stiffness > 0)
+    // A length of zero is that of a clip (section 3.8), or of a constant tension, which the paper has not.
+    if ((hardness.is_paper && t.length > 0) || (!t.law && t.stiffness > 0))
       all.push_back({{t.a, t.b},
                      t.length,
-                     hardness.alpha(t.stiffness),
+                     hardness.alpha(t),
                      hardness.share(t.is_edge ? hardness.paper.stretch : hardness.paper.tether),
                      pulls(t.only_tension && !(hardness.is_paper && t.is_edge))});
   return all;
@@ -100,14 +114,16 @@ XpbdSystem::XpbdSystem(const XpbdBody& body, const Points& x,
   const int count = static_cast<int>(x.cols());
   stretches_ = {stretch_constraints(body, hardness), count};
   areas_ = {area_constraints(body, hardness), count};
+  squared_areas_ = {squared_area_constraints(body, hardness), count};
   films_ = {film_constraints(body, hardness), count};
   others_ = {energy_constraints(body, hardness), count};
   bends_ = {bending_constraints(body, hardness), count};
   tethers_ = {tether_constraints(body, hardness), count};
   lines_ = {line_constraints(body, hardness), count};
   if (body.has_contact)
-    contact_.emplace(body, options.thickness, hardness.is_paper ? hardness.paper.compliance : 0,
-                     hardness.share(hardness.paper.contact));
+    contact_.emplace(body, ContactOptions{options.thickness, options.features,
+                                          hardness.is_paper ? hardness.paper.contact_compliance : 0,
+                                          hardness.share(hardness.paper.contact)});
 }
 
 void XpbdSystem::step(const Points& force, const Points& prescribed) {
@@ -124,6 +140,7 @@ void XpbdSystem::step(const Points& force, const Points& prescribed) {
   const auto each = [&](const auto& act) {
     act(stretches_);
     act(areas_);
+    act(squared_areas_);
     act(films_);
     act(others_);
     act(bends_);
@@ -142,6 +159,10 @@ double XpbdSystem::largest_move() const {
   return x_.cols() == 0 ? 0 : std::sqrt((x_ - before_).colwise().squaredNorm().maxCoeff());
 }
 
+double XpbdSystem::mean_move() const {
+  return x_.cols() == 0 ? 0 : (x_ - before_).norm() / std::sqrt(static_cast<double>(x_.cols()));
+}
+
 double XpbdSystem::kinetic_energy() const {
   double twice = 0;
   for (Eigen::Index k = 0; k < w_.size(); ++k)
@@ -150,8 +171,8 @@ double XpbdSystem::kinetic_energy() const {
 }
 
 size_t XpbdSystem::constraint_count() const {
-  return stretches_.size() + areas_.size() + films_.size() + others_.size() + bends_.size() +
-         tethers_.size() + lines_.size();
+  return stretches_.size() + areas_.size() + squared_areas_.size() + films_.size() + others_.size() +
+         bends_.size() + tethers_.size() + lines_.size();
 }
 
 }  // namespace coapt

@@ -11,7 +11,8 @@ namespace coapt {
 class XpbdSystem {
  public:
   // Starts at rest at x (3 x node_count). masses: of each node. fixed: prescribed coordinates, as in
-  // FixedMask. With XpbdStiffness::Paper all masses are 1 and all compliances and stiffnesses the paper's.
+  // FixedMask. With XpbdStiffness::Paper all masses are 1 and all constraints, compliances and stiffnesses
+  // the paper's.
   // Pre: options have passed check_xpbd_options; masses > 0.
   XpbdSystem(const XpbdBody& body, const Points& x, const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed,
              const Vector& masses, const XpbdOptions& options);
@@ -28,6 +29,7 @@ class XpbdSystem {
   const Points& positions() const { return x_; }
   const Points& positions_before() const { return before_; }
   double largest_move() const;    // of a node in the last step [length]
+  double mean_move() const;       // of the nodes in the last step, root mean square [length]
   double kinetic_energy() const;  // of the last step; of what is prescribed none [force x length]
   const InverseMasses& inverse_masses() const { return w_; }
 
@@ -42,6 +44,7 @@ class XpbdSystem {
   Points x_, before_;
   ColouredConstraints<StretchConstraint> stretches_;  // edges
   ColouredConstraints<AreaConstraint> areas_;
+  ColouredConstraints<SquaredAreaConstraint> squared_areas_;  // the paper's
   ColouredConstraints<FilmConstraint> films_;
   ColouredConstraints<TriangleEnergyConstraint> others_;
   ColouredConstraints<BendingConstraint> bends_;

@@ -92,7 +92,22 @@ class GenerateTest(CommandCase):
         self.assertEqual(sorted(valve["annulus"]), sorted(known["annulus"]))
         self.assertEqual(sorted(valve["free_edge"]), sorted(known["free_edge"]))
         self.assertEqual((len(valve["chords"]), valve["papillary"]), (24, [[16, 0, -24], [-16, 0, -24]]))
-        self.assert_bad_input(coapt("chords", mesh, "-o", network), "leaflets.obj", "papillary", "--tip")
+        unseen = coapt("chords", mesh, "-o", network)
+        self.assertEqual((unseen.returncode, unseen.stderr), (0, ""), unseen.stdout)
+        self.assertIn("tips:    not known", unseen.stdout)
+        valve = json.loads(network.read_text())
+        self.assertEqual(sorted(valve["annulus"]), sorted(known["annulus"]))
+        self.assertEqual((len(valve["chords"]), len(valve["papillary"])), (24, 2))
+        self.assertEqual(coapt("import", network, "-o", self.folder / "unseen").returncode, 0)
+        edge = known["free_edge"]
+        chosen = [",".join(map(str, edge[:4])), ",".join(map(str, edge[20:23]))]
+        run = coapt("chords", mesh, "-o", network, "--insertions", chosen[0], "--insertions", chosen[1])
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("with 4 chords", run.stdout)
+        self.assertEqual({c["to"]["leaflet"] for c in json.loads(network.read_text())["chords"]}, {*edge[:4], *edge[20:23]})
+        for wrong, what in (("3,x", "\"x\""), ("99999", "no such vertex"), (f"{edge[0]},{edge[0]}", "named twice"),
+                            (str(known["annulus"][0]), "on the annulus"), (str(edge[0]), "half 1")):
+            self.assert_bad_input(coapt("chords", mesh, "-o", network, "--insertions", wrong), what)
         self.assert_bad_input(coapt("chords", mesh, "-o", self.folder / "x.json", *tips), "another folder")
         self.assert_bad_input(coapt("chords", mesh, "-o", network, "--count", 999, *tips), "free vertices")
         for bad in ("nan", "1e400", "1e200"):

@@ -207,7 +207,9 @@ TEST_F(XpbdBodyTest, ReadsItsOptionsFromTheScene) {
     "tension": "1 N/mm"}], "solver": {"type": "xpbd", "threads": 2, "xpbd": {"time_step": "2 ms",
     "iterations": 3, "steps": 7, "damping": 0.1, "thickness": "0.2 mm", "stiffness": "paper",
     "forces": "paper", "phase": "diastole", "motion_time": "50 ms", "paper": {"stretch": 0.2, "bending": 0.3,
-    "area": 0.4, "tether": 0.5, "contact": 0.6, "compliance": 2e-5, "flow": 60, "pressure": 90}}}})",
+    "area": 0.4, "tether": 0.5, "contact": 0.6, "compliance": 2e-5, "flow": 60, "pressure": 90,
+    "tether_compliance": 3e-5, "contact_compliance": 4e-5, "rest_angle": "flat", "radial": 70},
+    "contact_features": "vertices", "rest_move": "0.02 mm"}}})",
                                  folder_.path() / "other.json");
   const XpbdOptions& options = *read.solver.xpbd;
   EXPECT_EQ(read.solver.type, "xpbd");
@@ -229,10 +231,15 @@ TEST_F(XpbdBodyTest, ReadsItsOptionsFromTheScene) {
   EXPECT_EQ(options.paper.compliance, 2e-5);
   EXPECT_EQ(options.paper.flow, 60);
   EXPECT_EQ(options.paper.pressure, 90);
+  EXPECT_EQ(options.paper.tether_compliance, 3e-5);
+  EXPECT_EQ(options.paper.contact_compliance, 4e-5);
+  EXPECT_EQ(options.paper.rest_angle, HingeRest::Flat);
+  EXPECT_EQ(options.paper.radial, 70);
+  EXPECT_EQ(options.features, XpbdContactFeatures::Vertices);
+  EXPECT_EQ(options.rest_move, 0.02);
 }
 
-// An empty object of the scene gives what the library has, and that is what the source has: k 0.1, 0.1 and 1,
-// w 50, p 100, 5 ms, alpha 1e-5, h 0.5 mm; 20 sweeps, or 3.
+// An empty object of the scene gives what the library has, and that is what table 1 and section 3.3 have.
 TEST_F(XpbdBodyTest, HasTheNumbersOfThePaper) {
   build_with(R"({"type": "surface_tension", "tension": "1 N/mm"})");
   const XpbdOptions defaults, fallback = *parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [
@@ -251,12 +258,49 @@ TEST_F(XpbdBodyTest, HasTheNumbersOfThePaper) {
     EXPECT_EQ(paper.stretch, 0.1);
     EXPECT_EQ(paper.bending, 0.1);
     EXPECT_EQ(paper.tether, 1);
-    EXPECT_EQ(paper.area, 0.1);   // the source gives none
-    EXPECT_EQ(paper.contact, 1);  // nor this
+    EXPECT_EQ(paper.area, 1);
+    EXPECT_EQ(paper.contact, 1);
     EXPECT_EQ(paper.compliance, 1e-5);
+    EXPECT_EQ(paper.tether_compliance, 0);   // eq. 15
+    EXPECT_EQ(paper.contact_compliance, 0);  // section 3.3
+    EXPECT_EQ(paper.rest_angle, HingeRest::Initial);
     EXPECT_EQ(paper.flow, 50);
     EXPECT_EQ(paper.pressure, 100);
+    EXPECT_EQ(paper.radial, 0);  // eq. 16-19 know none
   }
+}
+
+// A key that is given holds against the model.
+TEST_F(XpbdBodyTest, TakesTheModelOfThePaperAndWhatIsSaidBeside) {
+  build_with(R"({"type": "surface_tension", "tension": "1 N/mm"})");
+  const auto read = [&](const std::string& keys) {
+    return *parse_scene(R"({"mesh": {"file": "sheet.obj"}, "terms": [{"type": "surface_tension",
+      "tension": "1 N/mm"}], "solver": {"type": "xpbd", "xpbd": {)" +
+                            keys + "}}}",
+                        folder_.path() / "other.json")
+                .solver.xpbd;
+  };
+  const XpbdOptions paper = read(R"("model": "walczak-2019")");
+  EXPECT_EQ(paper.stiffness, XpbdStiffness::Paper);
+  EXPECT_EQ(paper.forces, XpbdForces::Paper);
+  EXPECT_EQ(paper.damping, 0);  // eq. 8-10
+  EXPECT_EQ(paper.iterations, 3);
+  EXPECT_EQ(paper.features, XpbdContactFeatures::Vertices);
+  EXPECT_EQ(xpbd_time_step(paper), 0.005);
+  EXPECT_EQ(paper.rest_move, walczak_2019().rest_move);
+  EXPECT_EQ(paper.steps, walczak_2019().steps);
+  const XpbdOptions other = read(R"("model": "walczak-2019", "damping": 0.05, "iterations": 20, "steps": 9,
+    "stiffness": "material", "forces": "scene", "contact_features": "vertices_and_edges", "motion_time": "1 s",
+    "rest_move": "1 um")");
+  EXPECT_EQ(other.stiffness, XpbdStiffness::Material);
+  EXPECT_EQ(other.forces, XpbdForces::Scene);
+  EXPECT_EQ(other.damping, 0.05);
+  EXPECT_EQ(other.iterations, 20);
+  EXPECT_EQ(other.steps, 9);
+  EXPECT_EQ(other.motion_time, 1);
+  EXPECT_EQ(other.rest_move, 1e-3);
+  EXPECT_EQ(other.features, XpbdContactFeatures::VerticesAndEdges);
+  EXPECT_EQ(read("").damping, XpbdOptions{}.damping);
 }
 
 }  // namespace

@@ -58,7 +58,9 @@ TEST(XpbdConstraints, HaveTheGradientsOfTheirValues) {
     const Points x = random_points(4, seed);
     expect_gradient(StretchConstraint{{0, 2}, 0.3}, x);
     expect_gradient(BendingConstraint{{0, 1, 2, 3}, 0.2}, x);
+    expect_gradient(BendingConstraint{{0, 1, 2, 3}, 0.2, 0, 1, true}, x);
     expect_gradient(AreaConstraint{{2, 0, 1}, 0.4}, x);
+    expect_gradient(SquaredAreaConstraint{{2, 0, 1}, 0.4}, x);
     expect_gradient(FilmConstraint{{2, 0, 1}, 0.4}, x);
     expect_gradient(spring_triangle({0.4, 0.7, 1.1}), x);
     expect_gradient(contact_of(PairKind::PointTriangle, x), x);
@@ -76,6 +78,26 @@ TEST(XpbdConstraints, TakeTheAngleOfAHingeAsTheEnergyDoes) {
   EXPECT_NEAR((BendingConstraint{{0, 1, 2, 3}, 0}).at(x).value, angle, 1e-14);
   // A change across pi is a small one.
   EXPECT_NEAR((BendingConstraint{{0, 1, 2, 3}, angle - 2 * M_PI + 0.1}).at(x).value, -0.1, 1e-12);
+}
+
+// Walczak et al. 2019, eq. 14: |(p_j - p_i) x (p_k - p_i)|^2 - a0, of two edges of 3 and 4 at right angles.
+TEST(XpbdConstraints, TakeTheSquareOfAnAreaAsThePaperDoes) {
+  Points x(3, 3);
+  x << 0, 3, 0, 0, 0, 4, 0, 0, 0;
+  EXPECT_NEAR((SquaredAreaConstraint{{0, 1, 2}, 100}).at(x).value, 12 * 12 - 100, 1e-12);
+}
+
+// Eq. 13: the arc cosine of the normals less phi0, whichever way the hinge is folded.
+TEST(XpbdConstraints, TakeAnAngleWithoutSignAsThePaperDoes) {
+  for (const double fold : {0.4, -0.4}) {
+    Points x(3, 4);
+    x << 0, 1, 0.5, 0.5, 0, 0, 1, -std::cos(fold), 0, 0, 0, std::sin(fold);
+    const Vec3 n1 = Vec3(x.col(1) - x.col(0)).cross(Vec3(x.col(2) - x.col(0))).normalized(),
+               n2 = Vec3(x.col(3) - x.col(0)).cross(Vec3(x.col(1) - x.col(0))).normalized();
+    ASSERT_NEAR(std::acos(n1.dot(n2)), 0.4, 1e-12);
+    for (const double rest : {0.3, -0.3})
+      EXPECT_NEAR((BendingConstraint{{0, 1, 2, 3}, rest, 0, 1, true}).at(x).value, 0.1, 1e-12);
+  }
 }
 
 // Momentum that one projection adds, and its moment about the origin at the state that it corrects.
@@ -100,6 +122,8 @@ TEST(XpbdConstraints, PushAndTurnNothingAsAWhole) {
     expect_no_push(StretchConstraint{{0, 2}, 0.3, 1e-3}, x);
     expect_no_push(BendingConstraint{{0, 1, 2, 3}, 0.2, 1e-2}, x);
     expect_no_push(AreaConstraint{{2, 0, 1}, 0.1, 1e-2}, x);
+    expect_no_push(SquaredAreaConstraint{{2, 0, 1}, 0.1, 1e-2}, x);
+    expect_no_push(BendingConstraint{{0, 1, 2, 3}, 0.2, 1e-2, 1, true}, x);
     expect_no_push(FilmConstraint{{2, 0, 1}, 0.4}, x);
     expect_no_push(spring_triangle({0.4, 0.7, 1.1}), x);
     ContactConstraint contact = contact_of(PairKind::EdgeEdge, x);
@@ -139,8 +163,15 @@ TEST(XpbdConstraints, CorrectNothingWhereTheyAreUndefined) {
   double lambda = 0;
   project(StretchConstraint{{0, 1}, 1}, 1e-4, w, x, lambda);
   project(AreaConstraint{{0, 1, 2}, 1}, 1e-4, w, x, lambda);
+  project(SquaredAreaConstraint{{0, 1, 2}, 1}, 1e-4, w, x, lambda);
   project(BendingConstraint{{0, 1, 2, 3}, 1}, 1e-4, w, x, lambda);
   EXPECT_EQ(x, start);
+  // A flat hinge that wants an angle has two ways to fold, and no gradient.
+  Points flat(3, 4);
+  flat << 0, 1, 0.5, 0.5, 0, 0, 1, -1, 0, 0, 0, 0;
+  x = flat;
+  project(BendingConstraint{{0, 1, 2, 3}, 1, 0, 1, true}, 1e-4, w, x, lambda);
+  EXPECT_EQ(x, flat);
 }
 
 TEST(XpbdConstraints, OfAFilmConvergeToItsTension) {

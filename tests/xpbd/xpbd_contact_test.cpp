@@ -122,24 +122,29 @@ struct Cone {
   }
 };
 
-// At the node (8, 0, -5), whatever the sense of the triangles and of the annulus.
+// Walczak et al. 2019, eq. 16-19: f0 = w, f1 = (w . n) n, f2 = p n, and no other. At the node (8, 0, -5),
+// whatever the sense of the triangles and of the annulus.
 TEST(HeartForces, HaveDirectionSizeAndSignByThePhase) {
   const XpbdPaper paper;
   ASSERT_EQ(paper.flow, 50);
   ASSERT_EQ(paper.pressure, 100);
-  const Vec3 flow(0, 0, 50),                                 // to the atrium
-      pressure = -100 * Vec3(1, 0, -0.4) / std::sqrt(1.16),  // against the normal that looks to the ventricle
-      to_axis(-100, 0, 0);
+  const Vec3 inward = Vec3(-1, 0, 0.4) / std::sqrt(1.16), flow(0, 0, 50),  // to the atrium
+      against_surface = flow.dot(inward) * inward, pressure = 100 * inward, to_axis(-30, 0, 0);
   for (const bool is_turned : {false, true}) {
     const Cone cone(is_turned);
     const int node = Cone::kAround;
-    const auto force = [&](double w, double p, HeartPhase phase) {
-      return Vec3(heart_forces(cone.body, cone.body.rest, w, p, phase).col(node));
+    const auto force = [&](double w, double p, double radial, HeartPhase phase) {
+      const XpbdPaper weights{.flow = w, .pressure = p, .radial = radial};
+      return Vec3(heart_forces(cone.body, cone.body.rest, weights, phase).col(node));
     };
     for (const auto& [phase, sign] : {std::pair{HeartPhase::Systole, 1}, {HeartPhase::Diastole, -1}}) {
-      EXPECT_LT((force(paper.flow, 0, phase) - sign * flow).norm(), 1e-9);
-      EXPECT_LT((force(0, paper.pressure, phase) - sign * (pressure + to_axis)).norm(), 1);
-      EXPECT_LT((force(paper.flow, paper.pressure, phase) - sign * (flow + pressure + to_axis)).norm(), 1);
+      EXPECT_LT((force(paper.flow, 0, 0, phase) - sign * (flow + against_surface)).norm(), 0.5);
+      EXPECT_LT((force(0, paper.pressure, 0, phase) - sign * pressure).norm(), 1);
+      EXPECT_LT((force(0, 0, 30, phase) - sign * to_axis).norm(), 1e-9);
+      EXPECT_LT((heart_forces(cone.body, cone.body.rest, paper, phase).col(node) -
+                 sign * (flow + against_surface + pressure))
+                    .norm(),
+                1);
     }
   }
 }

@@ -127,6 +127,44 @@ TEST(Xpbd, HasTheSameBitsOnTwoThreadsAsOnOne) {
   EXPECT_EQ(found[0], found[1]);
 }
 
+// Walczak et al. 2019: cords have no compliance (eq. 15), edges 1e-5 (table 1). One node hangs in a step of
+// 5 ms by a link of each kind, with a share of 1: the multiplier settles at the weight, C = alpha weight.
+TEST(Xpbd, HasCordsOfThePaperWithoutCompliance) {
+  Points rest(3, 2);
+  rest << 0, 0, 0, 0, 0, -10;
+  for (const bool is_edge : {false, true}) {
+    XpbdBody body = chain_body(rest, 10, 1);
+    body.tethers[0].is_edge = is_edge;
+    XpbdOptions options = walczak_2019();
+    options.paper.stretch = 1;
+    options.damping = 0.05;
+    XpbdSystem system(body, rest, fixed_nodes(2, {0}), Vector::Ones(2), options);
+    Points force = Points::Zero(3, 2);
+    force(2, 1) = -250;
+    for (int step = 0; step < 3000; ++step) system.step(force);
+    EXPECT_NEAR(-10 - system.positions()(2, 1), is_edge ? 1e-5 * 250 : 0, 1e-9) << is_edge;
+  }
+}
+
+// Two triangles on edge that cross with their edges alone.
+TEST(Xpbd, KeepsEdgesApartUnlessVerticesAloneAreMeant) {
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, 6);
+  mesh.vertices << -2, 2, 0, 0, 0, 0, 0, 0, 0, -2, 2, 0, 0, 0, -9, 0.3, 0.3, 9;
+  mesh.triangles.resize(3, 2);
+  mesh.triangles << 0, 3, 1, 4, 2, 5;
+  XpbdBody body = sheet_body(mesh, 1, 0, 0);
+  body.rest.rightCols(3).row(2).array() += 5;
+  body.has_contact = true;
+  for (const auto features : {XpbdContactFeatures::VerticesAndEdges, XpbdContactFeatures::Vertices}) {
+    XpbdOptions options = with_step(0.001);
+    options.features = features;
+    XpbdSystem system(body, mesh.vertices, none_fixed(6), Vector::Ones(6), options);
+    system.step(Points::Zero(3, 6));
+    EXPECT_EQ(system.contact()->active_count(), features == XpbdContactFeatures::Vertices ? 0U : 1U);
+  }
+}
+
 // A small sheet falls on a fixed plate and stays h above it.
 TEST(Xpbd, ContactKeepsItsThickness) {
   const TriangleMesh plate = grid_mesh(2, 2, 6, 6),
@@ -224,6 +262,21 @@ TEST(SolverXpbd, SaysThatItIsAtRestWhereTheResidualIsNotReached) {
   const Result cut = weight.run(options);
   EXPECT_EQ(cut.status, Status::Stalled);
   EXPECT_NE(cut.message.find("still moving after 3 steps"), std::string::npos) << cut.message;
+}
+
+// Swinging a little, it rests by the mean move that is asked for, long before no node moves any more.
+TEST(SolverXpbd, RestsByTheMeanMoveThatIsAskedFor) {
+  const Weight weight;
+  SolverOptions options = weight.options();
+  options.xpbd_body = [rest = weight.X] {
+    return std::make_shared<const XpbdBody>(chain_body(rest, 10, 0.06));
+  };
+  const Result whole = weight.run(options, 1e-9);
+  editable(options.xpbd).rest_move = 1e-3;
+  const Result early = weight.run(options, 1e-9);
+  EXPECT_NE(early.message.find("at rest after"), std::string::npos) << early.message;
+  EXPECT_GT(early.iterations, 50);
+  EXPECT_LT(early.iterations, whole.iterations);
 }
 
 TEST(SolverXpbd, RunsTwiceToTheSameBits) {
@@ -337,15 +390,23 @@ std::string refusal(const SolverOptions& options) {
 TEST(SolverXpbd, RefusesWhatItCannotUse) {
   const SolverOptions good = Weight().options();
   SolverOptions bad = good;
-  editable(bad.xpbd) = {
-      .time_step = -1, .iterations = 0, .steps = 0, .motion_time = 0, .damping = 1.5, .thickness = -1};
+  editable(bad.xpbd) = {.time_step = -1,
+                        .iterations = 0,
+                        .steps = 0,
+                        .motion_time = 0,
+                        .damping = 1.5,
+                        .thickness = -1,
+                        .rest_move = -1};
   editable(bad.xpbd).threads = 0;
   editable(bad.xpbd).motion_time = kNaN;
   editable(bad.xpbd).paper.stretch = 2;
   editable(bad.xpbd).paper.flow = -1;
+  editable(bad.xpbd).paper.tether_compliance = -1;
+  editable(bad.xpbd).paper.radial = kNaN;
   const std::string all = refusal(bad);
-  for (const char* key : {"time_step", "iterations", "steps", "damping", "thickness", "threads",
-                          "motion_time", "paper.stretch", "paper.flow"})
+  for (const char* key :
+       {"time_step", "iterations", "steps", "damping", "thickness", "threads", "motion_time", "rest_move",
+        "paper.stretch", "paper.flow", "paper.tether_compliance", "paper.radial"})
     EXPECT_NE(all.find(std::string("solver \"xpbd\": ") + key + ": "), std::string::npos) << key;
 
   SolverOptions no_body = good;

@@ -120,8 +120,8 @@ bool ContactSurface::is_excluded(const std::vector<int>& around_first,
 
 // bound_of_node: Bound of one node.
 template <class Bound, class BoundOfNode, class IsNear>
-void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near,
-                                 const Visit& visit) const {
+void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit,
+                                 const SearchOmissions& omitted) const {
   std::vector<Bound> nodes(around_.size()), of_triangles(static_cast<size_t>(triangles_.cols())), of_tree;
   for (size_t node = 0; node < around_.size(); ++node)
     if (!around_[node].empty()) nodes[node] = bound_of_node(static_cast<int>(node));
@@ -129,6 +129,10 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
   for (int t = 0; t < triangles_.cols(); ++t)
     for (int k = 0; k < 3; ++k) of_triangles[static_cast<size_t>(t)].include(bound(triangles_(k, t)));
   hierarchy_.fit(of_triangles, of_tree);
+  std::vector<Bound> of_edges;
+  of_edges.reserve(edges_.size());
+  if (!omitted.edges)
+    for (const SurfaceEdge& edge : edges_) of_edges.push_back(joined(bound(edge.a), bound(edge.b)));
 
   const auto visit_points = [&](int s, int t) {
     const int a = triangles_(0, t), b = triangles_(1, t), c = triangles_(2, t);
@@ -139,16 +143,17 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
     }
   };
   hierarchy_.for_each_pair(of_triangles, of_tree, is_near, [&](int s, int t) {
+    if (omitted.skips && omitted.skips(s, t)) return;
     visit_points(s, t);
     visit_points(t, s);
+    if (omitted.edges) return;
     for (const int e : own_edges_[static_cast<size_t>(s)]) {
       const SurfaceEdge& first = edges_[static_cast<size_t>(e)];
-      const Bound of_first = joined(bound(first.a), bound(first.b));
       for (const int f : own_edges_[static_cast<size_t>(t)]) {
         const SurfaceEdge& second = edges_[static_cast<size_t>(f)];
         if (first.a == second.a || first.a == second.b || first.b == second.a || first.b == second.b)
           continue;
-        if (!is_near(of_first, joined(bound(second.a), bound(second.b)))) continue;
+        if (!is_near(of_edges[static_cast<size_t>(e)], of_edges[static_cast<size_t>(f)])) continue;
         if (is_excluded(first.triangles, second.triangles)) continue;
         visit({PairKind::EdgeEdge, {first.a, first.b, second.a, second.b}, e, f});
       }
@@ -157,7 +162,7 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
-  visit_pairs<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, overlap, visit);
+  visit_pairs<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, overlap, visit, {});
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
@@ -167,18 +172,19 @@ void ContactSurface::visit_near(const Points& x, double reach, const MovingPart&
         return PartBounds{bounds_around(x.col(node), 0.5 * reach), moving.moves(node)};
       },
       [](const PartBounds& a, const PartBounds& b) { return (a.moves || b.moves) && overlap(a.at, b.at); },
-      visit);
+      visit, {});
 }
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,
-                                 const Visit& visit) const {
+                                 const Visit& visit, const SearchOmissions& omitted) const {
   const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
   visit_pairs<SweptBounds>(
       [&](int node) {
         return SweptBounds{bounds_around(x.col(node), 0.5 * reach),
                            {d.col(node).array(), d.col(node).array()}};
       },
-      [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit);
+      [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit,
+      omitted);
 }
 
 }  // namespace coapt

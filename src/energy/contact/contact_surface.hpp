@@ -20,6 +20,12 @@ struct FeaturePair {
   int first, second;
 };
 
+// What a search leaves out. skips: pairs of triangles whose features are not looked at; empty: none.
+struct SearchOmissions {
+  bool edges = false;
+  std::function<bool(int s, int t)> skips = {};
+};
+
 class ContactSurface {
  public:
   // triangles: those of the membrane, then, from column `membrane_count` on, those of the obstacles, which do
@@ -46,8 +52,8 @@ class ContactSurface {
 
   // Pairs whose boxes come within `reach` of each other while x moves to x + s d, 0 <= s <= most. `most` may
   // fall during the visit.
-  void visit_swept(const Points& x, const Points& d, double reach, const double& most,
-                   const Visit& visit) const;
+  void visit_swept(const Points& x, const Points& d, double reach, const double& most, const Visit& visit,
+                   const SearchOmissions& omitted = {}) const;
 
  private:
   struct SurfaceEdge {
@@ -57,7 +63,8 @@ class ContactSurface {
   };
 
   template <class Bound, class BoundOfNode, class IsNear>
-  void visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit) const;
+  void visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit,
+                   const SearchOmissions& omitted) const;
   bool is_excluded(const std::vector<int>& around_first, const std::vector<int>& around_second) const;
 
   Points rest_;

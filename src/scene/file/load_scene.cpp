@@ -5,7 +5,7 @@
 #include "scene/file/detail/read_parameters.hpp"
 #include "scene/file/scene.hpp"
 #include "scene/interventions/intervention.hpp"
-#include "xpbd/options.hpp"
+#include "xpbd/paper_numbers.hpp"
 
 #include <algorithm>
 #include <set>
@@ -208,27 +208,27 @@ DynamicOptions dynamics_from(const Parameters& values) {
 
 XpbdPaper paper_from(const Parameters& values) {
   XpbdPaper paper;
-  paper.stretch = values.number("stretch");
-  paper.bending = values.number("bending");
-  paper.area = values.number("area");
-  paper.tether = values.number("tether");
-  paper.contact = values.number("contact");
-  paper.compliance = values.number("compliance");
-  paper.flow = values.number("flow");
-  paper.pressure = values.number("pressure");
+  for (const PaperNumber& number : kPaperNumbers) paper.*number.value = values.number(number.name);
+  if (values.text("rest_angle") == "flat") paper.rest_angle = HingeRest::Flat;
   return paper;
 }
 
 XpbdOptions xpbd_from(const Parameters& values) {
-  XpbdOptions xpbd;
+  XpbdOptions xpbd = values.text("model") == "walczak-2019" ? walczak_2019() : XpbdOptions{};
+  const auto says = [&](const char* key, const char* choice, auto& option, auto otherwise, auto meant) {
+    if (values.has(key)) option = values.text(key) == choice ? meant : otherwise;
+  };
   xpbd.time_step = values.number_or("time_step", 0);
-  xpbd.iterations = values.integer("iterations");
-  xpbd.steps = values.integer("steps");
-  xpbd.motion_time = values.number_or("motion_time", 0);
-  xpbd.damping = values.number("damping");
+  if (values.has("iterations")) xpbd.iterations = values.integer("iterations");
+  if (values.has("steps")) xpbd.steps = values.integer("steps");
+  xpbd.motion_time = values.number_or("motion_time", xpbd.motion_time);
+  xpbd.rest_move = values.number_or("rest_move", xpbd.rest_move);
+  xpbd.damping = values.number_or("damping", xpbd.damping);
   xpbd.thickness = values.number("thickness");
-  if (values.text("stiffness") == "paper") xpbd.stiffness = XpbdStiffness::Paper;
-  if (values.text("forces") == "paper") xpbd.forces = XpbdForces::Paper;
+  says("stiffness", "paper", xpbd.stiffness, XpbdStiffness::Material, XpbdStiffness::Paper);
+  says("forces", "paper", xpbd.forces, XpbdForces::Scene, XpbdForces::Paper);
+  says("contact_features", "vertices", xpbd.features, XpbdContactFeatures::VerticesAndEdges,
+       XpbdContactFeatures::Vertices);
   if (values.text("phase") == "diastole") xpbd.phase = HeartPhase::Diastole;
   if (values.has("paper")) xpbd.paper = paper_from(values.object("paper"));
   return xpbd;

@@ -1,5 +1,8 @@
 #include "scene/file/solver_keys.hpp"
 
+#include "core/number_text.hpp"
+#include "xpbd/paper_numbers.hpp"
+
 namespace coapt {
 namespace {
 
@@ -60,120 +63,108 @@ KeySpec dynamics_key() {
       .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
 }
 
-KeySpec paper_share(const char* name, const char* fallback, const char* what) {
-  return {.name = name,
-          .fallback = fallback,
-          .min = 0,
-          .max = 1,
-          .doc = std::string("Share of a correction of ") + what + " that is applied in one sweep."};
-}
-
 KeySpec paper_key() {
+  std::vector<KeySpec> keys;
+  for (const PaperNumber& number : kPaperNumbers)
+    keys.push_back({.name = number.name,
+                    .fallback = exact_text(XpbdPaper{}.*number.value),
+                    .min = 0,
+                    .max = number.is_share ? 1 : kInfinity,
+                    .doc = number.doc});
+  keys.push_back({.name = "rest_angle",
+                  .kind = KeyKind::Choice,
+                  .fallback = "\"initial\"",
+                  .choices = {"initial", "flat"},
+                  .doc = "To what angle hinges want to fold; the paper allows both."});
+  return {.name = "paper",
+          .kind = KeyKind::Object,
+          .object = {.keys = std::move(keys)},
+          .doc =
+              "Numbers for stiffness \"paper\" and forces \"paper\"; the defaults are those of Walczak et "
+              "al. 2019 (table 1, eq. 15, section 3.3)."};
+}
+
+KeySpec choice_key(const char* name, const char* fallback, std::vector<std::string> choices,
+                   const char* doc) {
   return {
-      .name = "paper",
-      .kind = KeyKind::Object,
-      .object = {.keys = {paper_share("stretch", "0.1", "edges"),
-                          paper_share("bending", "0.1", "hinges"),
-                          paper_share("area", "0.1", "areas (the paper gives none)"),
-                          paper_share("tether", "1", "chords"),
-                          paper_share("contact", "1", "contact"),
-                          {.name = "compliance",
-                           .fallback = "1e-5",
-                           .min = 0,
-                           .doc = "Compliance alpha of every constraint, in mm, s and masses of 1; 0: plain "
-                                  "position-based dynamics."},
-                          {.name = "flow",
-                           .fallback = "50",
-                           .min = 0,
-                           .doc = "Weight w of the flow field, a force on the mass 1 in mm and s."},
-                          {.name = "pressure",
-                           .fallback = "100",
-                           .min = 0,
-                           .doc = "Weight p of the pressure, a force on the mass 1 in mm and s."}}},
-      .doc =
-          "Numbers for stiffness \"paper\" and forces \"paper\"; the defaults are those of Walczak et al. "
-          "2019."};
+      .name = name, .kind = KeyKind::Choice, .fallback = fallback, .choices = std::move(choices), .doc = doc};
 }
 
-KeySpec stiffness_key() {
-  return {.name = "stiffness",
-          .kind = KeyKind::Choice,
-          .fallback = "\"material\"",
-          .choices = {"material", "paper"},
-          .doc =
-              "material: compliances and masses from the moduli, sections and density of the scene, "
-              "so that the result can be compared; paper: the mass 1 and the numbers of the paper "
-              "for all."};
-}
-
-KeySpec forces_key() {
-  return {.name = "forces",
-          .kind = KeyKind::Choice,
-          .fallback = "\"scene\"",
-          .choices = {"scene", "paper"},
-          .doc =
-              "scene: the loads of the scene; paper: flow field and pressure of the paper, by the "
-              "set \"annulus\"."};
-}
-
-KeySpec phase_key() {
-  return {.name = "phase",
-          .kind = KeyKind::Choice,
-          .fallback = "\"systole\"",
-          .choices = {"systole", "diastole"},
-          .doc =
-              "systole: the forces as they are, they close a valve; diastole: turned round, they open "
-              "it while the prescribed nodes go back. A start in the shape at rest is closed first."};
+// What model, and what it decides where these are not given.
+std::vector<KeySpec> model_keys() {
+  return {
+      choice_key(
+          "model", "\"coapt\"", {"coapt", "walczak-2019"},
+          "What keys mean that are not given. coapt: the scene's own material and loads, 5 % damping and "
+          "20 sweeps, none of it the paper's; walczak-2019: the paper by its table 1 and equations: "
+          "stiffness and forces \"paper\", no damping, contact of vertices, 3 sweeps; ours are when it "
+          "rests and how long the annulus moves."),
+      choice_key("stiffness", "", {"material", "paper"},
+                 "material (default without a model): compliances and masses from the moduli, sections and "
+                 "density of the scene, so that the result can be compared; paper: the mass 1, the numbers "
+                 "of the paper for all, and areas and angles as in its eq. 13 and 14."),
+      choice_key("forces", "", {"scene", "paper"},
+                 "scene (default without a model): the loads of the scene; paper: flow field and pressure "
+                 "of the paper (eq. 16-19), by the set \"annulus\"."),
+      choice_key("contact_features", "", {"vertices_and_edges", "vertices"},
+                 "What contact keeps apart: vertices from triangles and edges from edges (default without "
+                 "a model), or vertices alone, as in the paper, which lets edges cross."),
+      choice_key("phase", "\"systole\"", {"systole", "diastole"},
+                 "systole: the forces as they are, they close a valve; diastole: turned round, they open "
+                 "it while the prescribed nodes go back. A start in the shape at rest is closed first."),
+      paper_key()};
 }
 
 KeySpec xpbd_key() {
-  return {
-      .name = "xpbd",
-      .kind = KeyKind::Object,
-      .object =
-          {.keys =
-               {{.name = "time_step",
-                 .dimension = kTime,
-                 .min = 0,
-                 .excludes_min = true,
-                 .doc = "Time step; default: 0.1 ms with stiffness \"material\", 5 ms with \"paper\"."},
-                {.name = "iterations",
-                 .kind = KeyKind::Integer,
-                 .fallback = "20",
-                 .min = 1,
-                 .max = 100000,
-                 .doc = "Sweeps over all constraints in a step; the paper has 3 and 20."},
-                {.name = "steps",
-                 .kind = KeyKind::Integer,
-                 .fallback = "2000",
-                 .min = 1,
-                 .doc = "Greatest number of time steps in a phase; it ends before where nothing moves any "
-                        "more."},
-                {.name = "motion_time",
-                 .dimension = kTime,
-                 .min = 0,
-                 .excludes_min = true,
-                 .doc =
-                     "Time in which the prescribed nodes go their way, a piece in every step; default: half "
-                     "the time of all steps."},
-                {.name = "damping",
-                 .fallback = "0.05",
-                 .min = 0,
-                 .max = 1,
-                 .doc = "Share of its velocity that a node loses in a step."},
-                {.name = "thickness",
-                 .dimension = kLength,
-                 .fallback = "\"0.5 mm\"",
-                 .min = 0,
-                 .excludes_min = true,
-                 .doc = "Distance that contact keeps between facets, in place of that of the contact term."},
-                stiffness_key(),
-                forces_key(),
-                phase_key(),
-                paper_key()}},
-      .doc =
-          "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of the "
-          "solver."};
+  std::vector<KeySpec> keys = model_keys();
+  keys.insert(
+      keys.end(),
+      {{.name = "time_step",
+        .dimension = kTime,
+        .min = 0,
+        .excludes_min = true,
+        .doc = "Time step; default: 0.1 ms with stiffness \"material\", 5 ms with \"paper\"."},
+       {.name = "iterations",
+        .kind = KeyKind::Integer,
+        .min = 1,
+        .max = 100000,
+        .doc = "Sweeps over all constraints in a step; default: 20, with model \"walczak-2019\" 3; "
+               "the paper has both."},
+       {.name = "steps",
+        .kind = KeyKind::Integer,
+        .min = 1,
+        .doc = "Greatest number of time steps in a phase; it ends before where nothing moves any "
+               "more. Default: 2000, with model \"walczak-2019\" 5000."},
+       {.name = "rest_move",
+        .dimension = kLength,
+        .min = 0,
+        .excludes_min = true,
+        .doc = "A phase ends where the moves of all nodes in a step, root mean square, have been less "
+               "than this for 50 steps. Default: where no node has moved by more than 1e-7 of the "
+               "extent, with model \"walczak-2019\" 0.01 mm, which is ours."},
+       {.name = "motion_time",
+        .dimension = kTime,
+        .min = 0,
+        .excludes_min = true,
+        .doc = "Time in which the prescribed nodes go their way, a piece in every step; default: half "
+               "the time of all steps, with model \"walczak-2019\" 2 s, which is ours."},
+       {.name = "damping",
+        .min = 0,
+        .max = 1,
+        .doc = "Share of its velocity that a node loses in a step; default: 0.05, which is ours, "
+               "and 0 with model \"walczak-2019\"."},
+       {.name = "thickness",
+        .dimension = kLength,
+        .fallback = "\"0.5 mm\"",
+        .min = 0,
+        .excludes_min = true,
+        .doc = "Distance that contact keeps between facets, in place of that of the contact term."}});
+  return {.name = "xpbd",
+          .kind = KeyKind::Object,
+          .object = {.keys = std::move(keys)},
+          .doc =
+              "How xpbd moves the scene (Macklin et al. 2016, Walczak et al. 2019); threads are those of "
+              "the solver."};
 }
 
 KeySpec continuation_key() {

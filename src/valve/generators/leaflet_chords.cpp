@@ -1,13 +1,13 @@
 #include "valve/generators/leaflet_chords.hpp"
 
 #include "core/error.hpp"
-#include "mesh/vertex_graph.hpp"
+#include "mesh/triangle_mesh.hpp"
+#include "valve/generators/chord_insertions.hpp"
 #include "valve/generators/chord_junctions.hpp"
+#include "valve/generators/unseen_tips.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
-#include <random>
 #include <set>
 
 namespace coapt {
@@ -27,116 +27,23 @@ const std::vector<NamedZone>& named_zones() {
   return kZones;
 }
 
-// The distance of each vertex from the nearest source along edges, and which source that is (its place in the
-// list); infinity and -1 where no way leads. Dijkstra.
-struct Distances {
-  std::vector<double> length;
-  std::vector<int> source;
-};
-
-Distances distances_from(const TriangleMesh& mesh, const VertexGraph& graph,
-                         const std::vector<int>& sources) {
-  Distances result{std::vector<double>(static_cast<size_t>(mesh.vertex_count()), kInfinity),
-                   std::vector<int>(static_cast<size_t>(mesh.vertex_count()), -1)};
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (size_t k = 0; k < sources.size(); ++k) {
-    result.length[static_cast<size_t>(sources[k])] = 0;
-    result.source[static_cast<size_t>(sources[k])] = static_cast<int>(k);
-    open.emplace(0, sources[k]);
-  }
-  while (!open.empty()) {
-    const auto [length, v] = open.top();
-    open.pop();
-    if (length > result.length[static_cast<size_t>(v)]) continue;
-    for (const int w : graph.of(v)) {
-      const double way = length + (mesh.vertices.col(v) - mesh.vertices.col(w)).norm();
-      if (way >= result.length[static_cast<size_t>(w)]) continue;
-      result.length[static_cast<size_t>(w)] = way;
-      result.source[static_cast<size_t>(w)] = result.source[static_cast<size_t>(v)];
-      open.emplace(way, w);
-    }
-  }
-  return result;
-}
-
-// A vertex at which a chord may end, in coordinates along and across the leaflets [mm].
-struct Site {
-  int vertex = 0;
-  double along = 0;    // of the free edge's length, at its nearest point
-  double height = 1;   // 0 at the annulus, 1 at the free edge
-  double leaflet = 0;  // from annulus to free edge there
-};
-
-struct LeafletSites {
-  std::vector<Site> free_edge, inside;
-  double length = 0;  // of the free edge
-};
-
-LeafletSites sites_of(const Valve& valve) {
-  const TriangleMesh& mesh = valve.leaflets;
-  const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
-  const Distances from_annulus = distances_from(mesh, graph, valve.annulus);
-  const Distances from_edge = distances_from(mesh, graph, valve.free_edge);
-  LeafletSites sites;
-  std::vector<double> along;
-  for (size_t k = 0; k < valve.free_edge.size(); ++k) {
-    const int v = valve.free_edge[k], next = valve.free_edge[(k + 1) % valve.free_edge.size()];
-    along.push_back(sites.length);
-    const auto near = graph.of(v);
-    if (std::find(near.begin(), near.end(), next) != near.end())  // else the next leaflet begins
-      sites.length += (mesh.vertices.col(v) - mesh.vertices.col(next)).norm();
-  }
-  std::set<int> rims(valve.annulus.begin(), valve.annulus.end());
-  for (size_t k = 0; k < valve.free_edge.size(); ++k) {
-    // A vertex of both rims (a commissure down to the annulus) does not move: no chord ends there.
-    if (!rims.contains(valve.free_edge[k])) sites.free_edge.push_back({valve.free_edge[k], along[k], 1, 0});
-  }
-  rims.insert(valve.free_edge.begin(), valve.free_edge.end());
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const auto i = static_cast<size_t>(v);
-    const double whole = from_annulus.length[i] + from_edge.length[i];
-    if (rims.contains(v) || !std::isfinite(whole)) continue;
-    sites.inside.push_back(
-        {v, along[static_cast<size_t>(from_edge.source[i])], from_annulus.length[i] / whole, whole});
-  }
-  return sites;
-}
-
-// The free site nearest to a place; it is taken.
-int take_nearest(std::vector<Site>& free_sites, double along, double height, double length) {
-  const auto cost = [&](const Site& site) {
-    const double around = std::abs(site.along - along), up = site.leaflet * (site.height - height);
-    const double step = std::min(around, length - around);
-    return step * step + up * up;
-  };
-  const auto best = std::min_element(free_sites.begin(), free_sites.end(),
-                                     [&](const Site& a, const Site& b) { return cost(a) < cost(b); });
-  const int vertex = best->vertex;
-  free_sites.erase(best);
-  return vertex;
-}
-
-int insertions_of_a_chord(const LeafletChordOptions& options) {
-  int insertions = 1;
-  for (int level = 1; level < options.levels; ++level) insertions *= options.branches;
-  return insertions;
-}
-
 // Builds the network, from the tips to the leaflets.
 class LeafletChordBuilder {
  public:
-  LeafletChordBuilder(const Valve& valve, const LeafletChordOptions& options, const Plane& plane)
+  LeafletChordBuilder(const Valve& valve, const LeafletChordOptions& options, const Plane& plane,
+                      const Points& tips)
       : X_(valve.leaflets.vertices), options_(options), plane_(plane) {
-    network_.papillary = valve.chords.papillary;
+    network_.papillary = tips;
     network_.papillary_closed = valve.chords.papillary_closed;
   }
 
-  void add(const ChordZone& zone, const std::vector<int>& vertices) {
+  void add(const PlannedChord& chord) {
     const Points& tips = network_.papillary;
-    const int tip = nearest_tip(tips, 0, static_cast<int>(tips.cols()), middle(X_, vertices));
+    const int tip = chord.tip >= 0
+                        ? chord.tip
+                        : nearest_tip(tips, 0, static_cast<int>(tips.cols()), middle(X_, chord.vertices));
     const Points& closed = network_.papillary_closed.cols() > 0 ? network_.papillary_closed : tips;
-    grow(zone, {{ChordEnd::Kind::Papillary, tip}, tips.col(tip), closed.col(tip)}, vertices, 1);
+    grow(chord.zone, {{ChordEnd::Kind::Papillary, tip}, tips.col(tip), closed.col(tip)}, chord.vertices, 1);
   }
 
   ChordNetwork finish() {
@@ -165,8 +72,12 @@ class LeafletChordBuilder {
   void join(const ChordZone& zone, const Place& from, const Place& to, int level) {
     const double area = options_.level_areas.empty() ? zone.area / std::pow(options_.branches, level - 1)
                                                      : options_.level_areas[static_cast<size_t>(level - 1)];
-    network_.chords.push_back(
-        {from.end, to.end, rest_length(from.expected, to.expected), area, zone.material, level});
+    // The paper's sum: of the vertex's distances from the plane and from the tip, where both are.
+    const double length = options_.lengths == ChordLengths::Sum
+                              ? options_.scale * (std::abs((to.start - plane_.centre).dot(plane_.normal)) +
+                                                  (to.start - from.start).norm())
+                              : rest_length(from.expected, to.expected);
+    network_.chords.push_back({from.end, to.end, length, area, zone.material, level});
   }
 
   Place junction(const Place& from, const std::vector<int>& vertices) {
@@ -225,6 +136,10 @@ std::vector<std::string> option_defects(const LeafletChordOptions& o) {
     if (!(zone.height > 0 && zone.height <= 1) || !(zone.area > 0))
       defects.push_back("chords: zone of the " + zone.material +
                         " chords: height must be in (0, 1] and area above 0");
+  if (o.lengths == ChordLengths::Sum && o.levels > 1)
+    defects.push_back("chords: lengths: the sum of distances is that of straight chords; take levels 1");
+  if (!o.insertions.empty() && o.levels > 1)
+    defects.push_back("chords: insertions: each has a straight chord of its own; take levels 1");
   if (!o.level_areas.empty() && static_cast<int>(o.level_areas.size()) != o.levels)
     defects.push_back("chords: level_areas: holds " + std::to_string(o.level_areas.size()) + " areas for " +
                       std::to_string(o.levels) + " levels");
@@ -233,30 +148,37 @@ std::vector<std::string> option_defects(const LeafletChordOptions& o) {
   return defects;
 }
 
-// The annulus plane, closed where that is known, its normal away from the tips.
+// The annulus plane, closed where that is known, its normal away from the tips, or from the leaflets where
+// there are none.
 Plane annulus_plane(const Valve& valve) {
   Plane plane = best_fit_plane(valve.annulus_closed.cols() > 0
                                    ? valve.annulus_closed
                                    : Points(valve.leaflets.vertices(Eigen::all, valve.annulus)));
-  const Vec3 tips = valve.chords.papillary.rowwise().mean();
-  if ((tips - plane.centre).dot(plane.normal) > 0) plane.normal = -plane.normal;
+  const bool has_tips = valve.chords.papillary.cols() > 0;
+  const Vec3 below = (has_tips ? valve.chords.papillary : valve.leaflets.vertices).rowwise().mean();
+  if ((below - plane.centre).dot(plane.normal) > 0) plane.normal = -plane.normal;
   return plane;
 }
 
-void check_tips(const Valve& valve, const Plane& plane, double depth, std::vector<std::string>& defects) {
-  for (const Points& tips : {valve.chords.papillary, valve.chords.papillary_closed})
+void check_tips(const Points& open, const Points& closed, const Plane& plane, double depth) {
+  std::vector<std::string> defects;
+  for (const Points& tips : {open, closed})
     for (int k = 0; k < tips.cols(); ++k)
       if ((tips.col(k) - plane.centre).dot(plane.normal) >= -depth)
         defects.push_back(
             "chords: tip " + std::to_string(k) +
             ": is not below the annulus plane by more than the depth of the insertions, so that a "
             "chord from it could hold nothing down");
+  if (!defects.empty()) throw InputError(std::move(defects));
 }
 
-void shift(std::vector<double>& along, double step, unsigned seed) {
-  if (seed == 0) return;
-  std::mt19937 random(seed);
-  for (double& place : along) place += step / 3 * (2 * (static_cast<double>(random()) / 4294967296.0) - 1);
+// The area that a loop encloses as seen along its area vector [length^2].
+double enclosed_area(const Points& X, const std::vector<int>& loop) {
+  Vec3 twice = Vec3::Zero();
+  const Vec3 origin = X.col(loop[0]);
+  for (size_t k = 0; k + 1 < loop.size(); ++k)
+    twice += (X.col(loop[k]) - origin).cross(X.col(loop[k + 1]) - origin);
+  return 0.5 * twice.norm();
 }
 
 }  // namespace
@@ -278,8 +200,12 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
   if (valve.annulus.size() < 3)
     defects.push_back("chords: the valve names no annulus of three vertices or more");
   if (valve.free_edge.empty()) defects.push_back("chords: the valve names no free edge");
-  if (valve.chords.papillary.cols() == 0) defects.push_back("chords: no papillary tips are given");
-  const auto closed_tips = valve.chords.papillary_closed.cols();
+  const auto tip_count = valve.chords.papillary.cols(), closed_tips = valve.chords.papillary_closed.cols();
+  const auto groups = static_cast<Eigen::Index>(options.insertions.size()),
+             wanted = tip_count > 0 ? tip_count : 2;
+  if (groups > 1 && groups != wanted)
+    defects.push_back("chords: insertions: " + std::to_string(groups) + " groups for " +
+                      std::to_string(wanted) + " tips; give one for each tip, or a single one");
   if (closed_tips > 0 && closed_tips != valve.chords.papillary.cols())
     defects.push_back("chords: there are as many closed papillary tips as open ones, or none");
   for (const auto& [name, tips] :
@@ -290,33 +216,11 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
                           ": a coordinate is not finite or greater than 1e9 mm");
   if (!defects.empty()) throw InputError(defects);
   const Plane plane = annulus_plane(valve);
-  check_tips(valve, plane, options.depth, defects);
-
-  LeafletSites sites = sites_of(valve);
-  const int per_chord = insertions_of_a_chord(options), wanted = options.count * per_chord;
-  LeafletChordBuilder builder(valve, options, plane);
-  for (const ChordZone& zone : options.zones) {
-    std::vector<Site>& free_sites = zone.height < 1 ? sites.inside : sites.free_edge;
-    if (static_cast<size_t>(wanted) > free_sites.size()) {
-      defects.push_back("chords: zone of the " + zone.material + " chords: " + std::to_string(wanted) +
-                        " insertions, but only " + std::to_string(free_sites.size()) +
-                        " free vertices; take fewer chords, branches or levels, or a finer mesh");
-      continue;
-    }
-    if (!defects.empty()) continue;
-    const double step = sites.length / wanted;
-    std::vector<double> along;
-    for (int k = 0; k < wanted; ++k) along.push_back((k + 0.5) * step);
-    shift(along, step, options.seed);
-    for (int k = 0; k < wanted; k += per_chord) {
-      std::vector<int> vertices;
-      for (int i = k; i < k + per_chord; ++i)
-        vertices.push_back(
-            take_nearest(free_sites, along[static_cast<size_t>(i)], zone.height, sites.length));
-      builder.add(zone, vertices);
-    }
-  }
-  if (!defects.empty()) throw InputError(defects);
+  std::vector<PlannedChord> planned = planned_chords(valve, options);
+  const Points tips = tip_count > 0 ? valve.chords.papillary : unseen_tips(valve, plane, planned);
+  check_tips(tips, valve.chords.papillary_closed, plane, options.depth);
+  LeafletChordBuilder builder(valve, options, plane, tips);
+  for (const PlannedChord& chord : planned) builder.add(chord);
   return builder.finish();
 }
 
@@ -331,6 +235,12 @@ void find_rims(Valve& valve) {
           "JSON or in the scene's sets");
     double farthest = -1;
     for (const auto& loop : loops) {
+      if (valve.chords.papillary.cols() == 0) {
+        const double enclosed = enclosed_area(valve.leaflets.vertices, loop);
+        if (enclosed > farthest) valve.annulus = loop;
+        farthest = std::max(farthest, enclosed);
+        continue;
+      }
       double distance = 0;
       for (const int v : loop)
         distance += (valve.chords.papillary.colwise() - Vec3(valve.leaflets.vertices.col(v)))

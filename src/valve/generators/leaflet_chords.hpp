@@ -20,6 +20,12 @@ struct ChordZone {
 ChordZone chord_zone(const std::string& name);
 std::vector<std::string> chord_zone_names();
 
+// What the rest length of a chord is.
+enum class ChordLengths {
+  ToPlane,  // from the (closed) tip to where the vertex is expected on the annulus plane
+  Sum  // the vertex's distance from the plane and that from the tip, of the open valve: of straight chords
+};
+
 struct LeafletChordOptions {
   std::vector<ChordZone> zones = {ChordZone{"primary", 1, 0.4}};
   int count = 24;    // chords of each zone that leave the tips, over all tips together
@@ -29,30 +35,38 @@ struct LeafletChordOptions {
   double depth = 0;  // how far below the annulus plane the insertions are expected in the closed valve [mm]
   std::vector<double> level_areas = {};  // of one chord at each level [mm^2]; empty: as the zone says, shared
                                          // out equally at each branch point
+  ChordLengths lengths = ChordLengths::ToPlane;
+  // Vertices at which straight chords end, in the place of zones and count: one group, or one for each tip.
+  // Chords of the free edge are primary, those of the body secondary.
+  std::vector<std::vector<int>> insertions = {};
   unsigned seed = 0;  // 0: insertions at equal steps; any other shifts each by up to a third of one
 };
 
 // The chords of the valve: its leaflets, annulus (annulus_closed where it is known), free edge, and
-// chords.papillary (papillary_closed where they are known) are read, its chords are not. mm.
+// chords.papillary (papillary_closed where they are known) are read, its chords are not. A valve without
+// chords.papillary gets two tips (unseen_tips.hpp). mm.
 //
-// Source of the straight chords: Walczak et al. 2019, as we define it: a leaflet vertex is expected where it
-// projects onto the closed annulus' best plane, `depth` below it; the rest length is `scale` times the
-// distance from there to the closed papillary tip. A branch point is expected at 0.55 of the way to the
-// middle of the insertions that it serves, and rest lengths are `scale` times the distances between expected
-// places. Rest lengths are never changed to fit the open valve: with a small scale chords may pull from the
-// start. Junctions start where no chord pulls if there is such a place.
+// Source of the straight chords: Walczak et al. 2019, section 3.5. Sum is its rule; ToPlane, which knows
+// where the closed tips are, is ours: a leaflet vertex is expected where it projects onto the closed annulus'
+// best plane, `depth` below it; the rest length is `scale` times the distance from there to the closed
+// papillary tip. A branch point is expected at 0.55 of the way to the middle of the insertions that it
+// serves, and rest lengths are `scale` times the distances between expected places. Rest lengths are never
+// changed to fit the open valve: with a small scale chords may pull from the start. Junctions start where no
+// chord pulls if there is such a place.
 //
 // Insertions lie at equal steps of the free edge's length (inside: at the vertices whose nearest point of it
 // is there, at the zone's height), each at a vertex of its own; count x branches^(levels - 1) of each zone.
 // Neighbours share a chord, which comes from the tip nearest to them. Deterministic.
 //
-// Throws InputError with all defects: options out of range, no tips, tips that are not finite, beyond
-// kGreatestCoordinate, or on or above the plane, no annulus or free edge, fewer vertices than insertions.
+// Throws InputError with all defects: options out of range, insertions that are no vertices, tips that are
+// not finite, beyond kGreatestCoordinate, or on or above the plane, no annulus or free edge, fewer vertices
+// than insertions.
 ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& options);
 
 // Names the rims of a mesh from its boundary, as far as they are not named: the loop farthest from the tips
-// is the annulus, all boundary vertices off the annulus are the free edge. Throws InputError where there is
-// no other loop for the free edge. Pre: as boundary_loops.
+// is the annulus, without tips the one that encloses the greatest area, all boundary vertices off the annulus
+// are the free edge. Throws InputError where there is no other loop for the free edge. Pre: as
+// boundary_loops.
 void find_rims(Valve& valve);
 
 }  // namespace coapt

@@ -106,6 +106,61 @@ TEST(LeafletChordsTest, MeasuresStraightChordsFromTheAnnulusPlane) {
     EXPECT_EQ(*b - *a, 3);  // equal steps
 }
 
+// Walczak et al. 2019, section 3.5: by hand. A tip as far below the centroid of its insertions as that is
+// below the plane; a chord as long as the distances of its insertion from plane and tip together.
+TEST(LeafletChordsTest, PlacesTipsThatNobodySawByTheInsertions) {
+  Valve valve = funnel();
+  valve.chords.papillary.resize(3, 0);
+  find_rims(valve);
+  ASSERT_EQ(*std::max_element(valve.annulus.begin(), valve.annulus.end()),
+            kColumns - 1);  // encloses the most
+  const int edge = kColumns * kRows, body = kColumns * kRows / 2;
+  const std::vector<int> right{edge, edge + 5, body + 58}, left{edge + 30, edge + 27, body + 33};
+  std::vector<int> all = right;
+  all.insert(all.end(), left.begin(), left.end());
+  valve.commissures = {30, 0};  // from left to right
+  for (const bool in_groups : {true, false}) {
+    const ChordNetwork network =
+        leaflet_chords(valve, {.scale = 1.1,
+                               .lengths = ChordLengths::Sum,
+                               .insertions = in_groups ? std::vector<std::vector<int>>{left, right}
+                                                       : std::vector<std::vector<int>>{all}});
+    ASSERT_EQ(network.papillary.cols(), 2);
+    ASSERT_EQ(network.chords.size(), 6u);
+    for (const auto& [tip, ends] : {std::pair{0, left}, {1, right}}) {
+      Vec3 expected = valve.leaflets.vertices(Eigen::all, ends).rowwise().mean();
+      expected.z() *= 2;  // the plane is z = 0
+      EXPECT_LT((network.papillary.col(tip) - expected).norm(), 1e-9);
+    }
+    for (const Chord& chord : network.chords) {
+      const Vec3 end = valve.leaflets.vertices.col(chord.to.index),
+                 tip = network.papillary.col(chord.from.index);
+      EXPECT_NEAR(chord.rest_length, 1.1 * (-end.z() + (end - tip).norm()), 1e-9);
+      EXPECT_EQ(chord.from.index, end.x() > 0 ? 1 : 0);
+      EXPECT_EQ(chord.material, chord.to.index >= edge ? "primary" : "secondary");
+    }
+  }
+}
+
+// Where nobody names insertions either: half of the chords of each zone to each tip, by the longest diameter.
+TEST(LeafletChordsTest, PlacesTipsByInsertionsOfItsOwn) {
+  Valve valve = funnel();
+  valve.leaflets.vertices.row(1) *= 1.3;
+  valve.chords.papillary.resize(3, 0);
+  find_rims(valve);
+  const ChordNetwork network =
+      leaflet_chords(valve, {.zones = {chord_zone("free_edge"), chord_zone("rough")}, .count = 10});
+  ASSERT_EQ(network.papillary.cols(), 2);
+  EXPECT_LT(network.papillary(1, 0) * network.papillary(1, 1), -16);
+  EXPECT_LT(network.papillary.row(0).cwiseAbs().maxCoeff(), 1);
+  int of_first = 0;
+  for (const Chord& chord : network.chords) {
+    of_first += chord.from.index == 0 ? 1 : 0;
+    EXPECT_GT(valve.leaflets.vertices(1, chord.to.index) * network.papillary(1, chord.from.index), -9);
+  }
+  EXPECT_EQ(of_first, 10);
+}
+
 TEST(LeafletChordsTest, TakesTheClosedRimAndTipsWhereTheyAreKnown) {
   Valve valve = funnel_with_rims();
   for (const int v : valve.annulus) {
@@ -197,7 +252,18 @@ TEST(LeafletChordsTest, NamesEveryDefect) {
   EXPECT_EQ(defects(valve, {.count = 0, .levels = 9, .branches = 1, .scale = 0, .depth = -1}), 5u);
   EXPECT_EQ(defects(valve, {.levels = 2, .level_areas = {1}}), 1u);
   EXPECT_EQ(defects(valve, {.zones = {chord_zone("free_edge"), chord_zone("free_edge")}, .count = 61}), 2u);
-  EXPECT_EQ(defects(Valve(), {}), 3u);
+  EXPECT_EQ(defects(Valve(), {}), 2u);
+  const int last = valve.leaflets.vertex_count() - 1;
+  EXPECT_EQ(defects(valve, {.insertions = {{-1, last + 1, 0, last, last}}}), 4u);  // 0 is on the annulus
+  EXPECT_EQ(defects(valve, {.insertions = {{last}, {last - 9}}}), 1u);             // two groups, three tips
+  EXPECT_EQ(defects(valve, {.levels = 2, .lengths = ChordLengths::Sum, .insertions = {{last}}}), 2u);
+  Valve unseen = valve;
+  unseen.chords.papillary.resize(3, 0);
+  EXPECT_EQ(defects(unseen, {.insertions = {{last}, {}}}), 1u);  // an empty half
+  Valve flat = unseen;
+  flat.leaflets.vertices.row(2) *= -1e-3;
+  for (int k = 0; k < kColumns; ++k) flat.leaflets.vertices(2, kColumns + k) = -5;  // the body, not the edge
+  EXPECT_EQ(defects(flat, {}), 2u);              // both centroids above the plane
   EXPECT_EQ(defects(valve, {.depth = 30}), 3u);  // each tip
   Valve above = valve;
   above.chords.papillary(2, 1) = 3;
