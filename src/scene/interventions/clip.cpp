@@ -1,7 +1,7 @@
 // Edge-to-edge clips: vertices of two leaflets joined at places along their free edges.
 #include "core/error.hpp"
 #include "formats/json/suggestion.hpp"
-#include "scene/interventions/leaflet_coordinates.hpp"
+#include "scene/interventions/free_edges.hpp"
 
 #include <algorithm>
 #include <cmath>

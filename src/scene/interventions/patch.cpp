@@ -1,6 +1,6 @@
 // A patch: part of a leaflet replaced by another material.
 #include "core/error.hpp"
-#include "scene/interventions/leaflet_coordinates.hpp"
+#include "scene/interventions/free_edges.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <cmath>
@@ -35,7 +35,7 @@ void cover_by_patch(const InterventionSpec& spec, ValveEdit& valve) {
                      "\" has no place so far from its free edge there" + text);
   }
   Vector patch = Vector::Zero(mesh.triangle_count());
-  for (const int t : triangles_of(edge.leaflet, mesh)) {
+  for (const int t : leaflet_triangles(edge.leaflet, mesh)) {
     const Vec3 centroid = mesh.vertices(Eigen::all, mesh.triangles.col(t)).rowwise().mean();
     if ((centroid - mesh.vertices.col(middle)).norm() <= radius) patch[t] = 1;
   }
