@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/benchmarks.md from the data in bench/results.
+"""Writes the tables of docs/benchmarks.md from the data in bench/results, and those of docs/papers from its papers/.
 
-    bench/tables.py                 puts every table of the page in order; --check only says whether all are
+    bench/tables.py                 puts every table of the pages in order; --check only says whether all are
     bench/newton.py ... | bench/tables.py --record newton --machine epyc --command "bench/newton.py ..."
                                     keeps a table that a benchmark prints as bench/results/newton.csv, with today's date
 
@@ -20,6 +20,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/benchmarks.md"
 RESULTS = ROOT / "bench/results"
+PAPERS = ROOT / "docs/papers"
 MARKED = re.compile(r"^<!-- table (\w+) -->\n.*?^<!-- end -->\n", re.MULTILINE | re.DOTALL)
 KEYS = ("date", "machine", "command", "note")
 
@@ -60,7 +61,8 @@ def rendered(about: dict[str, str], rows: list[list[str]]) -> str:
 
 def page_text(page: str, results: pathlib.Path) -> tuple[str, list[str]]:
     """The page with its tables in order, and what is wrong with the data."""
-    machines = {row[0] for row in parsed((results / "machines.csv").read_text(encoding="utf-8"))[1][1:]}
+    known = results / "machines.csv" if (results / "machines.csv").exists() else RESULTS / "machines.csv"
+    machines = {row[0] for row in parsed(known.read_text(encoding="utf-8"))[1][1:]}
     tables, found = {}, []
     for path in sorted(results.glob("*.csv")):
         about, rows = parsed(path.read_text(encoding="utf-8"))
@@ -77,6 +79,19 @@ def page_text(page: str, results: pathlib.Path) -> tuple[str, list[str]]:
         return f"<!-- table {match[1]} -->\n{body}<!-- end -->\n" if body else match[0]
 
     return MARKED.sub(table, page), found
+
+
+def in_order(path: pathlib.Path, results: pathlib.Path, only_checks: bool) -> list[str]:
+    """Writes a page anew where its data have changed, or says that it should be; what is wrong with the data."""
+    if not path.exists():
+        return [f"{results.name}: no page {path.relative_to(ROOT)}"]
+    page = path.read_text(encoding="utf-8")
+    text, found = page_text(page, results)
+    if text != page and only_checks:
+        found.append(f"{path.relative_to(ROOT)} is not what its data say; bench/tables.py writes it")
+    elif text != page:
+        path.write_text(text, encoding="utf-8")
+    return found
 
 
 def cells(line: str) -> list[str]:
@@ -108,12 +123,9 @@ def main() -> int:
                  "command": given.command, "note": given.note}
         (RESULTS / f"{given.record}.csv").write_text(recorded(sys.stdin.read(), about), encoding="utf-8")
         return 0
-    page = PAGE.read_text(encoding="utf-8")
-    text, found = page_text(page, RESULTS)
-    if text != page and given.check:
-        found.append("docs/benchmarks.md is not what its data say; bench/tables.py writes it")
-    elif text != page:
-        PAGE.write_text(text, encoding="utf-8")
+    found = in_order(PAGE, RESULTS, given.check)
+    for data in sorted((RESULTS / "papers").iterdir()):
+        found += in_order(PAPERS / f"{data.name}.md", data, given.check)
     print("\n".join(found) if found else "tables: as their data are")
     return 1 if found else 0
 

@@ -2,6 +2,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
 #include "exchange/import.hpp"
+#include "exchange/valve_models.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -13,7 +14,7 @@ namespace coapt::cli {
 namespace {
 
 struct ImportArguments : SceneArguments {
-  std::string file, annulus_closed, papillary, papillary_closed, young, chord_young;
+  std::string file, annulus_closed, papillary, papillary_closed, young, chord_young, model;
   std::string bulk = "none";
   bool is_incompressible = false, keeps_mesh = false, takes_any_size = false;
 };
@@ -24,6 +25,7 @@ void import_file(const ImportArguments& arguments) {
   options.keeps_bulk = arguments.bulk == "stated";
   options.repairs = !arguments.keeps_mesh;
   options.takes_any_size = arguments.takes_any_size;
+  options.model = arguments.model;
   options.young = arguments.young;
   options.chord_young = arguments.chord_young;
   options.annulus_closed = arguments.annulus_closed;
@@ -69,6 +71,11 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                       "Points (.mrk.json): papillary tips for a valve without chords, tied to the free edge");
   command->add_option("--papillary-closed", arguments->papillary_closed,
                       "Points (.mrk.json) to which the papillary tips move, in their order");
+  command
+      ->add_option("--model", arguments->model,
+                   "Tissue, chords and load of a published model in the place of the file's")
+      ->check(CLI::IsMember(valve_model_names()))
+      ->excludes("--membrane");
   command->callback([arguments] { import_file(*arguments); });
 }
 

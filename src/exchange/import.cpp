@@ -6,6 +6,7 @@
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/valve_curves.hpp"
 #include "exchange/valve_doubts.hpp"
+#include "exchange/valve_models.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/json/read_json.hpp"
@@ -111,7 +112,7 @@ std::string support_text(const Support& support) {
   return text + " }";
 }
 
-std::string boundary_text(const Valve& valve) {
+std::string boundary_text(const Valve& valve, const ImportOptions& options) {
   std::vector<std::string> entries;
   if (!valve.annulus.empty())
     entries.push_back(valve.annulus_closed.cols() > 0
@@ -121,31 +122,43 @@ std::string boundary_text(const Valve& valve) {
     entries.push_back(valve.chords.papillary_closed.cols() > 0
                           ? "    { \"nodes\": \"papillary\", \"move_to\": \"papillary_closed\" }"
                           : "    { \"nodes\": \"papillary\", \"fix\": true }");
+  if (!options.held.empty())
+    entries.push_back("    // " + options.held_remark + "\n    { \"nodes\": " + options.held +
+                      ", \"fix\": true }");
   for (const Support& support : valve.supports) entries.push_back(support_text(support));
   return listed_text(entries);
 }
 
 std::string terms_text(const Valve& valve, const ImportOptions& options) {
   std::vector<std::string> terms = law_terms(valve, options);
+  terms.insert(terms.end(), options.more_terms.begin(), options.more_terms.end());
   terms.push_back(load_text(valve, options));
   const std::string contact = options.contact.empty() ? "barrier" : options.contact;
-  if (contact != "none") terms.push_back("    { \"type\": \"contact_" + contact + "\" }");
+  const bool has_range = contact == "facet" && !options.contact_range.empty();
+  if (contact != "none")
+    terms.push_back("    { \"type\": \"contact_" + contact + "\"" +
+                    (has_range ? ", \"range\": " + quoted(options.contact_range) : "") + " }");
   return listed_text(terms);
+}
+
+std::string solver_text(const Valve& valve, const ImportOptions& options) {
+  if (!options.solver.empty()) return "  \"solver\": " + options.solver;
+  return "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
+         "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
+         "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n"
+         "  \"solver\": { \"type\": \"newton\", \"tolerance\": " +
+         exact_text(options.tolerance) +
+         ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
+         (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
 }
 
 std::string scene_text(const Valve& valve, const ImportOptions& options) {
   std::string text = "{ // lengths in mm unless a unit is written\n";
   text += "  \"name\": " + quoted(valve.name.empty() ? "valve" : valve.name) + ",\n";
   text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
-  text += "  \"boundary\": " + boundary_text(valve) + ",\n";
+  text += "  \"boundary\": " + boundary_text(valve, options) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
-  text +=
-      "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
-      "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
-      "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n";
-  text += "  \"solver\": { \"type\": \"newton\", \"tolerance\": " + exact_text(options.tolerance) +
-          ", \"continuation\": { \"damped_steps\": " + std::to_string(kDampedSteps) + " }" +
-          (valve.leaflets.triangle_count() < kCascadeTriangles ? " }" : ", \"cascade\": true }");
+  text += solver_text(valve, options);
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
   return text + "\n}\n";
 }
@@ -256,8 +269,9 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
   if (is_model_file(file)) {
     ValveModel model = read_model(file);
     append(warnings, model.warnings);
-    if (options.pressure_model.empty() && model.is_pressure_dead) options.pressure_model = "frozen";
-    if (options.contact.empty() && !model.has_contact) {
+    if (options.model.empty() && options.pressure_model.empty() && model.is_pressure_dead)
+      options.pressure_model = "frozen";
+    if (options.model.empty() && options.contact.empty() && !model.has_contact) {
       options.contact = "none";
       warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
     }
@@ -269,6 +283,18 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
   append(warnings, read.warnings);
   for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
   return std::move(read.valve);
+}
+
+void apply_model(const std::string& file, Valve& valve, ImportOptions& options) {
+  if (!options.young.empty() || !options.chord_young.empty())
+    throw InputError(
+        "import: --young and --chord-young have no meaning beside --model, which says what leaflets and "
+        "chords are; leave one out");
+  try {
+    apply_valve_model(options.model, valve, options);
+  } catch (const InputError& error) {
+    throw error.within(file);
+  }
 }
 
 // Sizes of a valve that only a misread unit explains, and how to insist.
@@ -290,6 +316,7 @@ void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
   if (error) throw InputError(out_dir.string() + ": cannot be made: " + error.message());
   write_valve(out_dir / "valve.json", valve);
   formats::write_whole(out_dir / "scene.json", scene_text(valve, options));
+  if (!options.notes.empty()) formats::write_whole(out_dir / "README.md", options.notes);
 }
 
 std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
@@ -303,6 +330,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   const bool is_bare_mesh = !is_model_file(file) && formats::lower_extension(file) != ".json";
   bool is_valve = !is_bare_mesh && !valve.annulus.empty();
   detail::apply_curves(options, file.string(), valve, warnings);
+  if (!options.model.empty()) apply_model(file.string(), valve, options);
   is_valve |=
       !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
   if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);

@@ -56,6 +56,12 @@ class BenchmarkTables(unittest.TestCase):
         _, found = self.text("other")
         self.assertEqual(len(found), 2, found)
 
+    def test_every_paper_with_data_has_a_page(self):
+        found = tables.in_order(tables.PAPERS / "nobody-1900.md", self.results, True)
+        self.assertEqual(len(found), 1)
+        self.assertIn("docs/papers/nobody-1900.md", found[0])
+        self.assertTrue(list((tables.RESULTS / "papers").iterdir()))
+
     def test_records_what_a_benchmark_prints(self):
         printed = "words\n| case | CPU s |\n|---|---|\n| a, b | 2,490 |\n"
         data = tables.recorded(printed, {"date": "2026-11-21", "machine": "fast"})
