@@ -213,7 +213,7 @@ The paper prints none of its numbers.
 | chord lengths r | the shortest way along the valve's chords from a tip to the node; one tether for each node | eq. 15 has one; lengths are not stated |
 | annulus and tips | stay where the open valve has them | "imposed displacements" are allowed, none is described |
 | end of the minimisation | residual 1e-5 | not stated |
-| ring around the annulus | none. To add one: `"interventions": [{ "type": "ring", "size": "30 mm", "stiffness": "rigid" }]`, with the annulus free to move: take the `half_space` out | section 3 names the possibility |
+| ring around the annulus | none. To add one: `"interventions": [{ "type": "ring", "size": "30 mm", "stiffness": "rigid" }]`; nodes that the `half_space` holds besides the annulus stay, so take it out where they should follow | section 3 names the possibility |
 
 This energy has several minima near each other, among which method and round-off decide: see docs/papers/burlina-2010.md.
 )";
