@@ -297,6 +297,18 @@ void apply_model(const std::string& file, Valve& valve, ImportOptions& options) 
   }
 }
 
+// What the file does not state and the scene must have.
+void complete_valve(const std::string& file, const ImportOptions& options, Valve& valve,
+                    std::vector<std::string>& warnings) {
+  if (!options.keeps_bulk) leave_bulk_out(file, valve, warnings);
+  take_moduli(options, valve);
+  if (complete_thickness(options, valve))
+    warnings.push_back(file + ": states no leaflet thickness; the scene has " +
+                       exact_text(options.default_thickness) + " mm.");
+  if (valve.pressure == 0 && options.pressure.empty())
+    warnings.push_back(file + ": states no pressure; the scene has " + kUsualPressure + ".");
+}
+
 // Sizes of a valve that only a misread unit explains, and how to insist.
 void refuse_sizes(const std::string& file, const Valve& valve) {
   std::vector<std::string> defects;
@@ -330,28 +342,20 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   const bool is_bare_mesh = !is_model_file(file) && formats::lower_extension(file) != ".json";
   bool is_valve = !is_bare_mesh && !valve.annulus.empty();
   detail::apply_curves(options, file.string(), valve, warnings);
-  if (!options.model.empty()) apply_model(file.string(), valve, options);
   is_valve |=
       !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
-  if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
-  take_moduli(options, valve);
-  if (complete_thickness(options, valve))
-    warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
-                       exact_text(options.default_thickness) + " mm.");
-  if (valve.pressure == 0 && options.pressure.empty())
-    warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
+  if (options.model.empty()) complete_valve(file.string(), options, valve, warnings);
   if (valve.annulus.empty() && valve.supports.empty())
     warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
-  const double pressure = quantity_value(pressure_text(valve, options), kPressure);
-  if (is_valve && !options.takes_any_size) {
-    Valve loaded = valve;
-    loaded.pressure = pressure;
-    refuse_sizes(file.string(), loaded);
-  }
+  const auto loaded = [&] {
+    Valve under_pressure = valve;
+    under_pressure.pressure = quantity_value(pressure_text(valve, options), kPressure);
+    return under_pressure;
+  };
+  if (is_valve && !options.takes_any_size) refuse_sizes(file.string(), loaded());
   const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
-  Valve loaded = valve;
-  loaded.pressure = pressure;
-  append(warnings, valve_doubts(loaded, file.string()));
+  if (!options.model.empty()) apply_model(file.string(), valve, options);  // of the repaired mesh
+  append(warnings, valve_doubts(loaded(), file.string()));
   write_valve_scene(valve, out_dir, options);
   detail::write_repairs(out_dir / "repairs.csv", repair);
   return warnings;

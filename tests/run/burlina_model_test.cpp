@@ -10,6 +10,7 @@
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
 #include "valve/generators/mitral.hpp"
+#include "valve/generators/rough_valve.hpp"
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,26 @@ TEST_F(BurlinaModel, TethersTheRimAloneAndByTheLengthAlongTheChords) {
     }
     EXPECT_NEAR(chord.rest_length, shortest, 1e-12);
   }
+}
+
+double range_of(const Scene& scene) {
+  for (const TermSpec& term : scene.terms)
+    if (term.type == "contact_facet") return term.parameters.number("range");
+  return 0;
+}
+
+TEST_F(BurlinaModel, TakesTheRangeOfContactFromTheMesh) {
+  const auto shortest = [](const TriangleMesh& mesh) {
+    double length = kInfinity;
+    for (const Edge& edge : edges(mesh.triangles))
+      length = std::min(length, (mesh.vertices.col(edge.a) - mesh.vertices.col(edge.b)).norm());
+    return length;
+  };
+  const Valve even = mitral_valve({.triangles = 500}), rough = rough_valve({.seed = 1, .triangles = 400});
+  EXPECT_NEAR(range_of(scene(even)), shortest(even.leaflets), 1e-5);
+  const double mean = mean_edge_length(rough.leaflets.vertices, rough.leaflets.triangles);
+  EXPECT_LT(shortest(rough.leaflets), 0.1 * mean);
+  EXPECT_NEAR(range_of(scene(rough)), 0.25 * mean, 1e-5);
 }
 
 TEST_F(BurlinaModel, ComesToRest) {

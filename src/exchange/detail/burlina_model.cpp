@@ -100,11 +100,14 @@ void keep_primary_tethers(Valve& valve) {
   valve.chords.papillary_closed.resize(3, 0);
 }
 
-double shortest_edge(const TriangleMesh& mesh) {
+// "Of the order of the smallest distance between the mesh nodes"; on an uneven mesh the shortest edge is far
+// below the distance of the points at which facets are compared, and these would pass each other unseen.
+double contact_range(const TriangleMesh& mesh) {
+  constexpr double kLeastPerMeanEdge = 0.25;
   double shortest = std::numeric_limits<double>::infinity();
   for (const Edge& edge : edges(mesh.triangles))
     shortest = std::min(shortest, (mesh.vertices.col(edge.a) - mesh.vertices.col(edge.b)).norm());
-  return shortest;
+  return std::max(shortest, kLeastPerMeanEdge * mean_edge_length(mesh.vertices, mesh.triangles));
 }
 
 void check_parts(const std::string& model, Valve& valve) {
@@ -163,7 +166,7 @@ void apply_burlina(const PaperModel& model, Valve& valve, ImportOptions& options
                  ", \"normal\": " + vector_text(plane.normal) + " } }";
   options.held_remark = "The annulus' plane and the atrial side of it.";
   if (options.contact.empty()) options.contact = "facet";
-  options.contact_range = number_text(shortest_edge(valve.leaflets), 6) + " mm";
+  options.contact_range = number_text(contact_range(valve.leaflets), 6) + " mm";
   const bool is_small = valve.leaflets.triangle_count() <= kGreatestBfgs;
   options.solver = std::string("{ \"type\": ") + (is_small ? "\"bfgs\"" : "\"lbfgs\"") +
                    ", \"tolerance\": 1e-5, \"max_iterations\": 20000 }";
@@ -206,7 +209,7 @@ The paper prints none of its numbers.
 | thickness | $THICKNESS mm | the valve's, else 0.65 mm |
 | t, rho | 1 mJ, 1 mm | 3 N at an excess of 1 mm: chords carry up to about 1 N, so they stretch by a few per cent, "quasi-inextensible" |
 | n | 3 | the least that leaves the stiffness continuous |
-| delta | $RANGE mm, the shortest edge | as it says |
+| delta | $RANGE mm: the shortest edge, and at least a quarter of the mean one | as it says; on an uneven mesh facets would pass between the points at which they are compared |
 | C | what carries sixty times the load | below twice the load facets pass through each other |
 | points of the double integral | 3 for each facet | "further discretizing points within the facet" |
 | plane through the annulus | that of least squares | a saddle lies in no plane |
@@ -233,7 +236,7 @@ std::string burlina_notes(const Valve& valve) {
   std::string text = filled(kNotes, "$HELD", std::to_string(held));
   text = filled(text, "$PRESSURE", number_text(mmhg, 4) + " mmHg");
   text = filled(text, "$THICKNESS", number_text(valve.thickness, 4));
-  return filled(text, "$RANGE", number_text(shortest_edge(valve.leaflets), 4));
+  return filled(text, "$RANGE", number_text(contact_range(valve.leaflets), 4));
 }
 
 }  // namespace
