@@ -138,7 +138,7 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
       "chords, tissue, motion, pressure, and 300 to 20000 triangles unless they are given");
   command
       ->add_option("--model", arguments->model,
-                   "Mitral: tissue, chords and pressure of a published model of springs, or its method")
+                   "Mitral: tissue, chords and load of a published model, with a README.md of what it says")
       ->check(CLI::IsMember(valve_model_names()));
   command->add_option(
       "--annulus", arguments->annulus,

@@ -14,7 +14,7 @@ namespace coapt::cli {
 namespace {
 
 struct ImportArguments : SceneArguments {
-  std::string file, model, annulus_closed, papillary, papillary_closed, young, chord_young;
+  std::string file, annulus_closed, papillary, papillary_closed, young, chord_young, model;
   std::string bulk = "none";
   bool is_incompressible = false, keeps_mesh = false, takes_any_size = false;
 };
@@ -75,6 +75,11 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                       "Points (.mrk.json): papillary tips for a valve without chords, tied to the free edge");
   command->add_option("--papillary-closed", arguments->papillary_closed,
                       "Points (.mrk.json) to which the papillary tips move, in their order");
+  command
+      ->add_option("--model", arguments->model,
+                   "Tissue, chords and load of a published model in the place of the file's")
+      ->check(CLI::IsMember(valve_model_names()))
+      ->excludes("--membrane");
   command->callback([arguments] { import_file(*arguments); });
 }
 

@@ -112,7 +112,7 @@ std::string support_text(const Support& support) {
   return text + " }";
 }
 
-std::string boundary_text(const Valve& valve) {
+std::string boundary_text(const Valve& valve, const ImportOptions& options) {
   std::vector<std::string> entries;
   if (!valve.annulus.empty())
     entries.push_back(valve.annulus_closed.cols() > 0
@@ -122,6 +122,9 @@ std::string boundary_text(const Valve& valve) {
     entries.push_back(valve.chords.papillary_closed.cols() > 0
                           ? "    { \"nodes\": \"papillary\", \"move_to\": \"papillary_closed\" }"
                           : "    { \"nodes\": \"papillary\", \"fix\": true }");
+  if (!options.held.empty())
+    entries.push_back("    // " + options.held_remark + "\n    { \"nodes\": " + options.held +
+                      ", \"fix\": true }");
   for (const Support& support : valve.supports) entries.push_back(support_text(support));
   return listed_text(entries);
 }
@@ -130,17 +133,15 @@ std::string terms_text(const Valve& valve, const ImportOptions& options) {
   std::vector<std::string> terms = law_terms(valve, options);
   terms.push_back(load_text(valve, options));
   const std::string contact = options.contact.empty() ? "barrier" : options.contact;
-  if (contact != "none") terms.push_back("    { \"type\": \"contact_" + contact + "\" }");
+  const bool has_range = contact == "facet" && !options.contact_range.empty();
+  if (contact != "none")
+    terms.push_back("    { \"type\": \"contact_" + contact + "\"" +
+                    (has_range ? ", \"range\": " + quoted(options.contact_range) : "") + " }");
   return listed_text(terms);
 }
 
 std::string solver_text(const Valve& valve, const ImportOptions& options) {
-  if (!options.xpbd_model.empty())
-    return "  // The paper's constraints, masses and flow field move the valve; moduli and pressure above "
-           "are those\n"
-           "  // of its energy, which the result states, and of other solvers (--solver newton).\n"
-           "  \"solver\": { \"type\": \"xpbd\", \"xpbd\": { \"model\": " +
-           quoted(options.xpbd_model) + " } }";
+  if (!options.solver.empty()) return "  \"solver\": " + options.solver;
   return "  // Loads and motion grow together along a damped path: two to four times the time of a solve\n"
          "  // at once, but over 16 valves, in other orders of vertices, turned and by other methods, 79 of\n"
          "  // 80 solves came within 3e-5 mm of the first shape. --damped-steps 0 solves at once.\n"
@@ -154,7 +155,7 @@ std::string scene_text(const Valve& valve, const ImportOptions& options) {
   std::string text = "{ // lengths in mm unless a unit is written\n";
   text += "  \"name\": " + quoted(valve.name.empty() ? "valve" : valve.name) + ",\n";
   text += "  \"mesh\": { \"file\": \"leaflets.obj\", \"sets\": \"valve.json\" },\n";
-  text += "  \"boundary\": " + boundary_text(valve) + ",\n";
+  text += "  \"boundary\": " + boundary_text(valve, options) + ",\n";
   text += "  \"terms\": " + terms_text(valve, options) + ",\n";
   text += solver_text(valve, options);
   if (valve.closed_reference) text += ",\n  \"reference\": { \"closed_surface\": \"closed_reference.obj\" }";
@@ -267,8 +268,9 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
   if (is_model_file(file)) {
     ValveModel model = read_model(file);
     append(warnings, model.warnings);
-    if (options.pressure_model.empty() && model.is_pressure_dead) options.pressure_model = "frozen";
-    if (options.contact.empty() && !model.has_contact) {
+    if (options.model.empty() && options.pressure_model.empty() && model.is_pressure_dead)
+      options.pressure_model = "frozen";
+    if (options.model.empty() && options.contact.empty() && !model.has_contact) {
       options.contact = "none";
       warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
     }
@@ -280,6 +282,30 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
   append(warnings, read.warnings);
   for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
   return std::move(read.valve);
+}
+
+void apply_model(const std::string& file, Valve& valve, ImportOptions& options) {
+  if (!options.young.empty() || !options.chord_young.empty())
+    throw InputError(
+        "import: --young and --chord-young have no meaning beside --model, which says what leaflets and "
+        "chords are; leave one out");
+  try {
+    apply_valve_model(options.model, valve, options);
+  } catch (const InputError& error) {
+    throw error.within(file);
+  }
+}
+
+// What the file does not state and the scene must have.
+void complete_valve(const std::string& file, const ImportOptions& options, Valve& valve,
+                    std::vector<std::string>& warnings) {
+  if (!options.keeps_bulk) leave_bulk_out(file, valve, warnings);
+  take_moduli(options, valve);
+  if (complete_thickness(options, valve))
+    warnings.push_back(file + ": states no leaflet thickness; the scene has " +
+                       exact_text(options.default_thickness) + " mm.");
+  if (valve.pressure == 0 && options.pressure.empty())
+    warnings.push_back(file + ": states no pressure; the scene has " + kUsualPressure + ".");
 }
 
 // Sizes of a valve that only a misread unit explains, and how to insist.
@@ -301,6 +327,7 @@ void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
   if (error) throw InputError(out_dir.string() + ": cannot be made: " + error.message());
   write_valve(out_dir / "valve.json", valve);
   formats::write_whole(out_dir / "scene.json", scene_text(valve, options));
+  if (!options.notes.empty()) formats::write_whole(out_dir / "README.md", options.notes);
 }
 
 std::vector<std::string> import_valve(const std::filesystem::path& file, const std::filesystem::path& out_dir,
@@ -316,26 +343,18 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   detail::apply_curves(options, file.string(), valve, warnings);
   is_valve |=
       !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
-  if (!options.keeps_bulk) leave_bulk_out(file.string(), valve, warnings);
-  take_moduli(options, valve);
-  if (!options.model.empty()) apply_valve_model(options.model, valve, options);
-  if (complete_thickness(options, valve))
-    warnings.push_back(file.string() + ": states no leaflet thickness; the scene has " +
-                       exact_text(options.default_thickness) + " mm.");
-  if (valve.pressure == 0 && options.pressure.empty())
-    warnings.push_back(file.string() + ": states no pressure; the scene has " + kUsualPressure + ".");
+  if (options.model.empty()) complete_valve(file.string(), options, valve, warnings);
   if (valve.annulus.empty() && valve.supports.empty())
     warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
-  const double pressure = quantity_value(pressure_text(valve, options), kPressure);
-  if (is_valve && !options.takes_any_size) {
-    Valve loaded = valve;
-    loaded.pressure = pressure;
-    refuse_sizes(file.string(), loaded);
-  }
+  const auto loaded = [&] {
+    Valve under_pressure = valve;
+    under_pressure.pressure = quantity_value(pressure_text(valve, options), kPressure);
+    return under_pressure;
+  };
+  if (is_valve && !options.takes_any_size) refuse_sizes(file.string(), loaded());
   const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
-  Valve loaded = valve;
-  loaded.pressure = pressure;
-  append(warnings, valve_doubts(loaded, file.string()));
+  if (!options.model.empty()) apply_model(file.string(), valve, options);  // of the repaired mesh
+  append(warnings, valve_doubts(loaded(), file.string()));
   write_valve_scene(valve, out_dir, options);
   detail::write_repairs(out_dir / "repairs.csv", repair);
   return warnings;

@@ -22,8 +22,6 @@ struct ImportOptions {
                                     // what the file says, else follower
   std::string contact = "";         // none, barrier or facet; empty: barrier, or none where a model has none
   bool bends = true;                // false: no term `bending`, whatever the membrane
-  std::string model = "";           // of import_valve: one of valve_model_names(); empty: none
-  std::string xpbd_model = "";      // key "model" of the solver xpbd; empty: the scene is solved by newton
   double default_thickness = 0.65;  // where the valve states none [mm]
   double tolerance = 1e-8;
   bool takes_any_size = false;  // also a valve whose sizes no heart has: a unit misread
@@ -31,6 +29,15 @@ struct ImportOptions {
   // Whether membranes keep the bulk modulus that the file states. Without it they are incompressible.
   bool keeps_bulk = false;
   std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
+  std::string model =
+      "";  // of import_valve: of valve_models.hpp, in the place of the file's laws; empty: none
+
+  // What a published model sets besides; empty: nothing of the kind.
+  std::string held = "";           // JSON of a node selection: nodes held besides annulus and tips
+  std::string held_remark = "";    // what they are
+  std::string contact_range = "";  // of contact_facet, in the place of its default
+  std::string solver = "";         // JSON, in the place of newton along a damped path
+  std::string notes = "";          // README.md beside the scene
 };
 
 // Reads a valve JSON with the meshes beside it, a finite-element model (.inp, .feb) or a mesh, and writes the
@@ -47,8 +54,9 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
 
 // Writes leaflets.obj, valve.json, closed_reference.obj (where the valve has one) and scene.json, a commented
 // scene that closes the valve: membrane, chords, pressure on the side that the normals point to, annulus and
-// papillary points moved to their closed places where these are known, else fixed. valve: mm, MPa.
-// Makes the folder. Throws InputError for an option that is not known, or when a file cannot be written.
+// papillary points moved to their closed places where these are known, else fixed; README.md where the
+// options have notes. valve: mm, MPa. Makes the folder. Throws InputError for an option that is not known, or
+// when a file cannot be written.
 void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
                        const ImportOptions& options = {});
 

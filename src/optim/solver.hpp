@@ -177,7 +177,7 @@ struct MethodOptions {
 struct SolverOptions : MethodOptions {
   FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
   std::function<TriangleMesh()> surface =
-      {};  // at rest, over all nodes; asked for by collisions of `dynamic`
+      {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
   std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
 };

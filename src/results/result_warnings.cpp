@@ -1,5 +1,7 @@
 #include "results/result_warnings.hpp"
 
+#include "core/number_text.hpp"
+
 namespace coapt {
 
 std::vector<std::string> result_warnings(const Report& report) {
@@ -22,9 +24,17 @@ std::vector<std::string> result_warnings(const Report& report) {
   return warnings;
 }
 
-bool is_in_doubt(const Report& report) {
-  return (report.has_collisions && report.metrics.intersections > 0) ||
-         !stability_doubt(report.result.certificate).empty();
+bool is_in_doubt(const Report& report) { return !stability_doubt(report.result.certificate).empty(); }
+
+void withdraw_penetrated(Report& report) {
+  const long pairs = report.metrics.intersections;
+  if (!report.has_collisions || pairs == 0 || report.result.status != Status::Converged) return;
+  report.result.status = Status::Stalled;
+  report.result.message =
+      "not converged: " + std::to_string(pairs) +
+      (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") +
+      " through each other, which the collisions of `dynamic` were to keep apart; at rest " +
+      "with a residual of " + number_text(report.result.residual, 3);
 }
 
 Headline headline(const Report& report) {

@@ -12,9 +12,12 @@ namespace coapt {
 // near by; how many nodes have no determined place.
 std::vector<std::string> result_warnings(const Report& report);
 
-// Of an equilibrium: whether it is not stable, that could not be decided, or collisions were to keep facets
-// apart and did not.
+// Of an equilibrium: whether it is not stable or that could not be decided.
 bool is_in_doubt(const Report& report);
+
+// A state at rest in which facets pass through each other that collisions were to keep apart is not
+// converged, whatever its residual: its status becomes Stalled, and its message says why.
+void withdraw_penetrated(Report& report);
 
 // The first line of a result.
 struct Headline {

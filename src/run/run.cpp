@@ -5,6 +5,7 @@
 #include "report/shape_view.hpp"
 #include "report/solve_page.hpp"
 #include "results/frames.hpp"
+#include "results/result_warnings.hpp"
 #include "run/run_parts.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
@@ -78,6 +79,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");
+  withdraw_penetrated(report);
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
     report.warnings.insert(report.warnings.begin(), warning);

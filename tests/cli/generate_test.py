@@ -68,6 +68,25 @@ class GenerateTest(CommandCase):
                 self.assertNotIn("regime", (self.folder / "result" / "closed.vtp").read_text(errors="replace"))
         self.assertEqual(coapt("generate", "mitral", "--model", "hammer", "-o", self.folder / "x").returncode, 2)
 
+    def test_gives_a_valve_of_a_file_the_model_of_a_paper(self):
+        self.generate("mitral", "--triangles", 300)
+        valve, paper = self.folder / "valve.json", self.folder / "paper"
+        run = coapt("import", valve, "--model", "burlina-2010", "-o", paper)
+        self.assertEqual((run.returncode, run.stderr), (0, ""), run.stdout)
+        self.assertIn("leaves open", (paper / "README.md").read_text())
+        self.assertIn("half_space", (paper / "scene.json").read_text())
+        run = coapt("check", paper / "scene.json")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        bad = lambda *options: coapt("import", valve, "-o", self.folder / "x", *options)
+        for options in [["--model", "burlina"], ["--model", "hammer-2008", "--membrane", "stvk"]]:
+            run = bad(*options)
+            self.assertEqual(run.returncode, 2, run.stdout)
+            self.assertIn("--model", run.stderr)
+        self.assert_bad_input(bad("--model", "burlina-2010", "--young", "1 MPa"), "--young", "--model")
+        self.assert_bad_input(bad("--model", "burlina-2010", "--pressure", "follower"), "--pressure")
+        self.assert_bad_input(coapt("import", self.folder / "leaflets.obj", "--model", "burlina-2010", "-o", self.folder / "x"),
+                              "leaflets.obj", "--papillary")
+
     def test_makes_chords_where_there_are_none(self):
         self.generate("mitral", "--triangles", 625)
         network = self.folder / "made" / "valve.json"

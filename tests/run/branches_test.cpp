@@ -152,9 +152,24 @@ TEST(Headline, SaysThatFacetsPassThroughEachOther) {
   report.metrics.intersections = 151;
   EXPECT_EQ(headline(report).text, "converged; 151 pairs of facets pass through each other");
   EXPECT_TRUE(headline(report).is_in_doubt);
-  EXPECT_FALSE(is_in_doubt(report)) << "nothing was to keep them apart";
+  withdraw_penetrated(report);
+  EXPECT_EQ(report.result.status, Status::Converged) << "nothing was to keep them apart";
+}
+
+TEST(Headline, CallsNothingConvergedThatCollisionsLetThrough) {
+  Report report;
+  report.result.status = Status::Converged;
+  report.result.residual = 2e-9;
   report.has_collisions = true;
-  EXPECT_TRUE(is_in_doubt(report));
+  withdraw_penetrated(report);
+  EXPECT_EQ(report.result.status, Status::Converged);
+  report.metrics.intersections = 151;
+  withdraw_penetrated(report);
+  EXPECT_EQ(report.result.status, Status::Stalled);
+  EXPECT_EQ(
+      headline(report).text,
+      "not converged: 151 pairs of facets pass through each other, which the collisions of `dynamic` were to "
+      "keep apart; at rest with a residual of 2e-09");
 }
 
 TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {

@@ -246,7 +246,7 @@ TEST(SceneFile, ReadsNumbersIntoInternalUnitsWithDefaults) {
   })");
   EXPECT_EQ(scene.name, "scene");
   EXPECT_EQ(scene.mesh->scale, 1000);
-  EXPECT_EQ(scene.sets.at("left").at, 10);
+  EXPECT_EQ(scene.sets.at("left").point, Vec3(10, 0, 0));
   EXPECT_EQ(scene.boundary.at(0).fix, (std::array<bool, 3>{true, false, true}));
   EXPECT_EQ(scene.boundary.at(1).fix, (std::array<bool, 3>{true, true, true}));
   EXPECT_EQ(scene.boundary.at(1).path.at(0).translation, Vec3(10, 0, -2));

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace coapt {
 namespace {
@@ -194,6 +195,36 @@ TEST_F(BuildTest, SelectsNodesByWhereTheyLie) {
   EXPECT_DOUBLE_EQ(model.X(0, model.sets.at("rightmost").at(0)), 10);
   EXPECT_TRUE(model.objective->fixed()(0, model.sets.at("axis")[0]));
   EXPECT_FALSE(model.objective->fixed()(1, model.sets.at("axis")[0]));
+}
+
+std::vector<int> nodes_with(const Model& model, const std::function<bool(const Vec3&)>& test) {
+  std::vector<int> nodes;
+  for (int node = 0; node < model.X.cols(); ++node)
+    if (test(model.X.col(node) + model.origin)) nodes.push_back(node);
+  return nodes;
+}
+
+TEST_F(BuildTest, SelectsNodesByPlanesSpheresAndConditions) {
+  const Model model = build_disc(kDiscTerms, R"(, "sets": {
+      "slanted": {"plane": {"normal": [2, -2, 0], "within": 0.7}},
+      "shifted": {"plane": {"normal": [3, 4, 0], "point": [1, 1, 0], "at": "0.3 cm", "within": 0.7}},
+      "beyond": {"half_space": {"normal": [3, 4, 0], "point": [1, 1, 0], "at": "0.3 cm"}},
+      "right": {"half_space": {"axis": "x"}},
+      "ball": {"sphere": {"centre": [5, 0, 1], "radius": "3 mm"}},
+      "ring": {"where": "x^2 + y^2 > 0.3 cm^2 && !(abs(y) < 2 mm) "}})");
+  const auto height = [](const Vec3& x) { return 0.6 * (x[0] - 1) + 0.8 * (x[1] - 1) - 3; };
+  const auto same = [&](const char* name, const std::function<bool(const Vec3&)>& test) {
+    const std::vector<int> wanted = nodes_with(model, test);
+    EXPECT_GT(wanted.size(), 3u) << name;
+    EXPECT_LT(wanted.size(), static_cast<size_t>(model.X.cols())) << name;
+    EXPECT_EQ(model.sets.at(name), wanted) << name;
+  };
+  same("slanted", [](const Vec3& x) { return std::abs(x[0] - x[1]) / std::sqrt(2.0) <= 0.7; });
+  same("shifted", [&](const Vec3& x) { return std::abs(height(x)) <= 0.7; });
+  same("beyond", [&](const Vec3& x) { return height(x) >= -1e-5; });
+  same("right", [](const Vec3& x) { return x[0] >= -1e-5; });
+  same("ball", [](const Vec3& x) { return (x - Vec3(5, 0, 1)).norm() <= 3; });
+  same("ring", [](const Vec3& x) { return x[0] * x[0] + x[1] * x[1] > 30 && std::abs(x[1]) >= 2; });
 }
 
 TEST_F(BuildTest, ListsTheKnownNamesForAnUnknownOne) {

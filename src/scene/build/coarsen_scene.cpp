@@ -24,7 +24,7 @@ std::vector<int> support_kinds(const SceneGeometry& ground) {
 // The mesh edges with both nodes in the selection: cables run along them.
 void add_lines(const Parameters& p, const SceneGeometry& ground, std::vector<std::array<int, 2>>& lines) {
   const NodeSelection& selection = p.nodes("edges");
-  if (selection.kind == Kind::Set && selection.set == "boundary") return;  // kept in any case
+  if (selection.kind == Kind::Set && selection.text == "boundary") return;  // kept in any case
   std::vector<bool> is_wanted(static_cast<size_t>(ground.model.X.cols()), false);
   for (const int node : selected_nodes(selection, ground, p.where("edges")))
     is_wanted[static_cast<size_t>(node)] = true;

@@ -1,6 +1,7 @@
 #include "scene/build/node_selection.hpp"
 
 #include "core/error.hpp"
+#include "formats/json/point_condition.hpp"
 #include "formats/json/suggestion.hpp"
 
 #include <algorithm>
@@ -27,29 +28,41 @@ std::vector<int> nodes_where(const Model& model, Test&& test) {
 
 std::vector<int> geometric(const NodeSelection& selection, const Model& model) {
   constexpr double kRelativeWithin = 1e-6;
-  if (selection.kind == NodeSelection::Kind::Plane) {
-    const double within =
-        selection.within > 0 ? selection.within : kRelativeWithin * bounding_box_diagonal(model.X);
-    const double at = selection.at - model.origin[selection.axis];
-    return nodes_where(model, [&](const Vec3& x) { return std::abs(x[selection.axis] - at) <= within; });
+  const double round_off = kRelativeWithin * bounding_box_diagonal(model.X);
+  const Vec3 point = selection.point - model.origin;
+  const auto height = [&](const Vec3& x) { return selection.normal.dot(x - point); };
+  switch (selection.kind) {
+    case NodeSelection::Kind::Plane: {
+      const double within = selection.within > 0 ? selection.within : round_off;
+      return nodes_where(model, [&](const Vec3& x) { return std::abs(height(x)) <= within; });
+    }
+    case NodeSelection::Kind::HalfSpace:
+      return nodes_where(model, [&](const Vec3& x) { return height(x) >= -round_off; });
+    case NodeSelection::Kind::Box: {
+      const Vec3 high = selection.high - model.origin;
+      return nodes_where(model, [&](const Vec3& x) {
+        return (x.array() >= point.array()).all() && (x.array() <= high.array()).all();
+      });
+    }
+    case NodeSelection::Kind::Sphere:
+      return nodes_where(model, [&](const Vec3& x) { return (x - point).norm() <= selection.within; });
+    case NodeSelection::Kind::Condition:
+      return nodes_where(model, [&, holds = PointCondition(selection.text)](const Vec3& x) {
+        return holds(x + model.origin);
+      });
+    default: {
+      Eigen::Index nearest = 0;
+      (model.X.colwise() - point).colwise().squaredNorm().minCoeff(&nearest);
+      return {static_cast<int>(nearest)};
+    }
   }
-  const Vec3 low = selection.low - model.origin;
-  if (selection.kind == NodeSelection::Kind::Box) {
-    const Vec3 high = selection.high - model.origin;
-    return nodes_where(model, [&](const Vec3& x) {
-      return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
-    });
-  }
-  Eigen::Index nearest = 0;
-  (model.X.colwise() - low).colwise().squaredNorm().minCoeff(&nearest);
-  return {static_cast<int>(nearest)};
 }
 
 }  // namespace
 
 std::vector<int> selected_nodes(const NodeSelection& selection, const Model& model,
                                 const std::string& where) {
-  if (selection.kind == NodeSelection::Kind::Set) return named_set(selection.set, model, where);
+  if (selection.kind == NodeSelection::Kind::Set) return named_set(selection.text, model, where);
   if (selection.kind == NodeSelection::Kind::Indices) {
     for (const int node : selection.indices)
       if (node >= model.X.cols())

@@ -13,15 +13,14 @@ namespace coapt {
 
 // Which nodes are meant. Coordinates are those of the mesh file, in mm.
 struct NodeSelection {
-  enum class Kind { Set, Indices, Plane, Box, Nearest };
+  enum class Kind { Set, Indices, Plane, HalfSpace, Box, Sphere, Nearest, Condition };
   Kind kind = Kind::Indices;
-  std::string set;           // Set: name
-  std::vector<int> indices;  // Indices: 0-based, in order
-  int axis = 0;              // Plane: 0, 1, 2 for x, y, z
-  double at = 0;             // Plane [mm]
-  double within = 0;         // Plane [mm]; 0 = a millionth of the model's size
-  Vec3 low = Vec3::Zero();   // Box, or the point of Nearest [mm]
-  Vec3 high = Vec3::Zero();  // Box [mm]
+  std::string text;           // Set: name; Condition: a PointCondition
+  std::vector<int> indices;   // Indices: 0-based, in order
+  Vec3 point = Vec3::Zero();  // on the plane of Plane and HalfSpace, of Sphere and Nearest, least of Box [mm]
+  Vec3 normal = Vec3::Zero();  // of unit length: Plane, HalfSpace (which lies on its side)
+  Vec3 high = Vec3::Zero();    // Box [mm]
+  double within = 0;           // Plane; 0 = a millionth of the model's size. Sphere: radius [mm]
 };
 
 // Where moved nodes go: one point of their path.

@@ -294,43 +294,73 @@ const ObjectSpec& scene_spec() {
   return kSpec;
 }
 
-const ObjectSpec& selection_spec() {
-  static const ObjectSpec kSpec{
-      .keys = {{.name = "plane",
-                .kind = KeyKind::Object,
-                .object = {.keys = {{.name = "axis",
-                                     .kind = KeyKind::Choice,
-                                     .required = true,
-                                     .choices = {"x", "y", "z"},
-                                     .doc = "Axis normal to the plane."},
-                                    {.name = "at",
-                                     .dimension = kLength,
-                                     .fallback = "0",
-                                     .doc = "Its coordinate on that axis."},
-                                    {.name = "within",
-                                     .dimension = kLength,
-                                     .min = 0,
-                                     .doc = "Greatest distance from the plane; default: a millionth of the "
-                                            "model's size."}}},
-                .doc = "All nodes on a coordinate plane."},
-               {.name = "box",
-                .kind = KeyKind::Object,
-                .object = {.keys = {{.name = "min",
-                                     .kind = KeyKind::Triple,
-                                     .dimension = kLength,
-                                     .required = true,
-                                     .doc = "Smallest coordinates."},
-                                    {.name = "max",
-                                     .kind = KeyKind::Triple,
-                                     .dimension = kLength,
-                                     .required = true,
-                                     .doc = "Greatest coordinates."}}},
-                .doc = "All nodes in a box, its faces included."},
-               {.name = "nearest",
-                .kind = KeyKind::Triple,
+namespace {
+
+KeySpec point_key(const std::string& name, const std::string& fallback, const std::string& doc) {
+  return {.name = name,
+          .kind = KeyKind::Triple,
+          .dimension = kLength,
+          .required = fallback.empty(),
+          .fallback = fallback,
+          .doc = doc};
+}
+
+KeySpec object_key(const std::string& name, const ObjectSpec& object, const std::string& doc) {
+  return {.name = name, .kind = KeyKind::Object, .object = object, .doc = doc};
+}
+
+// A plane by its normal, or by the axis normal to it.
+ObjectSpec plane_spec() {
+  return {
+      .keys = {{.name = "axis",
+                .kind = KeyKind::Choice,
+                .choices = {"x", "y", "z"},
+                .doc = "Axis normal to the plane."},
+               {.name = "normal", .kind = KeyKind::Triple, .doc = "Its normal, of any length."},
+               point_key("point", "[0, 0, 0]", "A point from which `at` counts."),
+               {.name = "at",
                 .dimension = kLength,
-                .doc = "The one node nearest to a point."}},
-      .groups = {{{"plane", "box", "nearest"}, true}}};
+                .fallback = "0",
+                .doc = "Distance of the plane from that point along axis or normal; with `axis` alone the "
+                       "coordinate on it."}},
+      .groups = {{{"axis", "normal"}, true}}};
+}
+
+}  // namespace
+
+const ObjectSpec& selection_spec() {
+  static const ObjectSpec kSpec = [] {
+    ObjectSpec plane = plane_spec();
+    plane.keys.push_back({.name = "within",
+                          .dimension = kLength,
+                          .min = 0,
+                          .doc = "Greatest distance from the plane; default: a millionth of the model's "
+                                 "size."});
+    const ObjectSpec box{
+        {point_key("min", "", "Smallest coordinates."), point_key("max", "", "Greatest coordinates.")}};
+    const ObjectSpec sphere{
+        {point_key("centre", "", "Its centre."),
+         {.name = "radius", .dimension = kLength, .required = true, .min = 0, .doc = "Its radius."}}};
+    ObjectSpec spec{
+        {object_key("plane", plane, "All nodes on a plane."),
+         object_key("half_space", plane_spec(),
+                    "All nodes on a plane or on the side that its normal points to."),
+         object_key("box", box, "All nodes in a box, its faces included."),
+         object_key("sphere", sphere, "All nodes in a sphere, its surface included."),
+         {.name = "nearest",
+          .kind = KeyKind::Triple,
+          .dimension = kLength,
+          .doc = "The one node nearest to a point."},
+         {.name = "where",
+          .kind = KeyKind::Text,
+          .doc = "All nodes whose coordinates meet a condition, `\"z > 2 mm && x^2 + y^2 < 1 cm^2\"`: "
+                 "comparisons "
+                 "of sums, products, powers, `sqrt`, `abs`, `min`, `max`, joined by `&&` (and), two vertical "
+                 "bars (or) and `!` (not); numbers without a unit are in mm and powers of it."}}};
+    spec.groups.push_back({{}, true});
+    for (const KeySpec& key : spec.keys) spec.groups.front().keys.push_back(key.name);
+    return spec;
+  }();
   return kSpec;
 }
 

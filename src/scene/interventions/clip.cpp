@@ -2,7 +2,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
-#include "scene/interventions/leaflet_coordinates.hpp"
+#include "scene/interventions/free_edges.hpp"
 
 #include <algorithm>
 #include <cmath>

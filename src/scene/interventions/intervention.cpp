@@ -52,7 +52,7 @@ Model mesh_alone(const ValveEdit& edit) {
 
 std::vector<int> ValveEdit::vertices(const NodeSelection& selection, const std::string& where) const {
   if (selection.kind == NodeSelection::Kind::Set)
-    if (const auto own = scene.sets.find(selection.set); own != scene.sets.end())
+    if (const auto own = scene.sets.find(selection.text); own != scene.sets.end())
       return selected_nodes(own->second, mesh_alone(*this), where);
   return selected_nodes(selection, mesh_alone(*this), where);
 }

@@ -1,7 +1,7 @@
 // A patch: part of a leaflet replaced by another material.
 #include "core/error.hpp"
 #include "core/number_text.hpp"
-#include "scene/interventions/leaflet_coordinates.hpp"
+#include "scene/interventions/free_edges.hpp"
 #include "scene/terms/term_types.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ void cover_by_patch(const InterventionSpec& spec, ValveEdit& valve) {
                      " mm off, at a depth of " +
                      number_text(place_on(edge, mesh.vertices, mesh.vertices.col(middle)).depth) + " mm");
   Vector patch = Vector::Zero(mesh.triangle_count());
-  for (const int t : triangles_of(edge.leaflet, mesh)) {
+  for (const int t : leaflet_triangles(edge.leaflet, mesh)) {
     const Vec3 centroid = mesh.vertices(Eigen::all, mesh.triangles.col(t)).rowwise().mean();
     if ((centroid - mesh.vertices.col(middle)).norm() <= radius) patch[t] = 1;
   }

@@ -2,7 +2,7 @@
 #include "core/error.hpp"
 #include "mesh/remesh/cut_away.hpp"
 #include "scene/interventions/chord_selection.hpp"
-#include "scene/interventions/leaflet_coordinates.hpp"
+#include "scene/interventions/free_edges.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -43,7 +43,7 @@ std::vector<RestLine> network_lines(const Parameters& p, const BuildContext& con
 std::vector<RestLine> edge_lines(const Parameters& p, const BuildContext& context) {
   const NodeSelection& selection = p.nodes("edges");
   const std::vector<int> nodes = context.nodes(selection, p.where("edges"));
-  const bool is_boundary = selection.kind == NodeSelection::Kind::Set && selection.set == "boundary";
+  const bool is_boundary = selection.kind == NodeSelection::Kind::Set && selection.text == "boundary";
   std::vector<bool> is_wanted(static_cast<size_t>(context.model.X.cols()), false);
   for (const int node : nodes) is_wanted[static_cast<size_t>(node)] = true;
   std::vector<RestLine> lines;

@@ -1,4 +1,7 @@
 // Node selections, axes, targets of motions, lines and directions.
+#include "core/error.hpp"
+#include "formats/json/point_condition.hpp"
+#include "formats/json/suggestion.hpp"
 #include "scene/file/detail/read_item.hpp"
 
 namespace coapt {
@@ -16,24 +19,48 @@ std::optional<std::vector<std::string>> read_axes(const Item& item) {
 
 namespace {
 
+std::optional<NodeSelection> read_plane(const Parameters& plane, NodeSelection selection, const Item& item) {
+  selection.normal =
+      plane.has("axis") ? Vec3(Vec3::Unit(plane.text("axis")[0] - 'x')) : plane.vector("normal");
+  if (selection.normal.isZero(0)) {
+    item.reading.defects.push_back(plane.where("normal") + ": the vector is zero");
+    return std::nullopt;
+  }
+  selection.normal.normalize();
+  selection.point = plane.vector("point") + plane.number("at") * selection.normal;
+  selection.within = plane.number_or("within", 0);
+  return selection;
+}
+
 std::optional<NodeSelection> selection_from_object(const Item& item) {
   const size_t before = item.reading.defects.size();
   const Parameters values = read_object(item.json, selection_spec(), item.where, item.reading);
   if (item.reading.defects.size() != before) return std::nullopt;
   NodeSelection selection;
-  if (values.has("plane")) {
-    const Parameters& plane = values.object("plane");
-    selection.kind = NodeSelection::Kind::Plane;
-    selection.axis = plane.text("axis")[0] - 'x';
-    selection.at = plane.number("at");
-    selection.within = plane.number_or("within", 0);
-  } else if (values.has("box")) {
+  if (values.has("plane") || values.has("half_space")) {
+    selection.kind = values.has("plane") ? NodeSelection::Kind::Plane : NodeSelection::Kind::HalfSpace;
+    return read_plane(values.object(values.has("plane") ? "plane" : "half_space"), selection, item);
+  }
+  if (values.has("box")) {
     selection.kind = NodeSelection::Kind::Box;
-    selection.low = values.object("box").vector("min");
+    selection.point = values.object("box").vector("min");
     selection.high = values.object("box").vector("max");
-  } else {
+  } else if (values.has("sphere")) {
+    selection.kind = NodeSelection::Kind::Sphere;
+    selection.point = values.object("sphere").vector("centre");
+    selection.within = values.object("sphere").number("radius");
+  } else if (values.has("nearest")) {
     selection.kind = NodeSelection::Kind::Nearest;
-    selection.low = values.vector("nearest");
+    selection.point = values.vector("nearest");
+  } else {
+    selection.kind = NodeSelection::Kind::Condition;
+    selection.text = values.text("where");
+    try {
+      PointCondition condition(selection.text);
+    } catch (const InputError& error) {
+      item.reading.defects.push_back(values.where("where") + ": " + error.what());
+      return std::nullopt;
+    }
   }
   return selection;
 }
@@ -44,12 +71,13 @@ std::optional<NodeSelection> read_nodes(const Item& item) {
   NodeSelection selection;
   if (item.json.is_string()) {
     selection.kind = NodeSelection::Kind::Set;
-    selection.set = item.json.get<std::string>();
+    selection.text = item.json.get<std::string>();
     return selection;
   }
   if (item.json.is_object()) return selection_from_object(item);
   if (!item.json.is_array()) {
-    item.refuse_type("the name of a node set, a list of node numbers, or one of plane, box, nearest");
+    item.refuse_type("the name of a node set, a list of node numbers, or an object with one of " +
+                     listed(selection_spec().groups.front().keys));
     return std::nullopt;
   }
   for (size_t k = 0; k < item.json.size(); ++k) {

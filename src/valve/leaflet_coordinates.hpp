@@ -1,9 +1,11 @@
-// Places on a leaflet by its free edge: how far along it, and how far from it. Private to this room.
+// Places on a leaflet by its free edge: how far along it, and how far from it.
 #pragma once
 
-#include "scene/interventions/intervention.hpp"
+#include "core/types.hpp"
+#include "mesh/triangle_mesh.hpp"
 
-#include <optional>
+#include <string>
+#include <vector>
 
 namespace coapt {
 
@@ -22,12 +24,18 @@ struct LeafletPoint {
   double depth = 0;  // distance from there [mm]
 };
 
-// The free edges of the leaflets that the key `leaflets` or `leaflet` names, or of all regions with one where
-// it is absent. All begin at the same commissure: the first of the set "commissures", or where the first free
-// edge begins in its loop; two of three or more leaflets where they meet. The set "free_edge" orders them;
-// without it, the one boundary loop away from the set "annulus". Throws InputError, naming the entry, where
-// these are missing or a region does not reach the free edge.
-std::vector<FreeEdge> free_edges(const InterventionSpec& spec, const ValveEdit& edit);
+// The longest stretch of the closed loop whose vertices are all members, in the order of the loop.
+std::vector<int> longest_run(const std::vector<int>& loop, const std::vector<bool>& is_member);
+
+// The free edge along these vertices of x (3 x n) [mm]; without rim and root.
+FreeEdge free_edge_of(std::string leaflet, std::vector<int> vertices, const Points& x);
+
+// Of two leaflets that share one commissure: both edges begin there. Pre: edges has two.
+void begin_where_they_meet(std::vector<FreeEdge>& edges, const Points& x);
+
+// Sets rim and root, beginning at the same end; leaves them empty where the leaflet has fewer than two
+// vertices on the annulus.
+void lay_side_by_side(FreeEdge& edge, std::vector<int> annulus, const Points& x);
 
 // The place of a position, on the straight lines from each point of the free edge to the point of the annulus
 // at the same part of its length: that on the nearest one, and how far from its beginning. Where the leaflet
@@ -39,6 +47,6 @@ LeafletPoint place_on(const FreeEdge& edge, const Points& vertices, const Vec3& 
 std::vector<LeafletPoint> leaflet_points(const FreeEdge& edge, const TriangleMesh& mesh);
 
 // Numbers of the triangles of a region.
-std::vector<int> triangles_of(const std::string& region, const TriangleMesh& mesh);
+std::vector<int> leaflet_triangles(const std::string& region, const TriangleMesh& mesh);
 
 }  // namespace coapt
