@@ -156,93 +156,95 @@ TEST(ValveModels, OfWalczakIsAMethodAndLeavesTheValveAsItIs) {
   EXPECT_EQ(load_scene(folder.path() / "barrier" / "scene.json").terms.back().type, "contact_barrier");
   import_valve(folder.path() / "usual" / "leaflets.obj", folder.path() / "springs", {.model = "hammer-2008"});
   EXPECT_EQ(load_scene(folder.path() / "springs" / "scene.json").terms[0].type, "spring");
-  // What a paper leaves open stands beside every scene, and the scene can be built.
-  TEST(ValveModels, WriteTheirNotesBesideTheScene) {
-    for (const std::string& name : valve_model_names()) {
-      const TemporaryFolder folder;
-      Valve valve = mitral_valve({.triangles = 300});
-      ImportOptions options;
-      apply_valve_model(name, valve, options);
-      write_valve_scene(valve, folder.path(), options);
-      EXPECT_NO_THROW(build(load_scene(folder.path() / "scene.json"))) << name;
-      const std::string notes = read_text(folder.path() / "README.md");
-      for (const char* part :
-           {"# The valve with", "What the paper states", "Where it is not followed", "What it leaves open"})
-        EXPECT_NE(notes.find(part), std::string::npos) << name << ": " << part;
-      EXPECT_EQ(notes.find('$'), std::string::npos) << name << ": a place that was not filled";
-    }
-  }
+}
 
-  // Section 2.5: H0/r0 and R0/r0, of which the scene has H0/R0 and R0/r0.
-  TEST(ValveModels, TomasFibresHaveTheNumbersOfThePaper) {
+// What a paper leaves open stands beside every scene, and the scene can be built.
+TEST(ValveModels, WriteTheirNotesBesideTheScene) {
+  for (const std::string& name : valve_model_names()) {
     const TemporaryFolder folder;
-    const Valve valve = mitral_valve({.triangles = 300});
-    Valve modelled = valve;
-    ImportOptions options;
-    apply_valve_model("toma-2016", modelled, options);
-    write_valve_scene(modelled, folder.path(), options);
-    const Scene scene = load_scene(folder.path() / "scene.json");
-    int checked = 0;
-    for (const auto& [term, wavelength, amplitude] :
-         {std::tuple("anterior", 14.5, 1.75), std::tuple("posterior", 7.0, 1.0),
-          std::tuple("strut", 1.35, 5.0), std::tuple("primary", 90.0, 5.0)})
-      for (const TermSpec& spec : scene.terms)
-        if (spec.name == term) {
-          EXPECT_NEAR(spec.parameters.number("crimp_ratio") * spec.parameters.number("radius_ratio"),
-                      wavelength, 1e-12);
-          EXPECT_EQ(spec.parameters.number("radius_ratio"), amplitude);
-          EXPECT_EQ(spec.parameters.number("fibre_young"), 48);
-          EXPECT_DOUBLE_EQ(spec.parameters.number("shear_modulus"), 0.01);
-          ++checked;
-        }
-    EXPECT_EQ(checked, 4);
-    Valve bare;
-    bare.leaflets = valve.leaflets;
-    bare.leaflets.regions.clear();
-    bare.leaflets.region_names.clear();
-    try {
-      apply_valve_model("toma-2016", bare, options);
-      ADD_FAILURE() << "accepted";
-    } catch (const InputError& error) {
-      for (const char* part : {"anterior", "posterior", "annulus", "chords"})
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
-  }
-
-  TEST(ValveModels, NamesThoseThereAre) {
     Valve valve = mitral_valve({.triangles = 300});
     ImportOptions options;
-    try {
-      apply_valve_model("hamer-2008", valve, options);
-      ADD_FAILURE() << "accepted";
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("did you mean \"hammer-2008\""), std::string::npos)
-          << error.what();
-    }
+    apply_valve_model(name, valve, options);
+    write_valve_scene(valve, folder.path(), options);
+    EXPECT_NO_THROW(build(load_scene(folder.path() / "scene.json"))) << name;
+    const std::string notes = read_text(folder.path() / "README.md");
+    for (const char* part :
+         {"# The valve with", "What the paper states", "Where it is not followed", "What it leaves open"})
+      EXPECT_NE(notes.find(part), std::string::npos) << name << ": " << part;
+    EXPECT_EQ(notes.find('$'), std::string::npos) << name << ": a place that was not filled";
   }
+}
 
-  // Linear springs in the place of the usual membrane, and of another program's linear shells.
-  TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
-    const TemporaryFolder folder;
-    const Valve valve = mitral_valve({.triangles = 300});
-    write_valve_scene(valve, folder.path(), {.membrane = "spring"});
-    const Scene scene = load_scene(folder.path() / "scene.json");
-    EXPECT_EQ(scene.terms[0].type, "spring");
-    EXPECT_EQ(scene.terms[1].type, "bending");
-    EXPECT_NO_THROW(build(scene));
-    // A valve JSON with springs keeps them.
-    Valve sprung = valve;
-    ImportOptions options;
-    apply_valve_model("hammer-2011", sprung, options);
-    write_valve_scene(sprung, folder.path() / "a", options);
-    import_valve(folder.path() / "a" / "valve.json", folder.path() / "b");
-    EXPECT_EQ(load_scene(folder.path() / "b" / "scene.json").terms[0].type, "spring");
-    import_valve(folder.path() / "a" / "valve.json", folder.path() / "c",
-                 {.membrane = "spring", .young = "2 MPa"});
-    const Scene linear = load_scene(folder.path() / "c" / "scene.json");
-    EXPECT_EQ(linear.terms[0].type, "spring");
-    EXPECT_EQ(linear.terms[0].parameters.number("young"), 2);
+// Section 2.5: H0/r0 and R0/r0, of which the scene has H0/R0 and R0/r0.
+TEST(ValveModels, TomasFibresHaveTheNumbersOfThePaper) {
+  const TemporaryFolder folder;
+  const Valve valve = mitral_valve({.triangles = 300});
+  Valve modelled = valve;
+  ImportOptions options;
+  apply_valve_model("toma-2016", modelled, options);
+  write_valve_scene(modelled, folder.path(), options);
+  const Scene scene = load_scene(folder.path() / "scene.json");
+  int checked = 0;
+  for (const auto& [term, wavelength, amplitude] :
+       {std::tuple("anterior", 14.5, 1.75), std::tuple("posterior", 7.0, 1.0), std::tuple("strut", 1.35, 5.0),
+        std::tuple("primary", 90.0, 5.0)})
+    for (const TermSpec& spec : scene.terms)
+      if (spec.name == term) {
+        EXPECT_NEAR(spec.parameters.number("crimp_ratio") * spec.parameters.number("radius_ratio"),
+                    wavelength, 1e-12);
+        EXPECT_EQ(spec.parameters.number("radius_ratio"), amplitude);
+        EXPECT_EQ(spec.parameters.number("fibre_young"), 48);
+        EXPECT_DOUBLE_EQ(spec.parameters.number("shear_modulus"), 0.01);
+        ++checked;
+      }
+  EXPECT_EQ(checked, 4);
+  Valve bare;
+  bare.leaflets = valve.leaflets;
+  bare.leaflets.regions.clear();
+  bare.leaflets.region_names.clear();
+  try {
+    apply_valve_model("toma-2016", bare, options);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    for (const char* part : {"anterior", "posterior", "annulus", "chords"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
   }
+}
+
+TEST(ValveModels, NamesThoseThereAre) {
+  Valve valve = mitral_valve({.triangles = 300});
+  ImportOptions options;
+  try {
+    apply_valve_model("hamer-2008", valve, options);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean \"hammer-2008\""), std::string::npos)
+        << error.what();
+  }
+}
+
+// Linear springs in the place of the usual membrane, and of another program's linear shells.
+TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
+  const TemporaryFolder folder;
+  const Valve valve = mitral_valve({.triangles = 300});
+  write_valve_scene(valve, folder.path(), {.membrane = "spring"});
+  const Scene scene = load_scene(folder.path() / "scene.json");
+  EXPECT_EQ(scene.terms[0].type, "spring");
+  EXPECT_EQ(scene.terms[1].type, "bending");
+  EXPECT_NO_THROW(build(scene));
+  // A valve JSON with springs keeps them.
+  Valve sprung = valve;
+  ImportOptions options;
+  apply_valve_model("hammer-2011", sprung, options);
+  write_valve_scene(sprung, folder.path() / "a", options);
+  import_valve(folder.path() / "a" / "valve.json", folder.path() / "b");
+  EXPECT_EQ(load_scene(folder.path() / "b" / "scene.json").terms[0].type, "spring");
+  import_valve(folder.path() / "a" / "valve.json", folder.path() / "c",
+               {.membrane = "spring", .young = "2 MPa"});
+  const Scene linear = load_scene(folder.path() / "c" / "scene.json");
+  EXPECT_EQ(linear.terms[0].type, "spring");
+  EXPECT_EQ(linear.terms[0].parameters.number("young"), 2);
+}
 
 }  // namespace
 }  // namespace coapt
