@@ -48,10 +48,6 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                    "Valve JSON with its meshes beside it, .inp, .feb, or a mesh (.obj .ply .stl .off .vtp)")
       ->required();
   add_scene_options(*command, *arguments, {"follower", "frozen", "field"});
-  command
-      ->add_option("--model", arguments->model,
-                   "Tissue, chords, pressure or method of a published model in the place of the file's")
-      ->check(CLI::IsMember(valve_model_names()));
   CLI::Option* bulk =
       command
           ->add_option("--bulk", arguments->bulk,
@@ -77,7 +73,7 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                       "Points (.mrk.json) to which the papillary tips move, in their order");
   command
       ->add_option("--model", arguments->model,
-                   "Tissue, chords and load of a published model in the place of the file's")
+                   "Tissue, chords, load or method of a published model in the place of the file's")
       ->check(CLI::IsMember(valve_model_names()))
       ->excludes("--membrane");
   command->callback([arguments] { import_file(*arguments); });
