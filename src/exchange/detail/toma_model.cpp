@@ -103,6 +103,7 @@ and modeling: experimental and computational methods*, Biomech Model Mechanobiol
 | what | chosen | reason |
 |---|---|---|
 | H0/r0 of chords between strut and marginal | 90 | "varied for most chordae": only the two ends are printed |
+| leaflets of other names, such as a septal one | the crimp of the posterior leaflet | the paper has a mitral valve |
 | thickness | $THICKNESS mm | the valve's; the paper has it from its scan |
 | tuning to the yield strain | none | `coapt tune-regions` does it (docs/studies.md); its 14 sets of numbers are not printed |
 | the valve itself | the mesh and chords of this folder | the paper's scans are not published |
