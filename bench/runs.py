@@ -18,8 +18,11 @@ def parsed_arguments(description: str, **more: float) -> argparse.Namespace:
 
 def solved(coapt: str, scene: pathlib.Path, *arguments: str) -> dict:
     out = scene.parent / "out"
-    subprocess.run([coapt, "solve", str(scene), "-o", str(out), *arguments], stdout=subprocess.DEVNULL,
-                   stderr=subprocess.DEVNULL, check=False)
+    (out / "result.json").unlink(missing_ok=True)  # never that of another scene
+    run = subprocess.run([coapt, "solve", str(scene), "-o", str(out), *arguments], stdout=subprocess.DEVNULL,
+                         stderr=subprocess.PIPE, text=True, check=False)
+    if not (out / "result.json").exists():
+        raise SystemExit(f"{scene}: {run.stderr}")
     return json.loads((out / "result.json").read_text())
 
 
