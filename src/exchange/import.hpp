@@ -29,8 +29,7 @@ struct ImportOptions {
   // Whether membranes keep the bulk modulus that the file states. Without it they are incompressible.
   bool keeps_bulk = false;
   std::filesystem::path annulus_closed = {}, papillary = {}, papillary_closed = {};  // .mrk.json; empty: none
-  std::string model =
-      "";  // of import_valve: of valve_models.hpp, in the place of the file's laws; empty: none
+  std::string model = "";  // of import_valve, by name (valve_models.hpp); empty: the file's laws
 
   // What a published model sets besides; empty: nothing of the kind.
   std::string held = "";           // JSON of a node selection: nodes held besides annulus and tips

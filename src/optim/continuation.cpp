@@ -91,7 +91,7 @@ Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Mon
   double best_residual = kInfinity, gained_residual = kInfinity;
   double last_residual = kInfinity, contraction = kNaN;
   int without_gain = 0;
-  for (int round = 0; round < kMaxOuterIterations; ++round) {
+  for (int renewal = 0; renewal < kMaxOuterIterations; ++renewal) {
     objective.lag_circulatory_force(q);
     const double residual = objective.true_residual(q);
     without_gain = residual < 0.9 * gained_residual ? 0 : without_gain + 1;
@@ -100,7 +100,7 @@ Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Mon
       best_residual = residual;
       best = q;
     }
-    if (round > 0) contraction = residual / last_residual;
+    if (renewal > 0) contraction = residual / last_residual;
     last_residual = residual;
     if (residual <= tolerance) return Status::Converged;
     if (without_gain >= kMaxOuterIterationsWithoutGain) break;

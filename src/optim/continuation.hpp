@@ -29,9 +29,9 @@ bool ends_the_run(Status status);
 Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q);
 
 // Solves at the full problem from q, in outer iterations of the monitor's. A load without potential is
-// renewed until the exact residual is small, where the solver does not work from the exact force: each round
-// minimises the potential around the last equilibrium, and the remainder contracts geometrically where it
-// converges. outer_iterations: how many, added. note: what there is to say where it does not converge.
+// renewed until the exact residual is small, where the solver does not work from the exact force: each of
+// them minimises the potential around the last equilibrium, and the remainder contracts geometrically where
+// it converges. outer_iterations: how many, added. note: what there is to say where it does not converge.
 Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
                             double tolerance, int& outer_iterations, std::string& note);
 

@@ -100,8 +100,8 @@ class Newton {
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
 
-  // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium the
-  // limits follow to the end, and go.
+  // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium they follow to
+  // the end, and go.
   void raise_limits() {
     while (objective_.has_stress_limits()) {
       const double excess = objective_.raise_stress_limits(at_.q);
@@ -124,8 +124,8 @@ class Newton {
            });
   }
 
-  // Why to stop at this iterate, if so. Narrows the kinks, step by step, near an equilibrium for
-  // those there are: from then on the energy is another one, which the trace has as another outer iteration.
+  // Why to stop at this iterate, if so. Narrows the kinks, step by step, near an equilibrium for those
+  // there are: from then on the energy is another one, which the trace has as another outer iteration.
   std::optional<Status> accept() {
     while (true) {
       const auto status = monitor_.accept(at_.q, at_.energy, at_.g);

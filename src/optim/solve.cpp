@@ -333,7 +333,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
     result.route = solver.follows_path()
                        ? "exact force, with its work along the path as merit"
                        : "potential of the surface closed by a fan, remainder held dead and renewed in " +
-                             std::to_string(result.outer_iterations) + " rounds";
+                             std::to_string(result.outer_iterations) + " outer iterations";
   conclude(found.outcome, solver, problem, stop, monitor, result);
   if (!found.is_only_unstable) reach_stable(solver, problem, stop, monitor, result);
 

@@ -69,7 +69,7 @@ TEST_P(GradientOnly, ReachesNewtonsValveToAMillionthOfAMillimetre) {
     EXPECT_GT(found.result.outer_iterations, 1);
     EXPECT_EQ(found.result.route,
               "potential of the surface closed by a fan, remainder held dead and renewed in " +
-                  std::to_string(found.result.outer_iterations) + " rounds");
+                  std::to_string(found.result.outer_iterations) + " outer iterations");
   } else {
     EXPECT_EQ(found.result.outer_iterations, 0);
     EXPECT_EQ(found.result.route, "exact force, with its work along the path as merit");
