@@ -58,6 +58,7 @@ py::dict register_arrays(const Numbers& vertices, const Corners& triangles, cons
   result["angle_deg"] = found.motion.angle_deg();
   result["translation_mm"] = moved_by(found.motion, moving.vertices);
   result["rms_mm"] = found.rms;
+  result["standard_error_mm"] = found.standard_error;
   result["overlap"] = found.overlap;
   result["pairs"] = found.pairs;
   result["iterations"] = found.iterations;

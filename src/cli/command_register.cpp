@@ -2,6 +2,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/row_printer.hpp"
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/durable_file.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/mesh_io.hpp"
@@ -130,8 +131,11 @@ void register_meshes(RegisterArguments& arguments) {
   std::printf("%s onto %s by %s: turned by %.4g degrees, moved by %.4g mm, scale %.6g\n",
               arguments.moving.c_str(), arguments.target.c_str(), arguments.method.c_str(),
               found.motion.angle_deg(), moved_by(found.motion, meshes.moving.vertices), found.motion.scale);
-  std::printf("  overlap %.3g, %d pairs, %.3g mm rms between them, %d iterations\n", found.overlap,
-              found.pairs, found.rms, found.iterations);
+  std::printf("  overlap %.3g, %d pairs, %.3g mm rms between them, %d iterations%s\n", found.overlap,
+              found.pairs, found.rms, found.iterations,
+              found.standard_error
+                  ? (", standard error " + number_text(*found.standard_error, 2) + " mm").c_str()
+                  : "");
   print_table(distance_table(meshes));
   for (const std::string& doubt : registration_doubts(found)) std::printf("warning: %s\n", doubt.c_str());
   std::printf("written to %s (moved.obj, moved.vtp, target.vtp, registration.json)\n",

@@ -149,6 +149,8 @@ Registration register_surfaces(const TriangleMesh& moving, const TriangleMesh& t
           .motion = start.from_target ? found.motion.inverse() : found.motion,
           .rms = found.rms,
           .overlap = found.overlap,
+          .standard_error = found.standard_error,
+          .size = on.size,
           .pairs = found.pairs,
           .iterations = found.iterations,
           .free_directions = found.free_directions,

@@ -13,6 +13,8 @@
 namespace coapt {
 namespace {
 
+constexpr double kLargeError = 0.01;  // of the size: a standard error that the user should know of
+
 constexpr std::array<std::pair<RegistrationMethod, const char*>, 3> kMethods{
     {{RegistrationMethod::Annulus, "annulus"},
      {RegistrationMethod::Landmarks, "landmarks"},
@@ -58,6 +60,10 @@ std::vector<std::string> registration_doubts(const Registration& registration) {
         "the surfaces leave " + std::to_string(registration.free_directions) +
         " directions of the motion open, as a sphere does its rotations; there it was left as it "
         "was; landmarks would determine it");
+  if (registration.standard_error.value_or(0) > kLargeError * registration.size)
+    doubts.push_back("noise leaves the place uncertain by " + number_text(*registration.standard_error, 2) +
+                     " mm (standard error, rms over the points; the surfaces say little of one direction, as "
+                     "the turn about an axis of near symmetry); landmarks would determine it");
   return doubts;
 }
 

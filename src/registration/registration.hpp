@@ -23,9 +23,12 @@ struct RegistrationOptions {
 
 struct Registration {
   RegistrationMethod method = RegistrationMethod::Surface;
-  RigidMotion motion;        // of the moving surface
-  double rms = 0;            // over the pairs that were kept [length]
-  double overlap = 1;        // share of the points sought that have a counterpart close by, 0 to 1
+  RigidMotion motion;  // of the moving surface
+  double rms = 0;      // over the pairs that were kept [length]
+  double overlap = 1;  // share of the points sought that have a counterpart close by, 0 to 1
+  // Of the places of the points (rms), from the noise of the pairs [length]; by surface only.
+  std::optional<double> standard_error = {};
+  double size = 0;           // of the surface that the points were sought on [length]; by surface only
   int pairs = 0;             // that were kept
   int iterations = 0;        // of the closest points; 0: matched once
   int free_directions = 0;   // of the six (seven) of a motion, that the surfaces do not determine
@@ -35,7 +38,8 @@ struct Registration {
 // Below this overlap a registration should be looked at before it is believed.
 inline constexpr double kSmallOverlap = 0.6;
 
-// Sentences about a registration that is not to be believed without a look: small overlap, free directions.
+// Sentences about a registration that is not to be believed without a look: small overlap, free directions,
+// a standard error above a hundredth of the size.
 std::vector<std::string> registration_doubts(const Registration& registration);
 
 struct RegistrationDistance {

@@ -13,6 +13,7 @@ OrderedJson registration_json(const Registration& found, double translation_mm) 
           {"angle_deg", found.motion.angle_deg()},
           {"translation_mm", translation_mm},
           {"rms_mm", found.rms},
+          {"standard_error_mm", found.standard_error ? number_json(*found.standard_error) : OrderedJson()},
           {"overlap", found.overlap},
           {"pairs", found.pairs},
           {"iterations", found.iterations},

@@ -99,6 +99,8 @@ OrderedJson registration() {
        {"angle_deg", number("by which it turns [degrees]")},
        {"translation_mm", number("of the middle of the reference's vertices [mm]")},
        {"rms_mm", number("between the pairs that were kept [mm]")},
+       {"standard_error_mm",
+        number("of the places of the points (rms), from the noise of the pairs [mm]; null but by surface")},
        {"overlap", number("share of the points with a counterpart close by")},
        {"pairs", count("that were kept")},
        {"iterations", count("of the closest points; 0: matched once")},

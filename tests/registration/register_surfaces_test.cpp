@@ -71,9 +71,27 @@ TEST(RegisterSurfaces, AScanWithNoiseOutliersAndHalfOfTheSurfaceFindsItsPlace) {
     std::vector<int> seen(scan.triangles.data(), scan.triangles.data() + scan.triangles.size());
     const Points off = (found.motion.apply(exact) - whole.vertices)(Eigen::all, seen);
     // No unbiased estimate leaves less than 0.07 to 0.11 mm of this noise (Cramer-Rao).
-    EXPECT_LT(std::sqrt(off.colwise().squaredNorm().mean()), 0.25) << k;
+    const double error = std::sqrt(off.colwise().squaredNorm().mean());
+    EXPECT_LT(error, 0.25) << k;
     EXPECT_FALSE(found.from_target);
+    EXPECT_LT(error, 3 * found.standard_error.value()) << k;
+    EXPECT_GT(error, *found.standard_error / 5) << k;
+    EXPECT_TRUE(registration_doubts(found).empty()) << k;
   }
+}
+
+TEST(RegisterSurfaces, ANearlyRoundBowlWithNoiseSaysThatItsTurnIsUncertain) {
+  TriangleMesh bowl = disc(20, 4000);
+  for (auto p : bowl.vertices.colwise()) p[2] = p.head<2>().squaredNorm() / 40 + 0.004 * p[0] * p[1];
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  TriangleMesh scan = bowl;
+  for (auto v : scan.vertices.colwise()) v += 0.5 * random_vector(random, normal);
+  const Registration found = register_surfaces(scan, bowl);
+  EXPECT_EQ(found.free_directions, 0);
+  EXPECT_GT(found.standard_error.value(), 0.2);
+  ASSERT_EQ(registration_doubts(found).size(), 1);
+  EXPECT_NE(registration_doubts(found)[0].find("standard error"), std::string::npos);
 }
 
 TEST(RegisterSurfaces, TheWholeFindsItsPlaceOnAHalf) {

@@ -29,6 +29,8 @@ class Registration:
     """How far the middle of the vertices moved [mm]."""
     rms_mm: float
     """Between the pairs that were kept [mm]."""
+    standard_error_mm: float | None
+    """Of the places of the points (root mean square), from the noise of the pairs [mm]; by surface only."""
     overlap: float
     """Share of the points with a counterpart close by, 0 to 1."""
     pairs: int

@@ -94,7 +94,8 @@ void trim_and_weigh(std::vector<Pair>& pairs, double trim, double size) {
 }
 
 struct Step {
-  Vector7 change = Vector7::Zero();  // turn [rad], shift over the size, relative scale
+  Vector7 change = Vector7::Zero();      // turn [rad], shift over the size, relative scale
+  Matrix7 covariance = Matrix7::Zero();  // of the change, for pairs of unit variance; 0 where left open
   int free_directions = 0;
 };
 
@@ -120,15 +121,33 @@ Step least_squares_step(const std::vector<Pair>& pairs, const Vec3& centre, doub
   const Vector7& values = eigen.eigenvalues();
   Step step;
   for (int k = 0; k < 7; ++k) {
-    if (values[k] > kUndetermined * values[6])
-      step.change += eigen.eigenvectors().col(k).dot(g) / values[k] * eigen.eigenvectors().col(k);
-    else
+    if (values[k] <= kUndetermined * values[6]) {
       ++step.free_directions;
+      continue;
+    }
+    const Vector7 direction = eigen.eigenvectors().col(k);
+    step.change += direction.dot(g) / values[k] * direction;
+    step.covariance += direction * direction.transpose() / values[k];
   }
   if (!with_scale) --step.free_directions;  // the scale itself, whose row is zero
   const double turn = step.change.head<3>().norm();
   if (turn > kLargestTurn) step.change *= kLargestTurn / turn;
   return step;
+}
+
+// Root mean square over the points, of the normal equations' covariance: point p moves by
+// turn x arm + shift + growth arm. Pairs count as independent, with the variance that they have [length].
+double standard_error(const Matrix7& covariance, const Points& points, const Vec3& centre, double size,
+                      double rms) {
+  double sum = 0;
+  for (const auto& p : points.colwise()) {
+    const Vec3 arm = (p - centre) / size;
+    Eigen::Matrix<double, 3, 7> moves;
+    moves << Eigen::Vector3d::UnitX().cross(arm), Eigen::Vector3d::UnitY().cross(arm),
+        Eigen::Vector3d::UnitZ().cross(arm), Eigen::Matrix3d::Identity(), arm;
+    sum += (moves * covariance * moves.transpose()).trace();
+  }
+  return rms * std::sqrt(sum / static_cast<double>(points.cols()));
 }
 
 RigidMotion moved_on(const RigidMotion& motion, const Vector7& change, const Vec3& centre, double size) {
@@ -195,6 +214,7 @@ SearchResult search(const SearchedSurface& sought, const SearchedSurface& on, co
   const Points points = sought.points.leftCols(count);
   SearchResult result;
   result.motion = start;
+  Matrix7 covariance = Matrix7::Zero();
   for (double move = kInfinity; move > kAtRest && result.iterations < settings.most_iterations;
        ++result.iterations) {
     const Points moved = result.motion.apply(points);
@@ -215,9 +235,13 @@ SearchResult search(const SearchedSurface& sought, const SearchedSurface& on, co
         least_squares_step(pairs, centre, on.size, settings.point_share, settings.options.with_scale);
     result.free_directions = step.free_directions;
     result.motion = moved_on(result.motion, step.change, centre, on.size);
+    covariance = step.covariance;
     move = step.change.norm();
     if (move * on.size < kWithinNoise * result.rms / std::sqrt(static_cast<double>(pairs.size()))) break;
   }
+  if (settings.points == 0)
+    result.standard_error = standard_error(covariance, result.motion.apply(points),
+                                           result.motion.apply(sought.middle), on.size, result.rms);
   return result;
 }
 

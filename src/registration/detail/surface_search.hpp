@@ -33,10 +33,11 @@ struct SearchSettings {
 };
 
 struct SearchResult {
-  RigidMotion motion;  // of the points that are sought
-  double score = 0;    // mean distance, none counted for more than a tenth of the size [length]
-  double rms = 0;      // of the pairs kept, by their weights, point to plane [length]
-  double overlap = 0;  // share of the points that lie close to the surface
+  RigidMotion motion;         // of the points that are sought
+  double score = 0;           // mean distance, none counted for more than a tenth of the size [length]
+  double rms = 0;             // of the pairs kept, by their weights, point to plane [length]
+  double overlap = 0;         // share of the points that lie close to the surface
+  double standard_error = 0;  // of the places of the points (rms), with all points only [length]
   int pairs = 0, iterations = 0, free_directions = 0;
 };
 
