@@ -1,5 +1,6 @@
 """Fails when an include of src is against tools/layers.toml: against its table of rooms, of a private header of another
-room, or in a circle; when a public header includes more than Eigen and the standard library; when the table allows
+room, or in a circle; when a public header includes more than Eigen and the standard library; when a library that has
+a door is included elsewhere; when the table allows
 what no file needs; and when a file compares the name of a term's type, or asks for the class of an object, instead of
 what stands in the registry (scene/terms/term_types.hpp) or with the term (energy/term_access.hpp).
 
@@ -71,6 +72,17 @@ def third_party_defects(texts: dict[str, str], public: set[str]) -> list[str]:
     return found
 
 
+def door_defects(texts: dict[str, str], doors: dict[str, list[str]]) -> list[str]:
+    """Includes of a library elsewhere than in the headers that are its door, and doors that are none."""
+    found = []
+    for library, names in doors.items():
+        at = {name for name, text in texts.items()
+              for bracket, included in INCLUDE.findall(text) if bracket == "<" and included.startswith(library)}
+        found += [f"{name}: includes <{library}...>; include {' or '.join(names)}" for name in sorted(at - set(names))]
+        found += [f"tools/layers.toml: {name} is no door to {library}" for name in sorted(set(names) - at)]
+    return found
+
+
 def type_defects(texts: dict[str, str]) -> list[str]:
     """Comparisons of the names of term types outside their registry, and more dynamic casts than there may be."""
     names = {name for text in texts.values() for pair in TERM_TYPE.findall(text) for name in pair if name}
@@ -127,6 +139,7 @@ def defects(root: pathlib.Path) -> list[str]:
         includes[name] = [i for i in own if i in texts]
     found += include_defects(includes, private, table)
     found += third_party_defects(texts, installed(src))
+    found += door_defects(texts, table.get("doors", {}))
     found += type_defects(texts)
     for of, what in ((table["may_include"], "the table allows"), (includes, "files include")):
         if around := circle(of):

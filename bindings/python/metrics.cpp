@@ -1,7 +1,7 @@
 // Figures of merit: those of the library, and the caller's own.
 #include "equilibrium.hpp"
 #include "sensitivity/metrics/metrics_contact.hpp"
-#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_opening.hpp"
 #include "sensitivity/metrics/metrics_state.hpp"
 #include "sensitivity/metrics/metrics_surface.hpp"
 
@@ -65,7 +65,7 @@ std::vector<FigureOfMerit> distance_residuals(const Of& of, const std::string& n
 FigureOfMerit orifice_area(Of of, const std::string& name, const std::vector<int>& annulus,
                            const Numbers& axis, double blur) {
   of->require_idle();
-  auto metric = make_orifice_area(name, of->tracked.model.mesh.triangles, annulus,
+  auto metric = make_opening_area(name, of->tracked.model.mesh.triangles, annulus,
                                   of->equilibrium().positions(), {direction_in(axis), blur});
   return figure(std::move(of), std::move(metric));
 }
@@ -74,10 +74,10 @@ FigureOfMerit orifice_area(Of of, const std::string& name, const std::vector<int
 FigureOfMerit coaptation(Of of, const std::string& name, const std::optional<Numbers>& direction,
                          double range, double sharpness) {
   const Model& model = of->tracked.model;
-  const CoaptationOptions options{range, sharpness};
-  auto metric = direction ? make_coaptation_height(name, model.mesh.triangles, model.X,
-                                                   direction_in(*direction), options)
-                          : make_coaptation_area(name, model.mesh.triangles, model.X, options);
+  const ContactZoneOptions options{range, sharpness};
+  auto metric = direction ? make_contact_zone_height(name, model.mesh.triangles, model.X,
+                                                     direction_in(*direction), options)
+                          : make_contact_zone_area(name, model.mesh.triangles, model.X, options);
   return figure(std::move(of), std::move(metric));
 }
 

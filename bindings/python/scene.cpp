@@ -46,8 +46,9 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
     RunReport report = coapt::run(scene, std::move(given), cli::all_solvers(), options);
     if (branches > 0 && !failure.is_set()) {
       options.observer = observer_of(callback, failure, report.model);
-      search_branches(scene, cli::all_solvers(), options,
-                      {branches, branch_kick, branch_seed, !is_from_given_start}, report);
+      report.report = with_branches(scene, cli::all_solvers(), options,
+                                    {branches, branch_kick, branch_seed, !is_from_given_start}, report.model,
+                                    std::move(report.report), report.folder);
     }
     return std::make_unique<Solution>(std::move(report), start);
   });

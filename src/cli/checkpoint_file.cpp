@@ -1,10 +1,9 @@
 #include "cli/checkpoint_file.hpp"
 
+#include "cli/command_line.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <system_error>

@@ -1,10 +1,9 @@
 // The command `coapt`: arguments in, exit code out.
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "core/components.hpp"
 #include "core/error.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <iostream>

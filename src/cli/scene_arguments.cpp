@@ -1,6 +1,6 @@
 #include "cli/scene_arguments.hpp"
 
-#include <CLI/CLI.hpp>
+#include "cli/command_line.hpp"
 
 #include <cstdio>
 
@@ -27,7 +27,7 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments,
 ImportOptions import_options(const SceneArguments& arguments) {
   ImportOptions options;
   if (!arguments.contact.empty()) options.contact = arguments.contact;
-  options.membrane = arguments.membrane;
+  options.membrane = linear_leaflets(arguments.membrane).value();
   if (!arguments.pressure.empty()) options.pressure_model = arguments.pressure;
   return options;
 }

@@ -1,8 +1,7 @@
 #include "cli/solve_checkpoint.hpp"
 
+#include "cli/command_line.hpp"
 #include "core/error.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 

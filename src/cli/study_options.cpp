@@ -1,10 +1,9 @@
 #include "cli/study_options.hpp"
 
+#include "cli/command_line.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "formats/text.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <charconv>
 

@@ -2,13 +2,12 @@
 
 #include "core/error.hpp"
 #include "exchange/valve_doubts.hpp"
+#include "formats/json/json_text.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/mesh_check.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>

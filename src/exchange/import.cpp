@@ -60,9 +60,6 @@ void check_options(const ImportOptions& options) {
   if (!options.contact.empty() && options.contact != "none" && options.contact != "barrier" &&
       options.contact != "facet")
     defects.push_back("contact: read \"" + options.contact + "\"; expected one of none, barrier, facet");
-  if (options.membrane != "tension_field" && options.membrane != "stvk" && options.membrane != "spring")
-    defects.push_back("membrane: read \"" + options.membrane +
-                      "\"; expected one of tension_field, stvk, spring");
   if (!defects.empty()) throw InputError(defects);
 }
 
@@ -194,11 +191,12 @@ bool has_compression(const TermType& type) {
 }
 
 // Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
-// are springs. A law that a valve JSON states as a term stays what it says, but under "stvk" it resists too.
+// are springs. A law that a valve JSON states as a term stays what it says, but where the
+// options say that leaflets resist compression it resists too.
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
   const TermType* type = find_term_type(law.type);
   if (type == nullptr) return;
-  const bool resists = options.membrane == "stvk";
+  const bool resists = options.membrane == LinearLeaflets::ResistsCompression;
   if (type->is_linear && (resists || !type->is_relaxed)) {
     if (is_own && !resists) return;
     law.type = detail::linear_membrane_type(options);
@@ -235,7 +233,8 @@ void take_moduli(const ImportOptions& options, Valve& valve) {
     });
     for (auto& [region, law] : valve.membranes) {
       Material linear{detail::linear_membrane_type(options), {{"young", quoted(options.young)}}};
-      if (options.membrane != "spring") linear.keys.emplace_back("poisson", exact_text(options.poisson));
+      if (options.membrane != LinearLeaflets::Springs)
+        linear.keys.emplace_back("poisson", exact_text(options.poisson));
       linear.keys.emplace_back("thickness", *key_of(law, "thickness"));
       law = std::move(linear);
     }
@@ -317,6 +316,13 @@ void refuse_sizes(const std::string& file, const Valve& valve) {
 }
 
 }  // namespace
+
+std::optional<LinearLeaflets> linear_leaflets(const std::string& name) {
+  if (name == "tension_field") return LinearLeaflets::TensionField;
+  if (name == "stvk") return LinearLeaflets::ResistsCompression;
+  if (name == "spring") return LinearLeaflets::Springs;
+  return std::nullopt;
+}
 
 void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
                        const ImportOptions& options) {

@@ -4,14 +4,21 @@
 #include "formats/valve.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace coapt {
 
+// The linear law of leaflets that state none: a tension field with bending, a membrane that resists
+// compression, or springs along the edges of the mesh with bending.
+enum class LinearLeaflets { TensionField, ResistsCompression, Springs };
+
+// "tension_field", "stvk", "spring"; nothing for another name.
+std::optional<LinearLeaflets> linear_leaflets(const std::string& name);
+
 struct ImportOptions {
-  // Of leaflets without a law: tension_field with bending, stvk, or spring with bending.
-  std::string membrane = "tension_field";
+  LinearLeaflets membrane = LinearLeaflets::TensionField;
   // Given, a linear law of this modulus takes the place of every law of the leaflets; their thickness stays.
   std::string young = "";  // empty: the valve's laws, and 1 MPa where it has none
   double poisson = 0.45;   // of linear leaflets; springs have none

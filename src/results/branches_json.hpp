@@ -1,9 +1,8 @@
 // Other equilibria in result.json.
 #pragma once
 
+#include "formats/json/json_text.hpp"
 #include "results/branch_report.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace coapt {
 

@@ -330,6 +330,9 @@ void prepare_result_folder(const fs::path& folder) {
 
 void write_results(const fs::path& folder, const Model& model, const Report& report) {
   prepare_result_folder(folder);
+  formats::write_whole(folder / "result.json", result_json(model, report));
+  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
+  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
   write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
   const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
                  mesh = folder / "closed.obj", reference = folder / "reference.vtp";
@@ -344,10 +347,6 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
     closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
     write_mesh(mesh, closed);
   });
-  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
-  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
-  // Last: where it is, the others are.
-  formats::write_whole(folder / "result.json", result_json(model, report));
 }
 
 }  // namespace coapt

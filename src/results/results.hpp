@@ -51,7 +51,7 @@ std::vector<std::string> result_files(const Model& model, const Report& report);
 // before a long solve, so that an unwritable folder is found before it.
 void prepare_result_folder(const std::filesystem::path& folder);
 
-// Writes these files into the folder; each appears under its
+// Writes these files into the folder, result.json first; each appears under its
 // name only when it is whole. closed.vtp holds the mesh and the lines in the coordinates of the input;
 // positions are in mm. Throws InputError when a file cannot be written.
 void write_results(const std::filesystem::path& folder, const Model& model, const Report& report);

@@ -147,7 +147,7 @@ void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
 }
 
 // The report with what the search found, which says more than a suspicion of neighbours.
-Report with_branches(Report report, const Objective& objective, Branches branches) {
+Report report_with(Branches branches, Report report, const Objective& objective) {
   std::erase(report.warnings, neighbour_warning(report.neighbours));
   report.branches = std::move(branches);
   report.fields.branch_spread = report.branches->spread_mm;
@@ -159,10 +159,9 @@ Report with_branches(Report report, const Objective& objective, Branches branche
 }  // namespace
 
 Branches find_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
-                       const BranchSearch& search, RunReport& run) {
-  Model& model = run.model;
+                       const BranchSearch& search, Model& model, const Report& report) {
   Objective& objective = *model.objective;
-  const Result& own = run.report.result;
+  const Result& own = report.result;
   SolveSetup setup = solve_setup(scene, solvers, options);
   if (!own.certificate.is_made) setup.stability = {};  // there are terms without Hessians
   const double edge = edge_scale(model);
@@ -171,9 +170,9 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   branches.tolerance_mm = kSameState * edge;
   std::vector<KnownState> states = {{objective.positions(own.q), own.certificate.free_nodes}};
   branches.equilibria = {
-      nearby(own, node_distance(states.front(), states.front(), objective.fixed()), run.report.metrics)};
+      nearby(own, node_distance(states.front(), states.front(), objective.fixed()), report.metrics)};
   branches.spread_mm = Vector::Zero(objective.node_count());
-  const bool goes_the_way = search.goes_the_way && run.report.levels.empty();
+  const bool goes_the_way = search.goes_the_way && report.levels.empty();
   for (int start = 0; start < (goes_the_way ? 2 : 1) * search.starts; ++start) {
     const bool is_from_own_start = start >= search.starts;
     const Points from = is_from_own_start ? model.X : states.front().x;
@@ -195,19 +194,21 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   return branches;
 }
 
-void search_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
-                     const BranchSearch& search, RunReport& run) {
-  if (search.starts == 0) return;
-  if (run.report.result.status != Status::Converged) {
-    run.report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
+Report with_branches(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
+                     const BranchSearch& search, Model& model, Report report,
+                     const std::filesystem::path& folder) {
+  if (search.starts == 0) return report;
+  if (report.result.status != Status::Converged) {
+    report.warnings.push_back("No other equilibria were looked for: the solve did not converge.");
   } else {
     RunOptions again = options;
-    again.solver = run.report.solver;
-    again.tolerance = run.report.tolerance;
-    Branches branches = find_branches(scene, solvers, again, search, run);
-    run.report = with_branches(std::move(run.report), *run.model.objective, std::move(branches));
+    again.solver = report.solver;
+    again.tolerance = report.tolerance;
+    Branches branches = find_branches(scene, solvers, again, search, model, report);
+    report = report_with(std::move(branches), std::move(report), *model.objective);
   }
-  if (!run.folder.empty()) write_run(run);
+  if (!folder.empty()) write_run(folder, model, report);
+  return report;
 }
 
 }  // namespace coapt

@@ -86,42 +86,48 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   return report;
 }
 
-void write_run(const RunReport& run) {
-  write_results(run.folder, run.model, run.report);
-  const std::filesystem::path page = run.folder / "report.html";
+void write_run(const std::filesystem::path& folder, const Model& model, const Report& report) {
+  write_results(folder, model, report);
+  const std::filesystem::path page = folder / "report.html";
   std::error_code ignored;
-  if (run.report.has_page)
-    formats::write_whole(page, solve_page(run.model, run.report));
+  if (report.has_page)
+    formats::write_whole(page, solve_page(model, report));
   else
     std::filesystem::remove(page, ignored);  // of an earlier solve
 }
 
-void run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
-               RunReport& run, const Points* start) {
-  Model& model = run.model;
-  // Only now: a scene that is refused leaves no folder behind.
-  if (options.writes) {
-    run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
-    prepare_result_folder(run.folder);
-  }
+std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options) {
+  if (!options.writes) return {};
+  const std::filesystem::path folder = options.folder.empty() ? result_folder(scene) : options.folder;
+  prepare_result_folder(folder);
+  remove_frames(folder);
+  return folder;
+}
+
+Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
+                    const RunNotes& notes, const IntersectionJudge& judge,
+                    const std::filesystem::path& folder) {
+  Report report = measure_run(scene, setup, model, std::move(solved), notes, judge);
+  if (!folder.empty()) write_run(folder, model, report);
+  return report;
+}
+
+Report run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
+                 Model& model, const std::filesystem::path& folder, const Points* start) {
   std::optional<FrameWriter> frames;
-  if (options.writes) {
-    remove_frames(run.folder);
-    const int interval = options.frame_interval.value_or(scene.frame_interval);
-    if (interval > 0) {
-      frames.emplace(run.folder, interval, model);
-      setup.observer = [&frames, next = setup.observer](const Iteration& iteration, const Vector& q) {
-        frames->see(iteration, q);
-        return !next || next(iteration, q);
-      };
-    }
+  const int interval = options.frame_interval.value_or(scene.frame_interval);
+  if (!folder.empty() && interval > 0) {
+    frames.emplace(folder, interval, model);
+    setup.observer = [&frames, next = setup.observer](const Iteration& iteration, const Vector& q) {
+      frames->see(iteration, q);
+      return !next || next(iteration, q);
+    };
   }
   const bool has_page = wants_page(scene, options);
   SolvedRun solved = solve_run(scene, ground, model, setup, has_page, start);
   if (frames) frames->finish();
-  run.report = measure_run(scene, setup, model, std::move(solved),
-                           {.has_page = has_page, .has_frames = frames.has_value()}, options.judge);
-  if (options.writes) write_run(run);
+  return complete_run(scene, setup, model, std::move(solved),
+                      {.has_page = has_page, .has_frames = frames.has_value()}, options.judge, folder);
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
@@ -129,7 +135,8 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   SolveSetup setup = solve_setup(scene, solvers, options);
   const SceneGeometry ground = scene_geometry(scene);
   run.model = build(scene, ground);
-  run_built(scene, ground, std::move(setup), options, run);
+  run.folder = open_result_folder(scene, options);  // only now: a scene that is refused leaves none behind
+  run.report = run_built(scene, ground, std::move(setup), options, run.model, run.folder);
   return run;
 }
 

@@ -36,7 +36,9 @@ RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const
   if (given.observer) setup.observer = given.observer(run.model);
   std::optional<Points> start;
   if (given.start) start = relative_start(*given.start, run.model);
-  run_built(scene, ground, std::move(setup), options, run, start ? &*start : nullptr);
+  run.folder = open_result_folder(scene, options);
+  run.report =
+      run_built(scene, ground, std::move(setup), options, run.model, run.folder, start ? &*start : nullptr);
   return run;
 }
 

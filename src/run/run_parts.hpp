@@ -7,7 +7,8 @@
 
 namespace coapt {
 
-// --- solve, measure, write, page: each a value in and a value out; run_built() composes them --------------
+// --- solve, measure, write: each a value in and a value out; run_built() and complete_run() compose them
+// -----
 
 // What a solve leaves, nothing of it measured.
 struct SolvedRun {
@@ -33,8 +34,17 @@ bool wants_page(const Scene& scene, const RunOptions& options);
 Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
                    const RunNotes& notes, const IntersectionJudge& judge);
 
-// The files of the result, then its page, into run.folder. Throws InputError when one cannot be written.
-void write_run(const RunReport& run);
+// The files of the result, result.json first, then its page. Throws InputError when one cannot be written.
+void write_run(const std::filesystem::path& folder, const Model& model, const Report& report);
+
+// What follows a solve: measures it and writes it into the folder; an empty one: writes nothing.
+Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
+                    const RunNotes& notes, const IntersectionJudge& judge,
+                    const std::filesystem::path& folder);
+
+// Where the options want results, made and without the frames of an earlier solve; empty where they want
+// none. Throws InputError for a folder that cannot be written.
+std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options);
 
 // solve_setup(), without a certificate where it would need Hessians that are not there. Throws InputError for
 // given terms together with a cascade.
@@ -48,9 +58,9 @@ SceneGeometry given_ground(const Scene& scene, Given& given);
 // nodes and for coordinates that are not finite.
 Points relative_start(const Eigen::Map<const Points>& start, const Model& model);
 
-// All that run() does with run.model once it is built; start: 3 x node_count, relative to the model's origin,
-// or null for the scene's own.
-void run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
-               RunReport& run, const Points* start = nullptr);
+// All that run() does with a model once it is built, which is left at the end of the solve; folder: of
+// open_result_folder(); start: 3 x node_count, relative to the model's origin, or null for the scene's own.
+Report run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
+                 Model& model, const std::filesystem::path& folder, const Points* start = nullptr);
 
 }  // namespace coapt

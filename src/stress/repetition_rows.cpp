@@ -1,9 +1,8 @@
 // S18, S19 and H3: the same run twice, in another process, on several threads, and by another method.
+#include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "scene/build/build.hpp"
 #include "stress/subject.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

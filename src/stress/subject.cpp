@@ -1,6 +1,7 @@
 #include "stress/subject.hpp"
 
 #include "core/number_text.hpp"
+#include "run/run_parts.hpp"
 
 #include <algorithm>
 
@@ -64,16 +65,15 @@ std::optional<ShownSolve> own_solve(const StressSubject& subject) {
   if (!subject.solution || !subject.solution->x.allFinite()) return std::nullopt;
   const StressRun& own = *subject.solution;
   const Scene& scene = subject.scene->scene;
-  Report report;
+  SolveSetup setup;
+  setup.solver = scene.solver.type;
+  setup.stop.tolerance = scene.solver.tolerance;
+  SolvedRun solved;
+  solved.outcome.result = own.result;
+  solved.way = own.way;
+  Report report = measure_run(scene, setup, own.model, std::move(solved), {.has_page = true},
+                              subject.bench.options().judge);
   report.scene_file = subject.name;
-  report.solver = scene.solver.type;
-  report.tolerance = scene.solver.tolerance;
-  report.pressure_route = pressure_route(own.model, own.result);
-  report.result = own.result;
-  report.fields = compute_fields(own.model, own.x);
-  report.metrics = measure(own.model, own.result.q, report.fields, subject.bench.options().judge);
-  report.warnings = own.model.warnings;
-  report.way = own.way;
   if (report.way.empty()) report.way = {{{}, own.model.X}};
   ShownSolve shown = shown_solve(subject.name + ": what the rows are compared with.", own.model, report);
   shown.view.name = "stress";

@@ -33,7 +33,8 @@ RunReport run_method(const Scene& scene, const std::string& method, const Solver
   const Scene own = scene_of(method, scene);
   RunReport report = run(own, solvers, options);
   if (report.report.result.status == Status::Converged)
-    search_branches(own, solvers, options, branches, report);
+    report.report =
+        with_branches(own, solvers, options, branches, report.model, std::move(report.report), report.folder);
   return report;
 }
 

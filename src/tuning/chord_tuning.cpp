@@ -155,7 +155,8 @@ Tuning search(const PreparedTuning& ready, RunReport& before, const TuningGoal& 
   return tune(make, q, goal, method, own);
 }
 
-void note_options(const ChordTuningOptions& options, ChordTuning& found) {
+void note_options(const ChordTuningOptions& options, const BoundedMinimiser& method, ChordTuning& found) {
+  found.method = method.name();
   found.distance_weight = distance_weight_of(options);
   found.orifice_weight = options.orifice_weight;
   found.force_weight = options.force_weight;
@@ -180,7 +181,9 @@ void solve_tuned(const std::string& text, const std::filesystem::path& scene, co
   options.folder = found.folder / "after";
   options.observer = {};  // whoever interrupted the tuning wants what it found
   const Points x = found.before.model.objective->positions(found.tuning.best.q);
-  run_built(tuned, ground, solve_setup(tuned, solvers, options), options, after, &x);
+  after.folder = open_result_folder(tuned, options);
+  after.report =
+      run_built(tuned, ground, solve_setup(tuned, solvers, options), options, after.model, after.folder, &x);
   ++found.solves;
 }
 
@@ -208,15 +211,15 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
   const PreparedTuning ready = prepare_tuning(text, scene, solvers, minimisers, options, run_options, model);
   found.scene_title = scene_title(ready.scene);
   const std::unique_ptr<BoundedMinimiser> method = minimisers.at(chord_tuning_method(options))();
-  found.method = method->name();
-  note_options(options, found);
+  note_options(options, *method, found);
   found.folder = run_options.folder.empty() ? result_folder(ready.scene) : run_options.folder;
   prepare_result_folder(found.folder);
 
   RunOptions own = run_options;
   own.folder = found.folder / "before";
-  run_built(ready.scene, ready.ground, ready.setup, own, found.before,
-            options.known != nullptr ? &options.known->x_before : nullptr);
+  found.before.folder = open_result_folder(ready.scene, own);
+  found.before.report = run_built(ready.scene, ready.ground, ready.setup, own, model, found.before.folder,
+                                  options.known != nullptr ? &options.known->x_before : nullptr);
   if (options.report_before) options.report_before(found.before);
   const Fields& fields = found.before.report.fields;
   found.solves = 1;

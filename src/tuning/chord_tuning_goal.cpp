@@ -4,7 +4,7 @@
 #include "formats/json/suggestion.hpp"
 #include "formats/mesh_io.hpp"
 #include "report/solve_view.hpp"
-#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_opening.hpp"
 #include "sensitivity/metrics/metrics_state.hpp"
 #include "sensitivity/parameters/line_access.hpp"
 
@@ -199,7 +199,7 @@ ChordTuningGoal make_chord_tuning_goal(const ChordTuningOptions& options, const 
     if (annulus == nullptr)
       throw InputError(
           "--orifice-weight: the scene has no node set \"annulus\", so that no orifice is known");
-    add(make_orifice_area("orifice", model.mesh.triangles, *annulus, before.x,
+    add(make_opening_area("orifice", model.mesh.triangles, *annulus, before.x,
                           {viewing_frame(model, before).up, kBlur}),
         options.orifice_weight);
   }

@@ -2,6 +2,7 @@
 // nothing loads and nothing holds is measured by its own stiffness.
 #include "energy/force_scale.hpp"
 
+#include "energy/contact_barrier.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/load_pressure.hpp"
@@ -174,6 +175,29 @@ TEST(ForceScale, EverySolverBringsAFreeBodyToRest) {
     EXPECT_EQ(result.status, Status::Converged) << solver << ": " << result.message;
     EXPECT_EQ(result.residual, fresh.true_residual(result.q)) << solver;
   }
+}
+
+// The one thing that a solve leaves with the problem: a barrier that it made stiffer, until it is given back.
+TEST(ForceScale, ABarrierThatWasMadeStifferIsAnotherProblemUntilItIsGivenBack) {
+  const TriangleMesh sheet = disc_mesh(4), floor = moved(sheet, {0, 0, -0.05}), both = joined(sheet, floor);
+  FixedMask fixed = FixedMask::Constant(3, both.vertex_count(), false);
+  fixed.rightCols(floor.vertex_count()).setConstant(true);
+  for (int v = 0; v < sheet.vertex_count(); ++v)
+    if (sheet.vertices.col(v).norm() > 1 - 1e-9) fixed.col(v).setConstant(true);
+  ContactBarrierOptions options{.gap = 0.02, .pressure = 0.1};
+  options.obstacles = both.triangles.rightCols(floor.triangle_count());
+  Objective objective(both.vertices, fixed,
+                      terms_of(membrane_term(both.vertices, sheet.triangles, {1, 0.3, 0}),
+                               make_contact_barrier("contact", both.vertices, sheet.triangles, options)));
+  Points x = both.vertices;
+  for (int v = 0; v < sheet.vertex_count(); ++v)
+    x(2, v) -= 0.04995 * (1 - sheet.vertices.col(v).squaredNorm());
+  const Vector q = objective.unknowns(x);
+  const double residual = objective.true_residual(q);
+  ASSERT_TRUE(objective.escalate_stiffness(q));
+  EXPECT_NE(objective.true_residual(q), residual);
+  objective.restore_stiffness();
+  EXPECT_EQ(objective.true_residual(q), residual);
 }
 
 // What the reference state says follows the data of the terms.

@@ -102,7 +102,7 @@ TEST_F(StatedLaws, TakeTheOptionsOfOtherModels) {
   EXPECT_FALSE(terms_.at("anterior")->parameters.has("bulk"));
   EXPECT_NE(warnings_.find("states a bulk modulus (anterior)"), std::string::npos) << warnings_;
 
-  import_it(stated, {.membrane = "stvk"});
+  import_it(stated, {.membrane = LinearLeaflets::ResistsCompression});
   EXPECT_EQ(terms_.at("anterior")->type, "cst_exponential");
   EXPECT_EQ(terms_.at("anterior")->parameters.text("compression"), "resisted");
 

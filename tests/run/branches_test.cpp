@@ -48,7 +48,7 @@ class BranchesOfAScene : public testing::Test {
     options.writes = false;
     RunReport report = run(scene, scene_solvers(), options);
     EXPECT_EQ(report.report.result.status, Status::Converged) << report.report.result.message;
-    return find_branches(scene, scene_solvers(), options, search, report);
+    return find_branches(scene, scene_solvers(), options, search, report.model, report.report);
   }
 
   TemporaryFolder folder_;
@@ -99,7 +99,8 @@ TEST_F(BranchesOfAScene, WritesThemIntoEveryFileOfTheResult) {
   RunReport report = run(scene, scene_solvers(), options);
   EXPECT_EQ(text_of(options.folder / "metrics.csv").find("others_lowest"), std::string::npos);
   EXPECT_EQ(text_of(options.folder / "closed.vtp").find("branch_spread"), std::string::npos);
-  search_branches(scene, scene_solvers(), options, {.starts = 12, .kick = 0.5, .seed = 1}, report);
+  report.report = with_branches(scene, scene_solvers(), options, {.starts = 12, .kick = 0.5, .seed = 1},
+                                report.model, std::move(report.report), report.folder);
   ASSERT_TRUE(report.report.branches.has_value());
   const BranchRange* range = range_of(report.report.branches, "max_displacement_mm");
   ASSERT_NE(range, nullptr);
@@ -134,11 +135,13 @@ TEST_F(BranchesOfAScene, SaysWhereTheyWereNotLookedFor) {
   RunOptions options;
   options.writes = false;
   RunReport report = run(scene, scene_solvers(), options);
-  search_branches(scene, scene_solvers(), options, {.starts = 0}, report);
+  report.report = with_branches(scene, scene_solvers(), options, {.starts = 0}, report.model,
+                                std::move(report.report), report.folder);
   EXPECT_FALSE(report.report.branches.has_value());
   EXPECT_TRUE(report.report.warnings.empty());
   report.report.result.status = Status::Stalled;
-  search_branches(scene, scene_solvers(), options, {.starts = 1}, report);
+  report.report = with_branches(scene, scene_solvers(), options, {.starts = 1}, report.model,
+                                std::move(report.report), report.folder);
   EXPECT_FALSE(report.report.branches.has_value());
   ASSERT_EQ(report.report.warnings.size(), 1u);
   EXPECT_NE(report.report.warnings[0].find("No other equilibria"), std::string::npos);
@@ -261,7 +264,7 @@ TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
   int iterates = 0;
   options.observer = [&iterates](const Iteration&, const Vector&) { return ++iterates < 2; };
   const Branches branches =
-      find_branches(scene, scene_solvers(), options, {.starts = 5, .kick = 0.2}, report);
+      find_branches(scene, scene_solvers(), options, {.starts = 5, .kick = 0.2}, report.model, report.report);
   EXPECT_LT(branches.starts, 5);
   EXPECT_EQ(branches.equilibria.size(), 1u);
 }

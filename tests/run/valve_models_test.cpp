@@ -227,7 +227,7 @@ TEST(ValveModels, NamesThoseThereAre) {
 TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
   const TemporaryFolder folder;
   const Valve valve = mitral_valve({.triangles = 300});
-  write_valve_scene(valve, folder.path(), {.membrane = "spring"});
+  write_valve_scene(valve, folder.path(), {.membrane = LinearLeaflets::Springs});
   const Scene scene = load_scene(folder.path() / "scene.json");
   EXPECT_EQ(scene.terms[0].type, "spring");
   EXPECT_EQ(scene.terms[1].type, "bending");
@@ -240,7 +240,7 @@ TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
   import_valve(folder.path() / "a" / "valve.json", folder.path() / "b");
   EXPECT_EQ(load_scene(folder.path() / "b" / "scene.json").terms[0].type, "spring");
   import_valve(folder.path() / "a" / "valve.json", folder.path() / "c",
-               {.membrane = "spring", .young = "2 MPa"});
+               {.membrane = LinearLeaflets::Springs, .young = "2 MPa"});
   const Scene linear = load_scene(folder.path() / "c" / "scene.json");
   EXPECT_EQ(linear.terms[0].type, "spring");
   EXPECT_EQ(linear.terms[0].parameters.number("young"), 2);

@@ -1,7 +1,7 @@
 // Exact derivatives against differences of solved shapes, for every pair of parameter and metric.
 #include "core/error.hpp"
 #include "sensitivity/metrics/metrics_contact.hpp"
-#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_opening.hpp"
 #include "sensitivity/metrics/metrics_state.hpp"
 #include "sensitivity/metrics/metrics_surface.hpp"
 #include "sensitivity/tracked_valve.hpp"
@@ -53,10 +53,10 @@ Metrics all_metrics(const TrackedValve& valve, const TriangleMesh& target) {
   metrics.push_back(make_surface_distance("greatest distance", scene.triangles, scene.X, target,
                                           {.rounding = 0.01, .sharpness = 5}));
   metrics.push_back(
-      make_orifice_area("orifice", scene.triangles, valve.annulus(), x, {.axis = {0.1, -0.2, 1}, .blur = 1}));
-  metrics.push_back(make_coaptation_area("coaptation area", scene.triangles, scene.X, {.range = 1}));
+      make_opening_area("orifice", scene.triangles, valve.annulus(), x, {.axis = {0.1, -0.2, 1}, .blur = 1}));
+  metrics.push_back(make_contact_zone_area("coaptation area", scene.triangles, scene.X, {.range = 1}));
   metrics.push_back(
-      make_coaptation_height("coaptation height", scene.triangles, scene.X, Vec3::UnitZ(), {.range = 1}));
+      make_contact_zone_height("coaptation height", scene.triangles, scene.X, Vec3::UnitZ(), {.range = 1}));
   metrics.push_back(make_line_force("chord force", chords, tautest));
   metrics.push_back(make_line_force_norm("chord forces", chords, all_chords, 6));
   metrics.push_back(make_strain_energy("strain energy", valve.objective));

@@ -1,6 +1,6 @@
 // Smooth metrics against shapes whose figures are known in closed form.
 #include "sensitivity/metrics/metrics_contact.hpp"
-#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_opening.hpp"
 #include "sensitivity/metrics/metrics_surface.hpp"
 #include "support/trough_valve.hpp"
 
@@ -32,12 +32,12 @@ std::vector<int> rim_of_square() {
 TEST(SmoothMetrics, OrificeIsTheAreaOfTheHole) {
   for (const double half : {2.0, 3.0}) {
     const TriangleMesh mesh = square_with_hole(half);
-    const auto orifice = make_orifice_area("orifice", mesh.triangles, rim_of_square(), mesh.vertices);
+    const auto orifice = make_opening_area("orifice", mesh.triangles, rim_of_square(), mesh.vertices);
     // Blurred corners are rounded off: by less than the square of the blur each.
     EXPECT_NEAR(orifice->evaluate(mesh.vertices, nullptr), 4 * half * half, 1.0);
   }
   const TriangleMesh whole = square_with_hole(0);
-  const auto closed = make_orifice_area("closed", whole.triangles, rim_of_square(), whole.vertices);
+  const auto closed = make_opening_area("closed", whole.triangles, rim_of_square(), whole.vertices);
   EXPECT_LT(closed->evaluate(whole.vertices, nullptr), 0.05);
 }
 
@@ -46,9 +46,9 @@ TEST(SmoothMetrics, CoaptationIsThatOfTheTrough) {
   const Points& X = valve.mesh.vertices;
   Points open = X;  // at rest the leaflets are apart
   for (int v = 0; v < open.cols(); ++v) open(0, v) += (v < open.cols() / 2 ? -5 : 5);
-  const auto area = make_coaptation_area("area", valve.mesh.triangles, open, {.range = 0.8});
-  const auto height = make_coaptation_height("height", valve.mesh.triangles, open, Vec3(0, 0, 2),
-                                             {.range = 0.8, .sharpness = 20});
+  const auto area = make_contact_zone_area("area", valve.mesh.triangles, open, {.range = 0.8});
+  const auto height = make_contact_zone_height("height", valve.mesh.triangles, open, Vec3(0, 0, 2),
+                                               {.range = 0.8, .sharpness = 20});
   // Both faces of 64, and the slopes as far as they are within range: 0.8 apart at most, 3 in 10 steep.
   EXPECT_GT(area->evaluate(X, nullptr), 126);
   EXPECT_LT(area->evaluate(X, nullptr), 128 + 2 * 16 * 0.8);

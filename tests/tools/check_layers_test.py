@@ -106,9 +106,17 @@ class Layers(unittest.TestCase):
 
     def test_refuses_a_library_in_a_public_header(self):
         self.write("mesh/added.hpp", "#pragma once\n#include <nlohmann/json.hpp>\n")
+        self.replace('"nlohmann/" = [', '"nlohmann/" = ["mesh/added.hpp", ')
         self.assertEqual(self.run_checker()[0], 0, "not installed")
         self.write("mesh/added/CMakeLists.txt", "coapt_room(mesh HEADERS ../added.hpp SOURCES added.cpp)\n")
         self.expect_defect("mesh/added.hpp", "<nlohmann/json.hpp>")
+
+    def test_refuses_a_library_that_has_a_door_elsewhere(self):
+        self.write("cli/added.cpp", "#include <nlohmann/json_fwd.hpp>\n")
+        self.expect_defect("cli/added.cpp", "formats/json/json_text.hpp")
+        self.write("cli/added.cpp", "")
+        self.replace('"CLI/" = [', '"CLI/" = ["cli/main.cpp", ')
+        self.expect_defect("cli/main.cpp", "no door")
 
     def test_refuses_a_header_that_is_not_installed_in_one_that_is(self):
         self.write("mesh/added.hpp", '#pragma once\n#include "mesh/inner.hpp"\n')

@@ -157,7 +157,7 @@ void apply_burlina(const PaperModel& model, Valve& valve, ImportOptions& options
   valve.name += ", " + model.title;
   if (valve.thickness <= 0) valve.thickness = options.default_thickness;
   if (valve.pressure <= 0) valve.pressure = quantity_value(kPressure120, kPressure);
-  options.membrane = "stvk";
+  options.membrane = LinearLeaflets::ResistsCompression;
   options.young = kYoung;
   options.poisson = kPoisson;
   options.pressure_model = "field";

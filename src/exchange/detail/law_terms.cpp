@@ -38,7 +38,8 @@ std::string usual_membrane(const Valve& valve, const ImportOptions& options, con
   const double thickness = valve.thickness > 0 ? valve.thickness : options.default_thickness;
   return "    { \"type\": " + quoted(linear_membrane_type(options)) + ", \"name\": " + quoted(name) +
          ", \"young\": " + quoted(options.young.empty() ? kUsualYoung : options.young) +
-         (options.membrane == "spring" ? "" : ", \"poisson\": " + exact_text(options.poisson)) +
+         (options.membrane == LinearLeaflets::Springs ? ""
+                                                      : ", \"poisson\": " + exact_text(options.poisson)) +
          ",\n      \"thickness\": " + quoted(exact_text(thickness) + " mm") +
          (regions.empty() ? "" : ", \"region\": " + list_text(regions)) + " }";
 }
@@ -60,7 +61,7 @@ void add_membranes(const Valve& valve, const ImportOptions& options, Names& name
   if (!has_laws) lawless.clear();  // one law for all needs no region
   if (!has_laws || !lawless.empty())
     terms.push_back(usual_membrane(valve, options, names.unique("leaflets"), lawless));
-  if (options.bends && (has_laws || options.membrane != "stvk"))
+  if (options.bends && (has_laws || options.membrane != LinearLeaflets::ResistsCompression))
     terms.push_back(
         "    // Plate stiffness of the same sheet: it decides how the wrinkled parts lie.\n"
         "    { \"type\": \"bending\" }");
@@ -97,7 +98,15 @@ void add_cables(const Valve& valve, const ImportOptions& options, Names& names,
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 
 std::string linear_membrane_type(const ImportOptions& options) {
-  return options.membrane == "spring" ? "spring" : "cst_" + options.membrane;
+  switch (options.membrane) {
+    case LinearLeaflets::TensionField:
+      return "cst_tension_field";
+    case LinearLeaflets::ResistsCompression:
+      return "cst_stvk";
+    case LinearLeaflets::Springs:
+      break;
+  }
+  return "spring";
 }
 
 std::vector<std::string> law_terms(const Valve& valve, const ImportOptions& options) {

@@ -51,11 +51,11 @@ std::vector<std::vector<int>> neighbours_of(const Triangles& triangles, const Po
   return all;
 }
 
-class Coaptation final : public Metric {
+class ContactZone final : public Metric {
  public:
   // direction: of the height; zero for the area.
-  Coaptation(std::string name, const Triangles& triangles, const Points& X, const Vec3& direction,
-             const CoaptationOptions& options)
+  ContactZone(std::string name, const Triangles& triangles, const Points& X, const Vec3& direction,
+              const ContactZoneOptions& options)
       : Metric(std::move(name)),
         triangles_(triangles),
         options_(options),
@@ -165,13 +165,13 @@ class Coaptation final : public Metric {
   }
 
   Triangles triangles_;
-  CoaptationOptions options_;
+  ContactZoneOptions options_;
   Vec3 direction_;
   std::vector<std::vector<int>> neighbours_;
 };
 
-std::unique_ptr<Metric> coaptation(std::string name, const Triangles& triangles, const Points& X,
-                                   const Vec3& direction, const CoaptationOptions& options) {
+std::unique_ptr<Metric> contact_zone(std::string name, const Triangles& triangles, const Points& X,
+                                     const Vec3& direction, const ContactZoneOptions& options) {
   const std::string where = "metric \"" + name + "\": ";
   std::vector<std::string> defects;
   if (!(options.range > 0 && std::isfinite(options.range)))
@@ -181,21 +181,22 @@ std::unique_ptr<Metric> coaptation(std::string name, const Triangles& triangles,
   if (triangles.cols() == 0) defects.push_back(where + "the surface has no triangle");
   if (!direction.allFinite()) defects.push_back(where + "the direction is not finite");
   if (!defects.empty()) throw InputError(defects);
-  return std::make_unique<Coaptation>(std::move(name), triangles, X, direction, options);
+  return std::make_unique<ContactZone>(std::move(name), triangles, X, direction, options);
 }
 
 }  // namespace
 
-std::unique_ptr<Metric> make_coaptation_area(std::string name, const Triangles& triangles, const Points& X,
-                                             const CoaptationOptions& options) {
-  return coaptation(std::move(name), triangles, X, Vec3::Zero(), options);
+std::unique_ptr<Metric> make_contact_zone_area(std::string name, const Triangles& triangles, const Points& X,
+                                               const ContactZoneOptions& options) {
+  return contact_zone(std::move(name), triangles, X, Vec3::Zero(), options);
 }
 
-std::unique_ptr<Metric> make_coaptation_height(std::string name, const Triangles& triangles, const Points& X,
-                                               const Vec3& direction, const CoaptationOptions& options) {
+std::unique_ptr<Metric> make_contact_zone_height(std::string name, const Triangles& triangles,
+                                                 const Points& X, const Vec3& direction,
+                                                 const ContactZoneOptions& options) {
   if (!(direction.norm() > 0))
     throw InputError("metric \"" + name + "\": the direction of the height has no length");
-  return coaptation(std::move(name), triangles, X, direction.normalized(), options);
+  return contact_zone(std::move(name), triangles, X, direction.normalized(), options);
 }
 
 }  // namespace coapt

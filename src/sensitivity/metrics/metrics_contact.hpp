@@ -1,4 +1,4 @@
-// Smooth coaptation: how much of a surface lies against another part of it, and how high that zone is.
+// Smooth contact zone: how much of a surface lies against another part of it, and how high that zone is.
 #pragma once
 
 #include "sensitivity/metrics/metric.hpp"
@@ -7,7 +7,7 @@
 
 namespace coapt {
 
-struct CoaptationOptions {
+struct ContactZoneOptions {
   double range = 0;  // distance from which on a vertex does not count; it counts wholly below half of it
 
   // Of the height: how sharply the uppermost and lowermost places count [1/length].
@@ -20,16 +20,17 @@ struct CoaptationOptions {
 // what touches there is the sheet itself. Exact derivatives, but where two facets that share no edge are
 // equally near to a vertex.
 //
-// Area of the surface in coaptation, both faces counted: sum of nodal areas times psi [length^2].
+// Area of the surface in contact, both faces counted: sum of nodal areas times psi [length^2].
 // Throws InputError for a range that is not positive, or a surface without triangles.
-std::unique_ptr<Metric> make_coaptation_area(std::string name, const Triangles& triangles, const Points& X,
-                                             const CoaptationOptions& options);
+std::unique_ptr<Metric> make_contact_zone_area(std::string name, const Triangles& triangles, const Points& X,
+                                               const ContactZoneOptions& options);
 
 // Extent of that zone along a direction: smooth maximum minus smooth minimum, log(mean of exp(b z))/b + log
 // (mean of exp(-b z))/b, means weighted as above [length]; 0 where nothing is in contact. Less than the
 // greatest extent, by some logarithms over b. Throws InputError as above, for a direction of no length, and
 // for a sharpness that is not positive.
-std::unique_ptr<Metric> make_coaptation_height(std::string name, const Triangles& triangles, const Points& X,
-                                               const Vec3& direction, const CoaptationOptions& options);
+std::unique_ptr<Metric> make_contact_zone_height(std::string name, const Triangles& triangles,
+                                                 const Points& X, const Vec3& direction,
+                                                 const ContactZoneOptions& options);
 
 }  // namespace coapt

@@ -199,11 +199,7 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
   check(scene, wanted_mm, options);
   Search search(scene, solvers, wanted_mm, options, most_triangles);
   RunReport run;
-  if (options.writes) {
-    run.folder = options.folder.empty() ? result_folder(scene) : options.folder;
-    prepare_result_folder(run.folder);
-    remove_frames(run.folder);
-  }
+  run.folder = open_result_folder(scene, options);
   SolvedMesh mesh = search.solve();
   AccuracyEstimate estimate = std::move(search.estimate);
   if (!mesh.has_converged())
@@ -223,8 +219,8 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
         "Frames are not written for a wanted accuracy, as several meshes are solved.");
   notes.accuracy = std::move(estimate);
   run.model = std::move(mesh.model);
-  run.report = measure_run(scene, setup, run.model, std::move(mesh.solved), notes, options.judge);
-  if (options.writes) write_run(run);
+  run.report =
+      complete_run(scene, setup, run.model, std::move(mesh.solved), notes, options.judge, run.folder);
   return run;
 }
 

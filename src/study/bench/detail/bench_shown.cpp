@@ -37,13 +37,10 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeom
     const Scene scene = scene_of(method, course.scene);
     const SolveSetup setup = solve_setup(scene, course.solvers, options);
     once.model = build(scene, ground);
-    const bool has_page = wants_page(scene, options);
-    SolvedRun solved = solve_run(scene, ground, once.model, setup, has_page);
-    options.writes = false;
-    once.report =
-        measure_run(scene, setup, once.model, std::move(solved), {.has_page = has_page}, options.judge);
+    once.report = run_built(scene, ground, setup, options, once.model, {});
     if (once.report.result.status == Status::Converged)
-      search_branches(scene, course.solvers, options, course.options.branches, once);
+      once.report = with_branches(scene, course.solvers, options, course.options.branches, once.model,
+                                  std::move(once.report), {});
     found.branches = once.report.branches;
   } catch (const std::exception&) {  // the end of the method says why
     return std::nullopt;

@@ -1,3 +1,4 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
@@ -10,8 +11,6 @@
 #include "results/result_warnings.hpp"
 #include "run/branches.hpp"
 #include "study/bench/accuracy.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -180,7 +179,8 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
       accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
   RunOptions again = options;
   again.observer = make_observer();
-  search_branches(scene, all_solvers(), again, arguments.branches, report);
+  report.report = with_branches(scene, all_solvers(), again, arguments.branches, report.model,
+                                std::move(report.report), report.folder);
   end_progress();
   print_summary(report);
   if (checkpoint) checkpoint->finish(arguments.scene);

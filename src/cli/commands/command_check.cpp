@@ -1,11 +1,10 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/row_printer.hpp"
 #include "core/error.hpp"
 #include "exchange/check.hpp"
 #include "exchange/repair.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>

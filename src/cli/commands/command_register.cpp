@@ -1,17 +1,16 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/row_printer.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/durable_file.hpp"
+#include "formats/json/json_text.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "registration/wanted_registration.hpp"
 #include "results/reference_results.hpp"
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <filesystem>

@@ -1,3 +1,4 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
@@ -8,8 +9,6 @@
 #include "formats/text.hpp"
 #include "study/bench/benchmark_report.hpp"
 #include "study/bench/benchmark_summary.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <memory>

@@ -1,3 +1,4 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
@@ -7,8 +8,6 @@
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
 #include "tuning/sensitivity_study.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <memory>

@@ -1,10 +1,9 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
 #include "exchange/import.hpp"
 #include "exchange/valve_models.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <memory>

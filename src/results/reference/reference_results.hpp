@@ -1,10 +1,9 @@
 // The distance from a reference, and how it was registered, in the files of results.
 #pragma once
 
+#include "formats/json/json_text.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "results/reference_distance.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace coapt {
 

@@ -1,4 +1,5 @@
 #include "cli/checkpoint_file.hpp"
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
@@ -10,8 +11,6 @@
 #include "formats/json/units.hpp"
 #include "formats/text.hpp"
 #include "tuning/chord_tuning.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>

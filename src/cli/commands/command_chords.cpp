@@ -1,3 +1,4 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "core/error.hpp"
@@ -7,8 +8,6 @@
 #include "formats/utf8.hpp"
 #include "mesh/mesh_check.hpp"
 #include "valve/generators/leaflet_chords.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/scene_arguments.hpp"
 #include "cli/shape_scenes.hpp"
@@ -8,8 +9,6 @@
 #include "formats/json/markups.hpp"
 #include "valve/generators/mitral.hpp"
 #include "valve/generators/rough_valve.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,8 +1,7 @@
+#include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "results/result_schema.hpp"
 #include "scene/file/schema.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <iostream>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "sensitivity/metrics/metrics_orifice.hpp"
+#include "sensitivity/metrics/metrics_opening.hpp"
 
 #include "core/error.hpp"
 
@@ -16,7 +16,7 @@ using Places = Eigen::Matrix2Xd;
 
 constexpr double kGridPerBlur = 3;     // points
 constexpr double kSamplesPerBlur = 3;  // of a facet, along an edge
-constexpr double kMargin = 0.2;        // of the grid around the annulus
+constexpr double kMargin = 0.2;        // of the grid around the rim
 constexpr double kRounding = 1e-3;     // of the modulus of a signed area, over the mean area
 constexpr double kMostPoints = 4e6;    // of the grid
 
@@ -55,15 +55,15 @@ struct Grid {
   }
 };
 
-class OrificeArea final : public Metric {
+class OpeningArea final : public Metric {
  public:
-  OrificeArea(std::string name, const Triangles& triangles, std::vector<int> annulus, const Points& x,
-              const OrificeOptions& options)
-      : Metric(std::move(name)), triangles_(triangles), annulus_(std::move(annulus)), blur_(options.blur) {
+  OpeningArea(std::string name, const Triangles& triangles, std::vector<int> rim, const Points& x,
+              const OpeningOptions& options)
+      : Metric(std::move(name)), triangles_(triangles), rim_(std::move(rim)), blur_(options.blur) {
     const Vec3 w = options.axis.normalized(), u = w.unitOrthogonal();
     view_ << u.transpose(), w.cross(u).transpose();
-    const Places rim = (view_ * x)(Eigen::all, annulus_);
-    const Vec2 low = rim.rowwise().minCoeff(), high = rim.rowwise().maxCoeff();
+    const Places outline = (view_ * x)(Eigen::all, rim_);
+    const Vec2 low = outline.rowwise().minCoeff(), high = outline.rowwise().maxCoeff();
     const Vec2 margin = Vec2::Constant(kMargin * (high - low).maxCoeff() + 2 * blur_);
     grid_.spacing = blur_ / kGridPerBlur;
     grid_.corner = low - margin;
@@ -103,7 +103,7 @@ class OrificeArea final : public Metric {
     if (gradient == nullptr || slope.isZero(0)) return value;
     Places by_y = Places::Zero(2, y.cols());
     add_cover_gradient(y, slope, by_y);
-    add_annulus_gradient(y, slope, by_y);
+    add_rim_gradient(y, slope, by_y);
     *gradient = view_.transpose() * by_y;
     return value;
   }
@@ -165,18 +165,18 @@ class OrificeArea final : public Metric {
     }
   }
 
-  // The nearest point of the annulus: on the edge from corner `first`, at `along` of it.
+  // The nearest point of the rim: on the edge from corner `first`, at `along` of it.
   struct Nearest {
     size_t first = 0;
     double along = 0;
     Vec2 away = Vec2::Zero();  // from it
     double distance = kInfinity;
   };
-  Vec2 corner(const Places& y, size_t k) const { return y.col(annulus_[k % annulus_.size()]); }
+  Vec2 corner(const Places& y, size_t k) const { return y.col(rim_[k % rim_.size()]); }
 
-  Nearest nearest_on_annulus(const Places& y, const Vec2& p) const {
+  Nearest nearest_on_rim(const Places& y, const Vec2& p) const {
     Nearest nearest;
-    for (size_t k = 0; k < annulus_.size(); ++k) {
+    for (size_t k = 0; k < rim_.size(); ++k) {
       const Vec2 a = corner(y, k), edge = corner(y, k + 1) - a;
       const double square = edge.squaredNorm();
       const double s = square > 0 ? std::clamp((p - a).dot(edge) / square, 0.0, 1.0) : 0;
@@ -188,7 +188,7 @@ class OrificeArea final : public Metric {
 
   bool is_inside(const Places& y, const Vec2& p) const {
     bool inside = false;
-    for (size_t k = 0; k < annulus_.size(); ++k) {
+    for (size_t k = 0; k < rim_.size(); ++k) {
       const Vec2 a = corner(y, k), b = corner(y, k + 1);
       if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
         inside = !inside;
@@ -196,7 +196,7 @@ class OrificeArea final : public Metric {
     return inside;
   }
 
-  // a(y) from the signed distance to the annulus, positive inside.
+  // a(y) from the signed distance to the rim, positive inside.
   Step indicator(double signed_distance) const { return smooth_step(signed_distance / blur_, -0.5, 0.5); }
 
   Vector inside(const Places& y) const {
@@ -205,29 +205,29 @@ class OrificeArea final : public Metric {
       for (int c = 0; c < grid_.columns; ++c) {
         const Vec2 p = grid_.point(c, r);
         const double sign = is_inside(y, p) ? 1 : -1;
-        values[r * grid_.columns + c] = indicator(sign * nearest_on_annulus(y, p).distance).value;
+        values[r * grid_.columns + c] = indicator(sign * nearest_on_rim(y, p).distance).value;
       }
     return values;
   }
 
-  void add_annulus_gradient(const Places& y, const Vector& slope, Places& by_y) const {
+  void add_rim_gradient(const Places& y, const Vector& slope, Places& by_y) const {
     for (int r = 0; r < grid_.rows; ++r)
       for (int c = 0; c < grid_.columns; ++c) {
         const double weight = slope[r * grid_.columns + c];
         if (weight == 0) continue;
         const Vec2 p = grid_.point(c, r);
-        const Nearest nearest = nearest_on_annulus(y, p);
+        const Nearest nearest = nearest_on_rim(y, p);
         const double sign = is_inside(y, p) ? 1 : -1;
         const double rate = indicator(sign * nearest.distance).slope / blur_;
         if (rate == 0 || nearest.distance == 0) continue;
         const Vec2 pull = -weight * rate * sign / nearest.distance * nearest.away;
-        by_y.col(annulus_[nearest.first]) += (1 - nearest.along) * pull;
-        by_y.col(annulus_[(nearest.first + 1) % annulus_.size()]) += nearest.along * pull;
+        by_y.col(rim_[nearest.first]) += (1 - nearest.along) * pull;
+        by_y.col(rim_[(nearest.first + 1) % rim_.size()]) += nearest.along * pull;
       }
   }
 
   Triangles triangles_;
-  std::vector<int> annulus_;
+  std::vector<int> rim_;
   double blur_;
   Eigen::Matrix<double, 2, 3> view_;
   Grid grid_;
@@ -237,13 +237,12 @@ class OrificeArea final : public Metric {
 
 }  // namespace
 
-std::unique_ptr<Metric> make_orifice_area(std::string name, const Triangles& triangles,
-                                          std::vector<int> annulus, const Points& x_start,
-                                          const OrificeOptions& options) {
+std::unique_ptr<Metric> make_opening_area(std::string name, const Triangles& triangles, std::vector<int> rim,
+                                          const Points& x_start, const OpeningOptions& options) {
   const std::string where = "metric \"" + name + "\": ";
   std::vector<std::string> defects;
-  if (annulus.size() < 3) defects.push_back(where + "the annulus needs at least three nodes");
-  for (const int node : annulus)
+  if (rim.size() < 3) defects.push_back(where + "the rim needs at least three nodes");
+  for (const int node : rim)
     if (node < 0 || node >= x_start.cols())
       defects.push_back(where + "there is no node " + std::to_string(node));
   if (!(options.blur > 0 && std::isfinite(options.blur)))
@@ -252,10 +251,9 @@ std::unique_ptr<Metric> make_orifice_area(std::string name, const Triangles& tri
     defects.push_back(where + "the axis has no direction");
   if (!x_start.allFinite()) defects.push_back(where + "a position is not finite");
   if (!defects.empty()) throw InputError(defects);
-  auto metric =
-      std::make_unique<OrificeArea>(std::move(name), triangles, std::move(annulus), x_start, options);
+  auto metric = std::make_unique<OpeningArea>(std::move(name), triangles, std::move(rim), x_start, options);
   if (metric->is_grid_too_large())
-    throw InputError(where + "blur is too small for an annulus of this size; take a hundredth of it or more");
+    throw InputError(where + "blur is too small for a rim of this size; take a hundredth of it or more");
   return metric;
 }
 

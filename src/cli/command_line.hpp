@@ -1,0 +1,4 @@
+// The door to CLI11, which no other file includes.
+#pragma once
+
+#include <CLI/CLI.hpp>
