@@ -59,7 +59,7 @@ PageTable metric_table(const Report& report) {
                             value_cell(*row.value, range_of(report.branches, row.name)),
                             {unit_sign(row.unit)},
                             {row.meaning}});
-  table.note = "Intersections were counted by: " + report.metrics.intersection_judge +
+  table.note = "Intersections were counted by: " + report.metrics.intersection_checker +
                ". Figures that the scene does not define are left out.";
   return table;
 }
@@ -96,6 +96,10 @@ PageTable distance_table(const ReferenceDistance& distance) {
   add("from it to the result", distance.from_reference);
   if (const auto& vertex = distance.same_vertex)
     table.rows.push_back({"each vertex from itself", vertex->mean, "", vertex->max});
+  if (const auto& lines = distance.lines) {
+    add("from its coaptation line to that one's", lines->there);
+    add("from that coaptation line to its own", lines->back);
+  }
   if (const auto& registration = distance.registration) {
     add("before its registration, from the result", registration->to_reference_before);
     add("before its registration, from it", registration->from_reference_before);
@@ -159,12 +163,12 @@ PageSection convergence(const Report& report) {
   section.blocks = {residual_plot(named, false), residual_plot(named, true)};
   const auto& trace = report.result.trace;
   if (trace.front().outer_iteration != trace.back().outer_iteration)
-    section.blocks.emplace_back(
-        PageText{"Dotted upright lines: from there on another energy is minimised, because loads or supports "
-                 "went on, a barrier became stiffer, kinks became sharper, or pressure was renewed."});
+    section.blocks.emplace_back(PageText{
+        "Dotted upright lines: from there on another energy is minimised, because loads or supports "
+        "went on, a barrier became stiffer, kinks became sharper, or the lagged pressure was updated."});
   if (report.result.outer_iterations > 0)
     section.blocks.emplace_back(
-        PageText{"The residual of an iterate is that of the potential of its round; the "
+        PageText{"The residual of an iterate is that of the potential of its outer iteration; the "
                  "verdict is that of the exact loads."});
   return section;
 }

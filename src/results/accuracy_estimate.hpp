@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optim/solver.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 
 #include <optional>
 #include <string>

@@ -91,7 +91,7 @@ nlohmann::ordered_json branches_json(const Branches& branches) {
     others[range.name] = {{"lowest", range.lowest}, {"highest", range.highest}};
   return {{"message", branches_message(branches)},
           {"starts", branches.starts},
-          {"starts_of_the_way", branches.starts_of_the_way},
+          {"starts_along_path", branches.starts_along_path},
           {"not_converged", branches.not_converged},
           {"kick_mm", branches.kick_mm},
           {"least_moved_share", branches.least_moved_share},

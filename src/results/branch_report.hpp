@@ -28,7 +28,7 @@ struct BranchRange {
 
 struct Branches {
   int starts = 0;             // made; fewer than wanted where the user interrupted the search
-  int starts_of_the_way = 0;  // of them, from the scene's own start; the others from its equilibrium
+  int starts_along_path = 0;  // of them, from the scene's own start; the others from its equilibrium
   int not_converged = 0;      // of all
   double kick_mm = 0;
   double least_moved_share = 1;  // of the starts: length of all moves that contact admitted, over that wanted

@@ -3,6 +3,7 @@
 #include "mesh/projected_area.hpp"
 #include "mesh/remesh/spanning_surface.hpp"
 #include "results/coaptation_height.hpp"
+#include "results/reference/coaptation_line.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,22 +11,16 @@
 namespace coapt {
 namespace {
 
-constexpr int kSmallestOutline = 4;             // cells of the view
-constexpr int kFinest = 1024, kCoarsest = 128;  // cells over the extent of the annulus
-
-// Eight cells to an edge, four to the contact distance, within bounds that keep the view cheap and useful.
-double cell_size(double extent, double mean_edge, double contact_distance) {
-  return std::clamp(std::min(mean_edge / 8, contact_distance / 4), extent / kFinest, extent / kCoarsest);
-}
+constexpr int kSmallestOutline = 4;  // cells of the view
 
 // All that is looked at while the figures are taken.
 struct ClosedShape {
   const Model& model;
   const Fields& fields;
   Points surface, annulus;  // of the closed state
-  TopView view;
-  ClosedView closed;
-  int radius = 0;  // of the closing, in cells
+  SeenSurface seen;
+  const TopView& view = seen.view;
+  const ClosedView& closed = seen.closed;
   SpanningSurface spanned;
 
   int region(int triangle) const {
@@ -44,15 +39,12 @@ ClosedShape closed_shape(const Model& model, const Fields& fields) {
   const std::vector<int>& loop = *annulus_of(model);
   const ViewFrame frame = annulus_frame(model, fields, loop);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
-  const Points outline = in_frame(annulus, frame);
-  const double extent = (outline.rowwise().maxCoeff() - outline.rowwise().minCoeff()).head<2>().maxCoeff();
-  const double cell =
-      cell_size(extent, mean_edge_length(surface, model.mesh.triangles), fields.contact_distance);
-  const int radius = std::max(1, static_cast<int>(std::lround(fields.contact_distance / 2 / cell)));
-  TopView view = top_view(surface, model.mesh.triangles, annulus, frame, cell, radius + 1);
-  ClosedView closed = closed_view(view, radius);
-  return {
-      model, fields, surface, annulus, std::move(view), std::move(closed), radius, SpanningSurface(outline)};
+  return {.model = model,
+          .fields = fields,
+          .surface = surface,
+          .annulus = annulus,
+          .seen = seen_surface(surface, model.mesh.triangles, annulus, frame, fields.contact_distance),
+          .spanned = SpanningSurface(in_frame(annulus, frame))};
 }
 
 // Open nodes that hang together with the given one, across the edges of cells.
@@ -144,23 +136,6 @@ void measure_prolapse(const ClosedShape& shape, Closure& closure) {
   }
 }
 
-// Nodes near which, seen from above, a vertex is in contact: a bulge may hide where contact begins.
-std::vector<char> near_contact(const ClosedShape& shape) {
-  const TopView& view = shape.view;
-  const Points plan = in_frame(shape.surface, view.frame);
-  std::vector<char> marked(static_cast<size_t>(view.node_count()), 0);
-  for (Eigen::Index v = 0; v < plan.cols(); ++v) {
-    if (!shape.is_contact(static_cast<int>(v))) continue;
-    const double i = std::round((plan(0, v) - view.x0) / view.cell),
-                 j = std::round((plan(1, v) - view.y0) / view.cell);
-    if (i >= 0 && j >= 0 && i < view.columns && j < view.rows)
-      marked[static_cast<size_t>(j * view.columns + i)] = 1;
-  }
-  const double extent = view.cell * std::max(view.columns, view.rows);
-  const double reach = std::max(extent / 20, mean_edge_length(shape.surface, shape.model.mesh.triangles));
-  return near_marked(view, marked, static_cast<int>(std::ceil(reach / view.cell)));
-}
-
 double depth_of(const ClosedShape& shape, const Vec3& point) {
   return std::max(0.0, -(point - shape.view.frame.centre).dot(shape.view.frame.up));
 }
@@ -228,9 +203,8 @@ std::vector<Vec3> contact_of(const ClosedShape& shape, int region) {
 
 void measure_line(const ClosedShape& shape, Closure& closure) {
   const double mean_edge = mean_edge_length(shape.surface, shape.model.mesh.triangles);
-  const double shortest = std::max(2 * shape.fields.contact_distance, 2 * mean_edge);
-  closure.line = seams(shape.view, shape.closed, shape.surface, shape.model.mesh.triangles,
-                       {near_contact(shape), shape.radius, shortest});
+  closure.line = coaptation_line(shape.seen, shape.surface, shape.model.mesh.triangles,
+                                 shape.fields.is_contact, shape.fields.contact_distance);
   for (const Seam& seam : closure.line) {
     closure.coaptation_length_mm += length_of(seam);
     for (size_t k = 0; k < seam.triangles.size(); ++k) {

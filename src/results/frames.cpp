@@ -1,6 +1,7 @@
 #include "results/frames.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "formats/whole_file.hpp"
 
@@ -51,11 +52,10 @@ void FrameWriter::see(const Iteration& iteration, const Vector& q) {
   const double time = iteration.time > 0 ? iteration.time : static_cast<double>(seen_ - 1);
   if (count_ > 0 && time <= last_time_) return;  // a round of a motion begins where the one before ended
   last_time_ = time;
-  char name[32], entry[128];
+  char name[32];
   std::snprintf(name, sizeof name, "frames/frame_%06d.vtp", count_++);
   write_vtp(folder_ / name, frame(model_, model_.objective->positions(q)));
-  std::snprintf(entry, sizeof entry, "    <DataSet timestep=\"%.9g\" file=\"%s\"/>\n", time, name);
-  entries_ += entry;
+  entries_ += "    <DataSet timestep=\"" + number_text(time, 9) + "\" file=\"" + name + "\"/>\n";
 }
 
 void FrameWriter::finish() const {

@@ -95,9 +95,10 @@ std::vector<MetricRow> strength_rows(const Metrics& m) {
 
 }  // namespace
 
-Metrics measure(const Model& model, const Vector& q, const Fields& fields, const IntersectionJudge& judge) {
+Metrics measure(const Model& model, const Vector& q, const Fields& fields,
+                const IntersectionChecker& checker) {
   Metrics metrics;
-  metrics.intersection_judge = judge.name;
+  metrics.intersection_checker = checker.name;
   const Triangles& triangles = model.mesh.triangles;
   metrics.leaflet_area_open_mm2 = surface_area(model.X, triangles);
   metrics.leaflet_area_closed_mm2 = surface_area(fields.x, triangles);
@@ -106,7 +107,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
       fields.displacement.cols() == 0 ? 0 : fields.displacement.colwise().norm().maxCoeff();
   const bool is_finite = fields.x.allFinite();
   if (triangles.cols() > 0 && is_finite)
-    metrics.intersections = std::ssize(membrane_intersections(fields.x, model, judge));
+    metrics.intersections = std::ssize(membrane_intersections(fields.x, model, checker));
   if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
   measure_lines(model, fields, metrics);
   measure_stress(fields, metrics);

@@ -14,7 +14,7 @@ namespace coapt {
 // Empty where a quantity is not defined for the scene: no annulus, no chords, no contact.
 struct Metrics {
   long intersections = 0;                      // pairs of facets, one or both of the mesh
-  std::string intersection_judge;              // who counted them
+  std::string intersection_checker;            // who counted them
   std::optional<double> orifice_area_mm2;      // of the annulus opening, left uncovered
   std::optional<double> annulus_area_mm2;      // projected on the annulus plane
   std::optional<double> orifice_area_percent;  // of the annulus area
@@ -49,7 +49,7 @@ struct Metrics {
 // Measures the state q. fields: those of the same state. judge: counts the intersections.
 // Pre: the set "annulus" of the model, where there is one, is an ordered loop of at least three vertices.
 Metrics measure(const Model& model, const Vector& q, const Fields& fields,
-                const IntersectionJudge& judge = {});
+                const IntersectionChecker& checker = {});
 
 // The same as a table, for files and summaries: one row per metric, in the order of the struct.
 struct MetricRow {

@@ -12,7 +12,7 @@ namespace coapt {
 struct NeighbourCheck {
   bool is_made = false;       // false: the method's iterates do not tell
   bool is_suspected = false;  // other equilibria
-  int iterates = 0;           // of the longest way on one mesh; 0 along a damped path
+  int iterates = 0;           // of the longest path on one mesh; 0 along a damped path
   int unstable_steps = 0;     // Result::unstable_steps; 0 of a solve at once
 };
 

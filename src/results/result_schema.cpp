@@ -63,7 +63,7 @@ OrderedJson terms() {
               {"greatest_force_n", number("largest nodal force of the term [N]")},
               {"counters", object({{"elements", count("elements; for contact the active pairs at the end")},
                                    {"candidates", count("contact: pairs in the candidate list at the end")},
-                                   {"searches", count("contact: how often the list was renewed")}},
+                                   {"searches", count("contact: how often the list was updated")}},
                                   "what the term did")}},
              "one term"),
       "every term of the scene");
@@ -122,6 +122,11 @@ OrderedJson reference_distance() {
                "between vertices of the same number, when the reference has as many and the same facets"),
         Need::Optional},
        {"left_out_nodes", count("vertices without a part in these figures: they can be moved at no cost")},
+       {"coaptation_line",
+        object({{"to_reference", distance("from the coaptation line of the result to that of the reference")},
+                {"from_reference", distance("from the reference's to that of the result")}},
+               "distance between the coaptation lines, where both are seen"),
+        Need::Optional},
        {"registration", registration(), Need::Optional}},
       "distance between the solved surface and the closed surface that the scene names");
 }
@@ -208,9 +213,9 @@ OrderedJson neighbours() {
       {{"judged", flag("the iterates of the method tell; those of newton do")},
        {"suspected", flag("there may be other equilibria near by: --branches looks for them")},
        {"iterates",
-        count("of the longest way on one mesh, of a solve at once, which its suspicion is drawn from")},
+        count("of the longest path on one mesh, of a solve at once, which its suspicion is drawn from")},
        {"unstable_steps", count("of a damped path under the full load, which its suspicion is drawn from")}},
-      "whether the way to the result suggests other equilibria; no proof either way");
+      "whether the path to the result suggests other equilibria; no proof either way");
 }
 
 OrderedJson undetermined_nodes_schema() {
@@ -237,7 +242,7 @@ OrderedJson branches() {
       object({{"lowest", number("of them")}, {"highest", number("of them")}}, "one metric");
   return object({{"message", text("the outcome in one sentence")},
                  {"starts", count("perturbed starts that were made")},
-                 {"starts_of_the_way", count("of them, from the scene's own start along its whole way")},
+                 {"starts_along_path", count("of them, from the scene's own start along its whole path")},
                  {"not_converged", count("of all")},
                  {"kick_mm", number("greatest move of a node of a start [mm]")},
                  {"least_moved_share",
@@ -284,17 +289,18 @@ OrderedJson counters() {
                  {"link_elements", count("links between pairs of nodes")},
                  {"pressure_facets", count("elements of pressure terms: facets, or loaded nodes if frozen")},
                  {"contact_candidates", count("pairs in the candidate lists at the end")},
-                 {"contact_searches", count("renewals of candidate lists")}},
+                 {"contact_searches", count("updates of candidate lists")}},
                 "work by kind: zero for what the scene does not use");
 }
 
 OrderedJson potential_changes() {
-  return list(
-      count("number of the iterate"),
-      "iterates from which on another energy is minimised, a new round of trace.csv: a step of a motion or "
-      "of "
-      "loads, a renewed pressure, a stiffened barrier, sharpened kinks, the way off a saddle; only between "
-      "these the energy of the trace falls");
+  return list(count("number of the iterate"),
+              "iterates from which on another energy is minimised, a new outer iteration of trace.csv: a "
+              "step of a motion or "
+              "of "
+              "loads, an updated pressure, a stiffened barrier, sharpened kinks, the descent from a saddle; "
+              "only between "
+              "these the energy of the trace falls");
 }
 
 }  // namespace
@@ -313,7 +319,7 @@ std::string result_schema() {
               {"certificate", certificate()},
               {"terms", terms()},
               {"iterations", count("accepted iterates")},
-              {"rounds", count("outer renewals of a load without a potential; 0: none was needed")},
+              {"rounds", count("outer updates of a load without a potential; 0: none was needed")},
               {"damped_steps", count("steps along a damped path, on the scene's own mesh; 0: none")},
               {"potential_changes", potential_changes()},
               {"branch_changes", branch_changes()},

@@ -8,7 +8,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "results/branches_json.hpp"
-#include "results/reference_results.hpp"
+#include "results/reference/reference_results.hpp"
 #include "results/result_surfaces.hpp"
 #include "results/study_files.hpp"
 
@@ -280,7 +280,7 @@ std::string result_json(const Model& model, const Report& report) {
         {"nodes", model.X.cols()},
         {"unknowns", model.objective->free_count()}}},
       {"metrics", rows_json(metric_rows(report.metrics))},
-      {"judge", report.metrics.intersection_judge}};
+      {"judge", report.metrics.intersection_checker}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   if (report.accuracy) json["accuracy"] = accuracy_json(*report.accuracy);

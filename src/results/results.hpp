@@ -7,7 +7,7 @@
 #include "results/cascade_level.hpp"
 #include "results/metrics.hpp"
 #include "results/neighbour_check.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "results/shape_record.hpp"
 
 #include <filesystem>
@@ -32,10 +32,10 @@ struct Report {
   NeighbourCheck neighbours;
   std::optional<Branches> branches;  // where they were looked for
   std::vector<std::string> warnings;
-  bool has_frames = false;              // of an animation, in the result folder
-  bool has_collisions = false;          // the method was to keep facets apart (DynamicOptions::collisions)
-  bool has_page = false;                // report.html is written
-  std::vector<RecordedShape> way = {};  // to the result, for the page; empty without one
+  bool has_frames = false;      // of an animation, in the result folder
+  bool has_collisions = false;  // the method was to keep facets apart (DynamicOptions::collisions)
+  bool has_page = false;        // report.html is written
+  std::vector<RecordedShape> shape_history = {};  // to the result, for the page; empty without one
 };
 
 // How the pressure of the model was treated, in words.

@@ -5,7 +5,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kVisible = 1e-3;  // of the whole way
+constexpr double kVisible = 1e-3;  // of the whole path
 
 double distance(const Vector& a, const Vector& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
@@ -14,31 +14,33 @@ double distance(const Points& a, const Points& b) { return (a - b).colwise().nor
 
 }  // namespace
 
-std::vector<RecordedShape> thinned(const std::vector<RecordedShape>& given, const Points& result,
-                                   size_t most) {
+std::vector<RecordedShape> subsampled(const std::vector<RecordedShape>& given, const Points& result,
+                                      size_t most) {
   std::vector<const RecordedShape*> all;
   for (const RecordedShape& shape : given) all.push_back(&shape);
   if (all.empty()) return {};
-  std::vector<double> way = {0};  // to each, and to the result
-  for (size_t k = 1; k < all.size(); ++k) way.push_back(way.back() + distance(all[k]->x, all[k - 1]->x));
-  way.push_back(way.back() + distance(result, all.back()->x));
+  std::vector<double> length = {0};  // to each, and to the result
+  for (size_t k = 1; k < all.size(); ++k)
+    length.push_back(length.back() + distance(all[k]->x, all[k - 1]->x));
+  length.push_back(length.back() + distance(result, all.back()->x));
 
   const auto leave_out = [&](size_t k) {
     all.erase(all.begin() + static_cast<long>(k));
-    way.erase(way.begin() + static_cast<long>(k));
+    length.erase(length.begin() + static_cast<long>(k));
   };
-  const double least = kVisible * way.back();
+  const double least = kVisible * length.back();
   for (size_t k = 1; k < all.size();)
-    if (way[k] - way[k - 1] <= least)
+    if (length[k] - length[k - 1] <= least)
       leave_out(k);
     else
       ++k;
-  while (all.size() > 1 && way.back() - way[all.size() - 1] <= least) leave_out(all.size() - 1);
+  while (all.size() > 1 && length.back() - length[all.size() - 1] <= least) leave_out(all.size() - 1);
   // Again and again the one that leaves the smallest gap.
   while (all.size() > most) {
     size_t least_missed = 1;
     for (size_t k = 2; k < all.size(); ++k)
-      if (way[k + 1] - way[k - 1] < way[least_missed + 1] - way[least_missed - 1]) least_missed = k;
+      if (length[k + 1] - length[k - 1] < length[least_missed + 1] - length[least_missed - 1])
+        least_missed = k;
     leave_out(least_missed);
   }
   std::vector<RecordedShape> shapes;
@@ -58,9 +60,9 @@ void ShapeRecord::see(const Iteration& iteration, const Vector& q) {
 }
 
 void ShapeRecord::thin() {
-  double way = 0;
-  for (size_t k = 1; k < kept_.size(); ++k) way += distance(kept_[k].q, kept_[k - 1].q);
-  spacing_ = std::max(2 * spacing_, way / static_cast<double>(2 * most_));
+  double length = 0;
+  for (size_t k = 1; k < kept_.size(); ++k) length += distance(kept_[k].q, kept_[k - 1].q);
+  spacing_ = std::max(2 * spacing_, length / static_cast<double>(2 * most_));
   std::vector<Kept> fewer;
   for (Kept& kept : kept_)
     if (fewer.empty() || distance(kept.q, fewer.back().q) > spacing_) fewer.push_back(std::move(kept));
@@ -70,7 +72,7 @@ void ShapeRecord::thin() {
 std::vector<RecordedShape> ShapeRecord::shapes(const Points& result) const {
   std::vector<RecordedShape> all = {start_};
   for (const Kept& kept : kept_) all.push_back(kept.shape);
-  return thinned(all, result, most_);
+  return subsampled(all, result, most_);
 }
 
 }  // namespace coapt

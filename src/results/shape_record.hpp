@@ -1,4 +1,4 @@
-// The way to a result in a few shapes, for its page.
+// The history of a result in a few shapes, for its page.
 #pragma once
 
 #include "scene/build/model.hpp"
@@ -12,13 +12,14 @@ struct RecordedShape {
   Points x;  // 3 x node_count, relative to the model's origin [mm]
 };
 
-// Of shapes on the way to a result, the start first and the result not among them, at most `most` (at least
-// 1), spread over the way as evenly as they allow; the start stays. One that is nearer than a thousandth of
-// the way to the one before it, or to the result, shows nothing new and is left out.
-std::vector<RecordedShape> thinned(const std::vector<RecordedShape>& way, const Points& result, size_t most);
+// Of the shapes before a result, the start first and the result not among them, at most `most` (at least
+// 1), spread over the path as evenly as they allow; the start stays. One that is nearer than a thousandth of
+// the path to the one before it, or to the result, shows nothing new and is left out.
+std::vector<RecordedShape> subsampled(const std::vector<RecordedShape>& history, const Points& result,
+                                      size_t most);
 
 // Keeps accepted iterates of the model's own mesh, never more than twice `most`, so far apart that the whole
-// way is covered: those of the coarser meshes of a cascade are left out. An iterate that is not kept costs
+// path is covered: those of the coarser meshes of a cascade are left out. An iterate that is not kept costs
 // one pass over its unknowns.
 class ShapeRecord {
  public:
@@ -28,8 +29,8 @@ class ShapeRecord {
   // Call it at each accepted iterate.
   void see(const Iteration& iteration, const Vector& q);
 
-  // Those on the way to a result (3 x node_count, relative to the model's origin), in the order of the run,
-  // the start of the model first; see thinned().
+  // Those before a result (3 x node_count, relative to the model's origin), in the order of the run,
+  // the start of the model first; see subsampled().
   std::vector<RecordedShape> shapes(const Points& result) const;
 
  private:

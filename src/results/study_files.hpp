@@ -3,7 +3,7 @@
 
 #include "formats/json/json_text.hpp"
 #include "formats/table.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -23,10 +23,10 @@ bool wants_page(const Scene& scene, const RunOptions& options) {
   return options.writes && options.writes_page.value_or(scene.writes_page);
 }
 
-SolvedRun solve_run(const Scene& scene, const SceneGeometry& ground, Model& model, SolveSetup setup,
-                    bool keeps_way, const Points* start) {
+SolvedRun solve_run(const Scene& scene, const SceneGeometry& geometry, Model& model, SolveSetup setup,
+                    bool keeps_history, const Points* start) {
   std::optional<ShapeRecord> record;
-  if (keeps_way && has_shape_view()) {
+  if (keeps_history && has_shape_view()) {
     record.emplace(model, page_shapes(model));
     setup.observer = [&record, next = setup.observer](const Iteration& iteration, const Vector& q) {
       record->see(iteration, q);
@@ -35,15 +35,15 @@ SolvedRun solve_run(const Scene& scene, const SceneGeometry& ground, Model& mode
   }
   SolvedRun solved;
   if (start == nullptr)
-    solved.outcome = solve_scene(scene, ground, model, setup);
+    solved.outcome = solve_scene(scene, geometry, model, setup);
   else
     solved.outcome.result = solve_again(*start, model, setup);
-  if (record) solved.way = record->shapes(model.objective->positions(solved.outcome.result.q));
+  if (record) solved.shape_history = record->shapes(model.objective->positions(solved.outcome.result.q));
   return solved;
 }
 
 Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
-                   const RunNotes& notes, const IntersectionJudge& judge) {
+                   const RunNotes& notes, const IntersectionChecker& checker) {
   Report report;
   report.scene_file = scene.file.filename().string();
   report.scene_title = scene_title(scene);
@@ -53,7 +53,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   report.has_page = notes.has_page;
   report.has_frames = notes.has_frames;
   report.accuracy = notes.accuracy;
-  report.way = std::move(solved.way);
+  report.shape_history = std::move(solved.shape_history);
   report.result = std::move(solved.outcome.result);
   report.levels = std::move(solved.outcome.levels);
   for (const auto* warnings : {&model.warnings, &notes.warnings, &std::as_const(solved.outcome.warnings)})
@@ -65,8 +65,9 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   if (!result.certificate.free_nodes.empty())
     report.fields.undetermined =
         undetermined_flags(result.certificate.free_nodes, std::nullopt, model.objective->node_count());
-  report.metrics = measure(model, result.q, report.fields, judge);
-  report.reference = compare_with_reference(model, report.fields, result.certificate.free_nodes);
+  report.metrics = measure(model, result.q, report.fields, checker);
+  report.reference =
+      compare_with_reference(model, report.fields, result.certificate.free_nodes, report.metrics.closure);
   if (report.reference)
     report.warnings.insert(report.warnings.end(), report.reference->doubts.begin(),
                            report.reference->doubts.end());
@@ -105,15 +106,16 @@ std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& o
 }
 
 Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
-                    const RunNotes& notes, const IntersectionJudge& judge,
+                    const RunNotes& notes, const IntersectionChecker& checker,
                     const std::filesystem::path& folder) {
-  Report report = measure_run(scene, setup, model, std::move(solved), notes, judge);
+  Report report = measure_run(scene, setup, model, std::move(solved), notes, checker);
   if (!folder.empty()) write_run(folder, model, report);
   return report;
 }
 
-Report run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
-                 Model& model, const std::filesystem::path& folder, const Points* start) {
+Report run_built(const Scene& scene, const SceneGeometry& geometry, SolveSetup setup,
+                 const RunOptions& options, Model& model, const std::filesystem::path& folder,
+                 const Points* start) {
   std::optional<FrameWriter> frames;
   const int interval = options.frame_interval.value_or(scene.frame_interval);
   if (!folder.empty() && interval > 0) {
@@ -124,19 +126,19 @@ Report run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup set
     };
   }
   const bool has_page = wants_page(scene, options);
-  SolvedRun solved = solve_run(scene, ground, model, setup, has_page, start);
+  SolvedRun solved = solve_run(scene, geometry, model, setup, has_page, start);
   if (frames) frames->finish();
   return complete_run(scene, setup, model, std::move(solved),
-                      {.has_page = has_page, .has_frames = frames.has_value()}, options.judge, folder);
+                      {.has_page = has_page, .has_frames = frames.has_value()}, options.checker, folder);
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   RunReport run;
   SolveSetup setup = solve_setup(scene, solvers, options);
-  const SceneGeometry ground = scene_geometry(scene);
-  run.model = build(scene, ground);
+  const SceneGeometry geometry = scene_geometry(scene);
+  run.model = build(scene, geometry);
   run.folder = open_result_folder(scene, options);  // only now: a scene that is refused leaves none behind
-  run.report = run_built(scene, ground, std::move(setup), options, run.model, run.folder);
+  run.report = run_built(scene, geometry, std::move(setup), options, run.model, run.folder);
   return run;
 }
 

@@ -46,6 +46,7 @@ class RegisteredReference(CommandCase):
         as_it_lies = self.distance()
         self.assertGreater(as_it_lies["mean_mm"], 1)
         self.assertNotIn("registration", as_it_lies)
+        self.assertGreater(as_it_lies["coaptation_line"]["to_reference"]["mean_mm"], 1)
         self.assertFalse((self.out / "reference.vtp").exists())
         for keys in ({"register": "annulus"}, {"register": "surface", "trim": 0.2, "scale": True},
                      {"register": "landmarks", "landmarks": "a.mrk.json", "reference_landmarks": "b.mrk.json"}):
@@ -55,6 +56,9 @@ class RegisteredReference(CommandCase):
                 self.assertIn("turned by 30 degrees", run.stdout)
                 found = self.distance()
                 self.assertLess(found["max_mm"], 1e-5)
+                for way in ("to_reference", "from_reference"):  # read off a grid
+                    self.assertLess(found["coaptation_line"][way]["p95_mm"], 0.05)
+                self.assertIn("of coaptation lines", run.stdout)
                 registration = found["registration"]
                 self.assertEqual(registration["method"], keys["register"])
                 self.assertAlmostEqual(registration["angle_deg"], 30, 5)
@@ -101,7 +105,8 @@ class RegisteredReference(CommandCase):
     def test_a_method_without_its_input_is_refused_before_the_solve(self):
         for keys, words in (({"register": "landmarks"}, "needs the points of both"),
                             ({"register": "annulus", "landmarks": "a.mrk.json"}, "only"),
-                            ({"register": "icp"}, "surface")):
+                            ({"register": "icp"}, "surface"), ({"trim": 0.2}, "only a registration"),
+                            ({"register": "none", "scale": True}, "only a registration")):
             run = self.solve(**keys)
             self.assertEqual(run.returncode, 2, run.stdout)
             self.assertIn(words, run.stderr)

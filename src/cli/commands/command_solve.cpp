@@ -63,6 +63,11 @@ void print_reference(const ReferenceDistance& reference) {
               distance.p95, distance.max);
   if (reference.left_out > 0) std::printf(" (undetermined nodes left out: %d)", reference.left_out);
   std::printf("\n");
+  if (reference.lines) {
+    const DistanceFigures lines = both_directions(reference.lines->there, reference.lines->back);
+    std::printf("  %-22s mean %.3f, 95 %% %.3f, max %.3f mm\n", "of coaptation lines", lines.mean, lines.p95,
+                lines.max);
+  }
   if (!reference.registration) return;
   const AppliedRegistration& registration = *reference.registration;
   std::printf(
@@ -144,7 +149,7 @@ void print_summary(const RunReport& run) {
               result.iterations, result.evaluations.gradient, result.wall_s);
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
   print_metrics(run.model, m, branches);
-  std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_judge.c_str());
+  std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_checker.c_str());
   if (report.reference) print_reference(*report.reference);
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
   std::string files;
@@ -235,7 +240,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (frames->count() > 0) options.frame_interval = arguments->frames;
     if (arguments->has_no_report) options.writes_page = false;
     options.factorisations = all_factorisations();
-    options.judge = intersection_judge();
+    options.checker = intersection_checker();
     options.observer = make_observer();
     exit_code = solve_as_asked(*arguments, options);
   });

@@ -1,7 +1,7 @@
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 
 #include "core/error.hpp"
-#include "results/registered_reference.hpp"
+#include "results/reference/registered_reference.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,6 +48,16 @@ ReferenceDistance summary(const BothWays& both, const TriangleMesh& closed, cons
   return distance;
 }
 
+// In the view of the solved shape, in which the reference lies in its place.
+std::optional<LineDistance> distance_of_lines(const Model& model, const std::optional<Closure>& closure,
+                                              const Fields& fields, const TriangleMesh& reference) {
+  if (!closure || closure->line.empty()) return std::nullopt;
+  const std::vector<int>& loop = *annulus_of(model);
+  return line_distance(closure->line,
+                       coaptation_line_of(reference, fields.x(Eigen::all, loop),
+                                          annulus_frame(model, fields, loop), fields.contact_distance));
+}
+
 }  // namespace
 
 DistanceFigures both_directions(const DistanceFigures& to, const DistanceFigures& from) {
@@ -76,13 +86,17 @@ ReferenceDistance reference_distance(const TriangleMesh& closed, const TriangleM
 }
 
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
-                                                        const std::vector<int>& free_nodes) {
+                                                        const std::vector<int>& free_nodes,
+                                                        const std::optional<Closure>& closure) {
   if (!model.closed_reference) return std::nullopt;
   const TriangleMesh closed = surface_at(model, fields.x);
   const UncountedVertices uncounted{free_nodes, {}};
-  const ReferenceDistance as_given =
+  ReferenceDistance as_given =
       reference_distance(closed, *model.closed_reference, fields.reference_distance, uncounted);
-  if (!model.registration) return as_given;
+  if (!model.registration) {
+    as_given.lines = distance_of_lines(model, closure, fields, *model.closed_reference);
+    return as_given;
+  }
   RegisteredReference registered;
   try {
     registered = registered_reference(model, closed);
@@ -101,6 +115,7 @@ std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fiel
   for (const std::string& doubt : registration_doubts(applied.found))
     distance.doubts.push_back("reference.register: " + doubt + ".");
   distance.registration = std::move(applied);
+  distance.lines = distance_of_lines(model, closure, fields, registered.surface);
   fields.reference_distance = both.there.vertex_distances;
   fields.registered_distance = both.back.vertex_distances;
   fields.registered_reference = std::move(registered.surface);

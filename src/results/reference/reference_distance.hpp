@@ -3,16 +3,13 @@
 
 #include "mesh/distance/surface_distance.hpp"
 #include "registration/registration.hpp"
-#include "results/fields.hpp"
+#include "results/closure.hpp"
+#include "results/reference/coaptation_line.hpp"
 
 #include <optional>
 #include <vector>
 
 namespace coapt {
-
-struct DistanceFigures {
-  double mean = 0, p95 = 0, max = 0;  // [mm]
-};
 
 struct VertexDistance {
   double mean = 0, max = 0;  // [mm]
@@ -32,6 +29,8 @@ struct ReferenceDistance {
   int left_out = 0;  // vertices whose place is not determined, and which have no part in these figures
   std::optional<AppliedRegistration> registration = {};  // none: the reference lies as it was given
   std::vector<std::string> doubts = {};                  // about the registration, whole sentences
+  // From the coaptation line to that of the reference, and back; none where one of them is not seen.
+  std::optional<LineDistance> lines = {};
 };
 
 // Both directions together: the mean of the means, the greater percentile and maximum.
@@ -53,9 +52,10 @@ TriangleMesh surface_at(const Model& model, const Points& x);
 // Nothing for a model without a closed reference. That is registered first, where the scene says so; where
 // that fails it stays as it lies, and a doubt says why. Also fills fields.reference_distance and what fields
 // hold of a registered reference. free_nodes: that the certificate found to move at no cost; they are left
-// out.
+// out. closure: of the solved shape, whose coaptation line is compared too.
 std::optional<ReferenceDistance> compare_with_reference(const Model& model, Fields& fields,
-                                                        const std::vector<int>& free_nodes = {});
+                                                        const std::vector<int>& free_nodes = {},
+                                                        const std::optional<Closure>& closure = std::nullopt);
 
 // The mean and the greatest distance of points of the same number; NaN where all are left out, by number in
 // ascending order, and 0 where there are none. Pre: as many in both.

@@ -1,4 +1,4 @@
-#include "results/reference_results.hpp"
+#include "results/reference/reference_results.hpp"
 
 #include "results/study_files.hpp"
 
@@ -27,6 +27,9 @@ OrderedJson reference_json(const ReferenceDistance& distance) {
   json["left_out_nodes"] = distance.left_out;
   if (const auto& same = distance.same_vertex)
     json["same_vertex"] = {{"mean_mm", number_json(same->mean)}, {"max_mm", number_json(same->max)}};
+  if (distance.lines)
+    json["coaptation_line"] = {{"to_reference", distances_json(distance.lines->there)},
+                               {"from_reference", distances_json(distance.lines->back)}};
   if (const auto& registration = distance.registration) {
     OrderedJson& applied = json["registration"] =
         registration_json(registration->found, registration->translation_mm);

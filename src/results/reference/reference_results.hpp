@@ -3,7 +3,7 @@
 
 #include "formats/json/json_text.hpp"
 #include "formats/vtk/vtp_writer.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 
 namespace coapt {
 

@@ -1,4 +1,4 @@
-#include "results/registered_reference.hpp"
+#include "results/reference/registered_reference.hpp"
 
 #include "core/error.hpp"
 #include "registration/wanted_registration.hpp"

@@ -295,6 +295,10 @@ void read_reference(const Parameters& values, double mesh_scale, Scene& scene, R
     return std::any_of(reading.defects.begin(), reading.defects.end(),
                        [&key](const std::string& defect) { return defect.starts_with(key + ":"); });
   };
+  for (const std::string key : {"trim", "scale"})
+    if (reference.has(key) && !method)
+      reading.defects.push_back(reference.where(key) +
+                                ": only a registration uses it; say which by \"register\", or leave it out");
   const bool by_landmarks = method == RegistrationMethod::Landmarks;
   for (const std::string key : {"landmarks", "reference_landmarks"})
     if (reference.has(key) != by_landmarks && !has_defect_of(reference.where(key)))
@@ -303,8 +307,10 @@ void read_reference(const Parameters& values, double mesh_scale, Scene& scene, R
                                                               "needs the points of both"
                                                             : ": only \"register\": \"landmarks\" uses it"));
   if (!method || !reading.defects.empty()) return;
-  scene.registration = SceneRegistration{
-      reference.where("register"), *method, {reference.number("trim"), reference.flag("scale")}, {}, {}};
+  RegistrationOptions options;
+  options.trim = reference.number_or("trim", options.trim);
+  options.with_scale = reference.has("scale") && reference.flag("scale");
+  scene.registration = SceneRegistration{reference.where("register"), *method, options, {}, {}};
   if (!by_landmarks) return;
   scene.registration->landmarks = reference.text("landmarks");
   scene.registration->reference_landmarks = reference.text("reference_landmarks");

@@ -214,14 +214,13 @@ KeySpec reference_key() {
                            .doc = "How it is brought onto the result, as `coapt register` does, before "
                                   "distances are taken; both are reported, and the motion."},
                           {.name = "trim",
-                           .fallback = "0.1",
                            .min = 0,
                            .max = 0.9,
-                           .doc = "Share of the pairs that a registration leaves out, the farthest."},
+                           .doc = "Share of the pairs that a registration leaves out, the farthest; default: "
+                                  "0.1."},
                           {.name = "scale",
                            .kind = KeyKind::Flag,
-                           .fallback = "false",
-                           .doc = "Whether a registration also finds one scale."},
+                           .doc = "Whether a registration also finds one scale; default: false."},
                           {.name = "landmarks",
                            .kind = KeyKind::File,
                            .doc = "Points of the closed shape, such as commissures and papillary tips [mm]: "

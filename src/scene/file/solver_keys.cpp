@@ -146,8 +146,9 @@ KeySpec xpbd_key() {
         .dimension = kTime,
         .min = 0,
         .excludes_min = true,
-        .doc = "Time in which the prescribed nodes go their way, a piece in every step; default: half "
-               "the time of all steps, with model \"walczak-2019\" 2 s, which is ours."},
+        .doc =
+            "Time in which the prescribed nodes move along their path, a piece in every step; default: half "
+            "the time of all steps, with model \"walczak-2019\" 2 s, which is ours."},
        {.name = "damping",
         .min = 0,
         .max = 1,
