@@ -33,7 +33,7 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
   options.writes = folder.has_value();
   if (folder) options.folder = *folder;
   options.factorisations = cli::all_factorisations();
-  options.judge = cli::intersection_judge();
+  options.checker = cli::intersection_checker();
   Failure failure;
   Given given = input.given(failure);
   const bool is_from_given_start = given.start.has_value();

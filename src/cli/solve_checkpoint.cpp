@@ -49,8 +49,9 @@ void SolveCheckpoint::keep(const RunRecord& record) {
 
 void SolveCheckpoint::finish(const std::string& scene) {
   is_finished_ = true;
-  if (recorder_->has_left_the_way())
-    std::printf("  warning: the run left the way that its checkpoint knew, and was solved anew from there\n");
+  if (recorder_->has_left_history())
+    std::printf(
+        "  warning: the run departed from the history in its checkpoint, and was solved anew from there\n");
   if (!recorder_->is_cut_short()) return file_.remove();
   keep(recorder_->record());
   file_.print_how_to_go_on(scene);

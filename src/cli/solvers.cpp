@@ -49,7 +49,7 @@ BoundedMinimiserTable all_minimisers() {
   return table;
 }
 
-IntersectionJudge intersection_judge() {
+IntersectionChecker intersection_checker() {
 #ifdef COAPT_HAS_CGAL
   return {"cgal", intersecting_pairs_cgal};
 #else

@@ -12,6 +12,6 @@ FactorisationTable all_factorisations();
 BoundedMinimiserTable all_minimisers();
 
 // The most independent one of this build: CGAL where it is in.
-IntersectionJudge intersection_judge();
+IntersectionChecker intersection_checker();
 
 }  // namespace coapt::cli

@@ -31,7 +31,7 @@ RunOptions StudyArguments::options() const {
   if (max_seconds > 0) options.max_seconds = max_seconds;
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
-  options.judge = intersection_judge();
+  options.checker = intersection_checker();
   options.observer = make_observer();
   return options;
 }

@@ -171,7 +171,7 @@ void Objective::prepare(const Vector& q) {
     if (term->prepare(x_)) pattern_is_current_ = false;
 }
 
-void Objective::renew_pattern() {
+void Objective::update_pattern() {
   if (pattern_is_current_) return;
   pattern_ = HessianPattern(terms_, block_, static_cast<int>(active_.size()), fixed_);
   pattern_is_current_ = true;
@@ -191,7 +191,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
                            Projection projection) {
   prepare(q);
   if (h != nullptr) {
-    renew_pattern();
+    update_pattern();
     if (h->nonZeros() != pattern_.zero_matrix().nonZeros() || h->rows() != unknown_count() ||
         !std::equal(h->innerIndexPtr(), h->innerIndexPtr() + h->nonZeros(),
                     pattern_.zero_matrix().innerIndexPtr()))
@@ -207,7 +207,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   }
 
   double energy = 0;
-  if (circulatory_ == Circulatory::HeldDead) {
+  if (circulatory_ == Circulatory::Lagged) {
     energy = -remainder_.cwiseProduct(x_).sum();
     if (gradient != nullptr) nodal_gradient_ = -remainder_;
   } else if (circulatory_ == Circulatory::PathWork) {
@@ -314,7 +314,7 @@ void Objective::lag_circulatory_force(const Vector& q) {
   for (const auto& term : terms_)
     if (term->has_circulatory_force() && term->rebuild_potential(x_)) pattern_is_current_ = false;
   scale_is_current_ = false;
-  circulatory_ = Circulatory::HeldDead;
+  circulatory_ = Circulatory::Lagged;
   circulatory_force(x_, remainder_);
 }
 

@@ -130,7 +130,7 @@ class Objective {
 
   // The terms have other data than before (a parameter was set): what the reference state says is measured
   // anew, with the next gradient.
-  void renew_reference() { reference_is_current_ = scale_is_current_ = false; }
+  void remeasure_reference() { reference_is_current_ = scale_is_current_ = false; }
 
   // Greatest force of the last gradient evaluation, reactions of a prestress included [force]: what round-off
   // is measured against.
@@ -176,7 +176,7 @@ class Objective {
   // These blocks of unknowns by themselves, all others held where q has them: an objective whose energy
   // differs by a constant, in the same order of unknowns, whose residual is measured against this one's
   // reference force at q and whose laws are as they are now. Contact keeps each node within `reach` [length]
-  // of where it is. Null where a term cannot be divided, or the circulatory force is held dead.
+  // of where it is. Null where a term cannot be divided, or the circulatory force is lagged.
   std::unique_ptr<Objective> part(const Vector& q, const std::vector<int>& blocks, double reach);
 
   std::vector<TermReport> breakdown(const Vector& q);
@@ -194,7 +194,7 @@ class Objective {
     return term.role() == TermRole::Load ? load_factor_ : stiffness_factor_;
   }
   double pour(const EnergyTerm& term, Sink sink) const;  // scaled energy and derivatives at x_
-  void renew_pattern();
+  void update_pattern();
   void split(const Points& nodal, Vector& free);
   void circulatory_force(const Points& x, Points& force) const;
   double path_work();  // from anchor_ to x_; leaves the force at x_ in force_
@@ -217,11 +217,11 @@ class Objective {
   int threads_ = 1;
   bool has_stress_limits_ = false;
 
-  enum class Circulatory { None, HeldDead, PathWork };
+  enum class Circulatory { None, Lagged, PathWork };
   Circulatory circulatory_ = Circulatory::None;
-  Points remainder_;       // circulatory force, 3 x node_count: held dead, or at the anchor of the path
-  Points anchor_;          // where the path has got to
-  Points force_, middle_;  // work space
+  Points remainder_;                // circulatory force, 3 x node_count: lagged, or at the anchor of the path
+  Points anchor_;                   // where the path has got to
+  Points force_, middle_;           // work space
   std::vector<TangentBlock> skew_;  // half the tangent of the gradient, by blocks of unknowns
   double work_ = 0;                 // of the circulatory force along the path so far
   Points nodal_gradient_;           // work space

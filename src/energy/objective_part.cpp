@@ -4,7 +4,7 @@
 namespace coapt {
 
 std::unique_ptr<Objective> Objective::part(const Vector& q, const std::vector<int>& blocks, double reach) {
-  if (circulatory_ == Circulatory::HeldDead || !normal_motion_.is_empty()) return nullptr;
+  if (circulatory_ == Circulatory::Lagged || !normal_motion_.is_empty()) return nullptr;
   prepare(q);
   std::vector<int> nodes;
   for (const int block : blocks) nodes.push_back(active_[static_cast<size_t>(block)]);

@@ -30,7 +30,7 @@ enum class TermRole {
 struct TermCounters {
   long elements = 0;    // elements of the term (contact: active pairs at the last evaluation)
   long candidates = 0;  // contact: pairs in the candidate list
-  long searches = 0;    // contact: how often the list was renewed
+  long searches = 0;    // contact: how often the list was updated
 };
 
 // One 3x3 block of the derivative of nodal forces: how the force on node `row` changes with node `column`.

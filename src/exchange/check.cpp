@@ -59,10 +59,10 @@ std::optional<Model> load(const std::filesystem::path& scene_file, CheckReport& 
     return std::nullopt;
   }
   try {
-    const SceneGeometry ground = scene_geometry(*scene);
-    Model model = build(*scene, ground);
+    const SceneGeometry geometry = scene_geometry(*scene);
+    Model model = build(*scene, geometry);
     append(report.warnings, model.warnings);
-    append(report.warnings, valve_doubts(*scene, ground, model));
+    append(report.warnings, valve_doubts(*scene, geometry, model));
     return model;
   } catch (const InputError& error) {
     append(report.defects, error.defects());

@@ -16,9 +16,9 @@ namespace {
 constexpr std::string_view kClosed = "_closed";
 
 Markup markup_of(const Scene& scene, const std::string& what) {
-  const SceneGeometry ground = scene_geometry(scene);
-  if (!ground.defects.empty()) throw InputError(ground.defects);
-  const Model& model = ground.model;
+  const SceneGeometry geometry = scene_geometry(scene);
+  if (!geometry.defects.empty()) throw InputError(geometry.defects);
+  const Model& model = geometry.model;
   const bool is_closed = what.ends_with(kClosed) && !model.sets.contains(what);
   const std::string set = is_closed ? what.substr(0, what.size() - kClosed.size()) : what;
   const auto found = model.sets.find(set);
@@ -30,7 +30,7 @@ Markup markup_of(const Scene& scene, const std::string& what) {
   }
   Points points = model.X(Eigen::all, found->second);
   if (is_closed) {
-    const MotionPath motion = motion_path(ground.prescribed, model.X, scene.motion_steps);
+    const MotionPath motion = motion_path(geometry.prescribed, model.X, scene.motion_steps);
     if (motion.positions) points = motion.positions(1)(Eigen::all, found->second);
   }
   points.colwise() += model.origin;
@@ -41,12 +41,12 @@ Markup markup_of(const Scene& scene, const std::string& what) {
 std::vector<std::string> export_mesh(const std::filesystem::path& from, const std::filesystem::path& out) {
   MeshFile file;
   if (formats::lower_extension(from) == ".json") {
-    const SceneGeometry ground = scene_geometry(load_scene(from));
-    if (!ground.defects.empty()) throw InputError(ground.defects);
-    file.mesh = ground.model.mesh;
+    const SceneGeometry geometry = scene_geometry(load_scene(from));
+    if (!geometry.defects.empty()) throw InputError(geometry.defects);
+    file.mesh = geometry.model.mesh;
     if (file.mesh.triangle_count() == 0) throw InputError(from.string() + ": has no mesh to export");
-    file.mesh.vertices.colwise() += ground.model.origin;
-    file.warnings = ground.model.warnings;
+    file.mesh.vertices.colwise() += geometry.model.origin;
+    file.warnings = geometry.model.warnings;
   } else {
     file = read_mesh(from);
   }

@@ -30,14 +30,14 @@ struct Domain {
 
 class FebioWriter {
  public:
-  explicit FebioWriter(const Scene& scene) : scene_(scene), ground_(scene_geometry(scene)) {
-    if (!ground_.defects.empty()) throw InputError(ground_.defects);
+  explicit FebioWriter(const Scene& scene) : scene_(scene), geometry_(scene_geometry(scene)) {
+    if (!geometry_.defects.empty()) throw InputError(geometry_.defects);
   }
 
   FebioText write() {
     sort_terms();
     if (!scene_.obstacles.empty()) refuse("obstacles", "cannot be written to a FEBio model");
-    if (ground_.model.mesh.triangle_count() == 0)
+    if (geometry_.model.mesh.triangle_count() == 0)
       refuse("mesh", "a FEBio model needs shells; this scene has none");
     find_domains();
     add_membranes();
@@ -91,7 +91,7 @@ class FebioWriter {
 
   // Region by region, law by law, in the order of their first triangle.
   void find_domains() {
-    const TriangleMesh& mesh = ground_.model.mesh;
+    const TriangleMesh& mesh = geometry_.model.mesh;
     const auto count = static_cast<size_t>(mesh.triangle_count());
     std::vector<const TermSpec*> term_of(count, nullptr);
     for (const TermSpec* term : membranes_) {
@@ -159,12 +159,12 @@ class FebioWriter {
   }
 
   std::string corners(int t) const {
-    const Eigen::Vector3i corner = ground_.model.mesh.triangles.col(t).array() + 1;
+    const Eigen::Vector3i corner = geometry_.model.mesh.triangles.col(t).array() + 1;
     return std::to_string(corner[0]) + "," + std::to_string(corner[1]) + "," + std::to_string(corner[2]);
   }
 
   void add_nodes() {
-    const Model& model = ground_.model;
+    const Model& model = geometry_.model;
     mesh_ += "<Nodes name=\"nodes\">\n";
     for (int node = 0; node < model.X.cols(); ++node) {
       const Vec3 x = model.X.col(node) + model.origin;
@@ -194,18 +194,18 @@ class FebioWriter {
 
   // Nodes with the same prescribed coordinates share one set; those that move and those that stay are apart.
   void add_supports() {
-    const Model& model = ground_.model;
-    const MotionPath motion = motion_path(ground_.prescribed, model.X, scene_.motion_steps);
+    const Model& model = geometry_.model;
+    const MotionPath motion = motion_path(geometry_.prescribed, model.X, scene_.motion_steps);
     const Points end = motion.positions ? motion.positions(1) : model.X;
-    for (const auto& [node, path] : ground_.prescribed.paths)
+    for (const auto& [node, path] : geometry_.prescribed.paths)
       has_stations_ = has_stations_ || path.size() > 1;
     if (has_stations_)
       warnings_.push_back(scene_.file.string() +
                           ": boundary: the stations of a path are left out; nodes go straight to its end.");
     std::map<std::pair<std::array<bool, 3>, bool>, std::vector<int>> groups;
     for (int node = 0; node < model.X.cols(); ++node) {
-      const std::array axes{ground_.prescribed.fixed(0, node), ground_.prescribed.fixed(1, node),
-                            ground_.prescribed.fixed(2, node)};
+      const std::array axes{geometry_.prescribed.fixed(0, node), geometry_.prescribed.fixed(1, node),
+                            geometry_.prescribed.fixed(2, node)};
       if (axes != std::array{false, false, false})
         groups[{axes, end.col(node) != model.X.col(node)}].push_back(node);
     }
@@ -262,7 +262,7 @@ class FebioWriter {
       if (std::find(networks.begin(), networks.end(), network) == networks.end()) networks.push_back(network);
     }
     for (const std::string& network : networks) {
-      const PlacedNetwork& placed = ground_.networks.at(network);
+      const PlacedNetwork& placed = geometry_.networks.at(network);
       for (const Chord& chord : placed.network.chords)
         for (const TermSpec* term : cables_)
           if (term->parameters.has("network") && term->parameters.text("network") == network &&
@@ -274,7 +274,7 @@ class FebioWriter {
   void add_spring(const TermSpec& term, const Chord& chord, const PlacedNetwork& placed) {
     const Parameters& p = term.parameters;
     const int a = placed.node(chord.from), b = placed.node(chord.to);
-    const double distance = (ground_.model.X.col(a) - ground_.model.X.col(b)).norm();
+    const double distance = (geometry_.model.X.col(a) - geometry_.model.X.col(b)).norm();
     const double rest_length = chord.rest_length * p.number("length_scale");
     const double area = p.number_or("area", chord.area);
     if (distance == 0 || rest_length <= 0 || area <= 0)
@@ -299,7 +299,7 @@ class FebioWriter {
   void add_loads() {
     if (has_contact_ || !pressures_.empty()) {
       mesh_ += "<Surface name=\"surface\">\n";
-      for (int t = 0; t < ground_.model.mesh.triangle_count(); ++t)
+      for (int t = 0; t < geometry_.model.mesh.triangle_count(); ++t)
         mesh_ += "<tri3 id=\"" + std::to_string(t + 1) + "\">" + corners(t) + "</tri3>\n";
       mesh_ += "</Surface>\n";
     }
@@ -355,7 +355,7 @@ class FebioWriter {
       "<fric_coeff>0</fric_coeff></contact>\n";
 
   const Scene& scene_;
-  SceneGeometry ground_;
+  SceneGeometry geometry_;
   std::vector<const TermSpec*> membranes_, cables_, pressures_;
   bool has_contact_ = false, has_stations_ = false;
   std::vector<Domain> domains_;

@@ -49,11 +49,11 @@ void copy_window(const Parameters& from, Parameters& to) {
 }
 
 // Modulus and thickness at small strain, of a law that springs do not have.
-void set_small_strain(const TermSpec& membrane, const Scene& scene, const SceneGeometry& ground,
+void set_small_strain(const TermSpec& membrane, const Scene& scene, const SceneGeometry& geometry,
                       Parameters& springs) {
   Scene alone = scene;
   alone.terms = {membrane};
-  const Model model = build(alone, ground);
+  const Model model = build(alone, geometry);
   const std::vector<int> triangles = region_triangles(membrane.parameters, model.mesh);
   const MembraneProperties& first = model.membrane[static_cast<size_t>(triangles.front())];
   if (!(first.young > 0))
@@ -73,7 +73,7 @@ void set_small_strain(const TermSpec& membrane, const Scene& scene, const SceneG
   if (membrane.parameters.has("region")) springs.set("region", membrane.parameters.texts("region"));
 }
 
-TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<SceneGeometry>& ground) {
+TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<SceneGeometry>& geometry) {
   const Parameters& p = membrane.parameters;
   if (p.number_or("prestress", 0) != 0)
     throw InputError(p.where("prestress") + ": springs have none; mass-spring needs a membrane without");
@@ -82,8 +82,8 @@ TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<
   if (copy_law(membrane, springs)) {
     copy_window(p, springs);
   } else {
-    if (!ground) ground = scene_geometry(scene);
-    set_small_strain(membrane, scene, *ground, springs);
+    if (!geometry) geometry = scene_geometry(scene);
+    set_small_strain(membrane, scene, *geometry, springs);
   }
   return {"spring", membrane.name, std::move(springs)};
 }
@@ -94,12 +94,12 @@ Scene mass_spring_scene(const Scene& scene) {
   Scene springs = scene;
   springs.terms.clear();
   springs.solver.type = "dynamic";
-  std::optional<SceneGeometry> ground;  // read when a law asks for it
+  std::optional<SceneGeometry> geometry;  // read when a law asks for it
   std::vector<std::string> defects;
   for (const TermSpec& term : scene.terms) {
     if (is_bending(term)) continue;
     try {
-      springs.terms.push_back(is_membrane(term) ? springs_of(term, scene, ground) : term);
+      springs.terms.push_back(is_membrane(term) ? springs_of(term, scene, geometry) : term);
     } catch (const InputError& error) {
       defects.insert(defects.end(), error.defects().begin(), error.defects().end());
     }

@@ -45,8 +45,8 @@ RepairReport repair(const std::filesystem::path& scene_file, RepairMethod method
   RepairReport report;
   const auto contact = std::find_if(scene.terms.begin(), scene.terms.end(), is_barrier);
   if (contact == scene.terms.end() || !scene.mesh) return report;
-  const SceneGeometry ground = scene_geometry(scene);
-  const Model& model = ground.model;
+  const SceneGeometry geometry = scene_geometry(scene);
+  const Model& model = geometry.model;
   const Triangles facets = all_facets(model);
   SeparationOptions options;
   options.membrane_count = model.mesh.triangle_count();
@@ -63,7 +63,7 @@ RepairReport repair(const std::filesystem::path& scene_file, RepairMethod method
   }
   options.gap = report.gap_mm = kGapPerEdge * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
   for (Eigen::Index node = 0; node < model.X.cols(); ++node)
-    options.is_held.push_back(ground.prescribed.fixed.col(node).any());
+    options.is_held.push_back(geometry.prescribed.fixed.col(node).any());
   const Separation separation = separate(model.X, facets, options);
   report.left = separation.pairs_left;
   report.passes = separation.passes;

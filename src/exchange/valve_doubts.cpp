@@ -7,16 +7,16 @@
 namespace coapt {
 namespace {
 
-Vec3 end_of_path(int node, const SceneGeometry& ground) {
-  const auto path = ground.prescribed.paths.find(node);
-  return path == ground.prescribed.paths.end() ? Vec3(ground.model.X.col(node)) : path->second.back();
+Vec3 end_of_path(int node, const SceneGeometry& geometry) {
+  const auto path = geometry.prescribed.paths.find(node);
+  return path == geometry.prescribed.paths.end() ? Vec3(geometry.model.X.col(node)) : path->second.back();
 }
 
 // All networks as one, at the positions of the model.
-ChordNetwork joined_networks(const SceneGeometry& ground) {
+ChordNetwork joined_networks(const SceneGeometry& geometry) {
   ChordNetwork all;
   std::vector<int> tips, junctions;  // nodes
-  for (const auto& [path, placed] : ground.networks) {
+  for (const auto& [path, placed] : geometry.networks) {
     const auto first_tip = static_cast<int>(tips.size()), first_junction = static_cast<int>(junctions.size());
     for (int k = 0; k < placed.network.papillary.cols(); ++k) tips.push_back(placed.first_papillary + k);
     for (int k = 0; k < placed.network.junctions.cols(); ++k) junctions.push_back(placed.first_junction + k);
@@ -28,11 +28,11 @@ ChordNetwork joined_networks(const SceneGeometry& ground) {
       all.chords.push_back(std::move(chord));
     }
   }
-  all.papillary = ground.model.X(Eigen::all, tips);
-  all.junctions = ground.model.X(Eigen::all, junctions);
+  all.papillary = geometry.model.X(Eigen::all, tips);
+  all.junctions = geometry.model.X(Eigen::all, junctions);
   all.papillary_closed.resize(3, all.papillary.cols());
   for (size_t k = 0; k < tips.size(); ++k)
-    all.papillary_closed.col(static_cast<Eigen::Index>(k)) = end_of_path(tips[k], ground);
+    all.papillary_closed.col(static_cast<Eigen::Index>(k)) = end_of_path(tips[k], geometry);
   return all;
 }
 
@@ -55,14 +55,14 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
   return doubts;
 }
 
-std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& ground, const Model& model) {
-  const auto annulus = ground.model.sets.find("annulus");
-  if (!scene.mesh || annulus == ground.model.sets.end() || annulus->second.empty()) return {};
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
+  const auto annulus = geometry.model.sets.find("annulus");
+  if (!scene.mesh || annulus == geometry.model.sets.end() || annulus->second.empty()) return {};
   Valve valve;
-  valve.leaflets = ground.model.mesh;
-  valve.closed_reference = ground.model.closed_reference;
+  valve.leaflets = geometry.model.mesh;
+  valve.closed_reference = geometry.model.closed_reference;
   valve.annulus = annulus->second;
-  valve.chords = joined_networks(ground);
+  valve.chords = joined_networks(geometry);
   valve.pressure = model.applied_pressure;
   for (const MembraneProperties& membrane : model.membrane)
     if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))

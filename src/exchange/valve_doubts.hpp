@@ -14,6 +14,6 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
 
 // Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
 // chords nothing where interventions edit them. Pre: model is built of it.
-std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& ground, const Model& model);
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model);
 
 }  // namespace coapt

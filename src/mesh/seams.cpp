@@ -16,9 +16,9 @@ namespace {
 constexpr double kDetour = 2;  // way along the mesh over the straight distance, above which parts are far
 
 // Whether two triangles are within a distance of each other along the edges of the mesh.
-class MeshWays {
+class MeshPaths {
  public:
-  MeshWays(const Points& x, const Triangles& triangles)
+  MeshPaths(const Points& x, const Triangles& triangles)
       : x_(x),
         triangles_(triangles),
         graph_(vertex_graph(triangles, x.cols())),
@@ -69,7 +69,7 @@ class SeamFinder {
         triangles_(triangles),
         is_wanted_(is_wanted),
         mean_edge_(mean_edge_length(x, triangles)),
-        ways_(x, triangles) {}
+        paths_(x, triangles) {}
 
   // Corner (i, j) of the grid lies at (i - 1/2, j - 1/2); numbers as those of the nodes.
   std::vector<SeamStep> steps() {
@@ -104,7 +104,7 @@ class SeamFinder {
     if (s == t || s < 0 || t < 0) return false;
     for (int k = 0; k < 3; ++k)
       if ((triangles_.col(s).array() == triangles_(k, t)).any()) return false;
-    return !ways_.are_within(s, t, kDetour * (place(b) - place(a)).norm() + 2 * mean_edge_);
+    return !paths_.are_within(s, t, kDetour * (place(b) - place(a)).norm() + 2 * mean_edge_);
   }
 
   const TopView& view_;
@@ -112,7 +112,7 @@ class SeamFinder {
   const Triangles& triangles_;
   const std::vector<char>& is_wanted_;
   double mean_edge_;
-  MeshWays ways_;
+  MeshPaths paths_;
 };
 
 // Of the covered nodes around a grid corner the lowest: there the parts meet, also where one hangs over.

@@ -36,7 +36,7 @@ PathMeans path_means(Solver& solver, const Problem& problem, const StopRule& sto
           [&, pose](double t, Vector& q) {
             if (problem.motion.positions) {
               const Points here = objective.positions(q);
-              const Vector carried = carried_along(objective, q, problem.motion.positions(t));
+              const Vector carried = extended_harmonically(objective, q, problem.motion.positions(t));
               pose(t);
               if (objective.step_limit(here, objective.positions(carried) - here, 1) < 1) return false;
               q = carried;
@@ -66,7 +66,7 @@ bool ends_the_run(Status status) {
 
 Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) {
   Outcome outcome;
-  outcome.is_on_the_way = true;
+  outcome.is_short_of_full = true;
   const bool is_lost = move.is_overloaded && !is_finite(objective, q);
   outcome.status = is_lost ? Status::NonFinite : Status::Stalled;
   outcome.note =
@@ -125,7 +125,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
   const bool has_motion = problem.motion.positions && !is_taken;
   const int steps = std::max(
       {1, has_motion ? problem.motion.steps : 1, continuation.load_steps, continuation.stiffness_steps});
-  const double on_the_way = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
+  const double on_path = std::max(stop.tolerance, is_continued ? kBranchTolerance : kMotionTolerance);
   BranchWatch branches(path_means(solver, problem, stop, monitor, result.outer_iterations));
   Outcome outcome;
   Move move;
@@ -146,7 +146,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
       set_scales(continuation, t, objective);
       const bool is_last = has_arrived && step == steps;
       outcome.status =
-          run_outer_iterations(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_the_way,
+          run_outer_iterations(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_path,
                                result.outer_iterations, outcome.note);
     } while (!has_arrived && !ends_the_run(outcome.status));
     if (is_blocked || ends_the_run(outcome.status)) break;
@@ -163,10 +163,10 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
   // A run that was cut short is measured, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
   if (is_blocked) return blocked_motion(move, objective, result.q);
-  outcome.is_on_the_way = step < steps || !has_arrived;
+  outcome.is_short_of_full = step < steps || !has_arrived;
   if (!has_arrived)
     outcome.note = "after " + number_text(100 * move.reached) + " % of the prescribed motion";
-  else if (outcome.is_on_the_way)
+  else if (outcome.is_short_of_full)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +
                    " of the prescribed motion or of the continuation";
   return outcome;

@@ -12,7 +12,7 @@ namespace coapt {
 struct Outcome {
   Status status = Status::Converged;
   std::string note = {};
-  bool is_on_the_way = false;  // the full problem was not reached
+  bool is_short_of_full = false;  // the full problem was not reached
 };
 
 // Follows the prescribed motion and the continuation to the full problem, from result.q. Each step is solved:

@@ -43,7 +43,7 @@ class DampedPath {
       outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, stop_.tolerance,
                                              result_.outer_iterations, outcome_.note);
     } else {
-      outcome_.is_on_the_way = true;
+      outcome_.is_short_of_full = true;
       if (outcome_.note.empty())
         outcome_.note = "step " + std::to_string(result_.damped_steps) + " of the damped path";
     }

@@ -45,7 +45,7 @@ std::vector<WeightedEdge> weighted_edges(const Objective& objective, const Point
 
 }  // namespace
 
-Vector carried_along(const Objective& objective, const Vector& q, const Points& x) {
+Vector extended_harmonically(const Objective& objective, const Vector& q, const Points& x) {
   const Points from = objective.positions(q);
   const int n = objective.node_count();
   Points displacement = objective.fixed().select(x - from, Points::Zero(3, n));

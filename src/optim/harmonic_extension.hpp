@@ -10,6 +10,6 @@ namespace coapt {
 // (cotangent weights on triangles, inverse length on lines) that takes the prescribed values. Translations
 // are carried exactly, and what is joined to no prescribed node stays. Cost: one factorisation of a scalar
 // Laplacian per coordinate with another set of prescribed nodes.
-Vector carried_along(const Objective& objective, const Vector& q, const Points& x);
+Vector extended_harmonically(const Objective& objective, const Vector& q, const Points& x);
 
 }  // namespace coapt

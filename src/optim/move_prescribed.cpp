@@ -21,7 +21,7 @@ Move move_prescribed(const MotionPath& motion, double from, double to, Objective
   bool is_overloaded = false;
   for (double t = to; t > from; t = from + 0.5 * (t - from)) {
     const Points x = motion.positions(t);
-    const Vector carried = carried_along(objective, q, x);
+    const Vector carried = extended_harmonically(objective, q, x);
     objective.prescribe(x);
     const bool is_free = objective.step_limit(start, objective.positions(carried) - start, 1) == 1;
     if (is_free && is_finite(objective, carried)) {

@@ -146,7 +146,7 @@ const MinimisationEnd* RunRecorder::next_end(const Objective& objective) {
     ++next_;
     return &end;
   }
-  has_left_the_way_ = true;
+  has_left_history_ = true;
   record_.ends.resize(next_);
   record_.iterate.resize(0);
   return nullptr;

@@ -56,7 +56,7 @@ class RunRecorder {
   bool is_cut_short() const { return is_cut_short_; }
 
   // Whether the run did not fit its known record, which was dropped from there on.
-  bool has_left_the_way() const { return has_left_the_way_; }
+  bool has_left_history() const { return has_left_history_; }
 
  private:
   friend class RecordedSolver;
@@ -79,7 +79,7 @@ class RunRecorder {
   size_t next_ = 0;            // minimisation
   bool is_recording_ = false;  // one that is going on
   bool is_closed_ = false;     // nothing more is recorded or taken from the record
-  bool is_cut_short_ = false, has_left_the_way_ = false;
+  bool is_cut_short_ = false, has_left_history_ = false;
 };
 
 }  // namespace coapt

@@ -70,7 +70,7 @@ void conclude(const Outcome& outcome, const Solver& solver, const Problem& probl
   result.residual = objective.true_residual(result.q);
   const double sliding = objective.sliding_force(result.q);
   if (result.residual <= stop.tolerance && result.status != Status::Cancelled &&
-      result.status != Status::NoEquilibrium && !outcome.is_on_the_way && solver.is_at_rest())
+      result.status != Status::NoEquilibrium && !outcome.is_short_of_full && solver.is_at_rest())
     result.status = Status::Converged;
   else if (result.status == Status::Converged || result.status == Status::LineSearchFailed)
     result.status = Status::Stalled;
@@ -186,7 +186,7 @@ void reach_stable(Solver& solver, const Problem& problem, const StopRule& stop, 
       continue;
     }
     without_equilibrium = 0;
-    if (outcome.note.empty()) outcome.note = "a saddle was left on the way";
+    if (outcome.note.empty()) outcome.note = "a saddle was left on the path to it";
     conclude(outcome, solver, problem, stop, monitor, result);
   }
   if (without_equilibrium == 0) return;
@@ -250,7 +250,7 @@ bool find_passed(const Problem& problem, const StopRule& stop, Monitor& monitor,
     return true;
   }
   if (least < kInfinity)
-    found.outcome.note += "; on the way no residual below " + number_text(least) + " was found" +
+    found.outcome.note += "; before, no residual below " + number_text(least) + " was found" +
                           (least < kNear ? ", so little that a finer mesh may have one" : "");
   return false;
 }
@@ -332,7 +332,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   if (objective.has_circulatory_force())
     result.route = solver.follows_path()
                        ? "exact force, with its work along the path as merit"
-                       : "potential of the surface closed by a fan, remainder held dead and renewed in " +
+                       : "potential of the surface closed by a fan, remainder lagged and updated in " +
                              std::to_string(result.outer_iterations) + " outer iterations";
   conclude(found.outcome, solver, problem, stop, monitor, result);
   if (!found.is_only_unstable) reach_stable(solver, problem, stop, monitor, result);

@@ -15,11 +15,11 @@ Eigen::Index own_nodes(const Model& model) {
 }
 
 // To one of `count` shapes that share the page.
-std::vector<RecordedShape> short_way(const ComparedShape& shape, size_t count) {
+std::vector<RecordedShape> short_history(const ComparedShape& shape, size_t count) {
   const Model& model = *shape.model;
   const Report& report = *shape.report;
-  if (report.way.empty()) return {{{}, model.X}};
-  return thinned(report.way, report.fields.x, std::max<size_t>(1, page_shapes(model) / count));
+  if (report.shape_history.empty()) return {{{}, model.X}};
+  return subsampled(report.shape_history, report.fields.x, std::max<size_t>(1, page_shapes(model) / count));
 }
 
 // Puts the fields of a state, the last so far, to those of the same title; others have no values in it.
@@ -75,10 +75,10 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
     const Model& model = *shape.model;
     if (!is_like_base(model)) continue;
     std::vector<ViewState> states = {result_state(shape.label, *shape.report)};
-    if (shape.has_way) {
-      states = view_states(*shape.report, short_way(shape, shapes.size()));
+    if (shape.has_history) {
+      states = view_states(*shape.report, short_history(shape, shapes.size()));
       states.back().label = shape.label + ", residual " + page_number(shape.report->result.residual, 2);
-      view.ways.push_back({shape.label, states.size()});
+      view.sequences.push_back({shape.label, states.size()});
     }
     const Vec3 shift = model.origin - surface.origin;
     for (ViewState& state : states) {

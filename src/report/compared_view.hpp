@@ -13,7 +13,7 @@ struct ComparedShape {
   std::string label;
   const Model* model = nullptr;
   const Report* report = nullptr;
-  bool has_way = false;  // is led to from its start, by iterates where the report has some
+  bool has_history = false;  // is led to from its start, by iterates where the report has some
 };
 
 // The shapes, with the fields, outlines and coaptation line of each; those whose nodes or triangles are not

@@ -60,16 +60,17 @@ OrderedJson state_json(const ViewState& state) {
         {{"kind", outline.is_orifice ? "orifice" : "coaptation"}, {"points", floats(outline.points)}});
   return {{"label", state.label},
           {"nodes", floats(state.x)},
-          {"carried", state.is_on_the_way},
+          {"carried", state.is_history},
           {"outlines", outlines},
           {"orifice_text", state.orifice_text}};
 }
 
 OrderedJson view_json(const ShapeView& view) {
-  OrderedJson states = OrderedJson::array(), ways = OrderedJson::array(), fields = OrderedJson::array(),
+  OrderedJson states = OrderedJson::array(), sequences = OrderedJson::array(), fields = OrderedJson::array(),
               line_values = OrderedJson::array();
   for (const ViewState& state : view.states) states.push_back(state_json(state));
-  for (const ViewWay& way : view.ways) ways.push_back({{"label", way.label}, {"states", way.state_count}});
+  for (const ViewSequence& sequence : view.sequences)
+    sequences.push_back({{"label", sequence.label}, {"states", sequence.state_count}});
   for (const ViewField& field : view.fields) fields.push_back(field_json(field));
   for (const ViewField& field : view.line_values) line_values.push_back(field_json(field));
   return {{"name", view.name},
@@ -82,7 +83,7 @@ OrderedJson view_json(const ShapeView& view) {
           {"lines", integers(view.lines)},
           {"obstacles", integers(view.obstacles)},
           {"states", states},
-          {"ways", ways},
+          {"sequences", sequences},
           {"fields", fields},
           {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)},
           {"line_values", line_values}};

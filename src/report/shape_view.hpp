@@ -17,15 +17,15 @@ struct ViewOutline {
 };
 
 struct ViewState {
-  std::string label;           // "iterate 12, residual 3e-4"
-  Points x;                    // 3 x node_count, relative to the view's origin [mm]
-  bool is_on_the_way = false;  // no result: coloured by the values that its way ends with
+  std::string label;        // "iterate 12, residual 3e-4"
+  Points x;                 // 3 x node_count, relative to the view's origin [mm]
+  bool is_history = false;  // no result: coloured by the values that its way ends with
   std::vector<ViewOutline> outlines = {};
   std::string orifice_text = {};  // what its orifice outline is called, with its area
 };
 
 // Some states one after the other that belong together, as those of one method.
-struct ViewWay {
+struct ViewSequence {
   std::string label;
   size_t state_count = 0;  // at least one; the last is a result
 };
@@ -56,7 +56,7 @@ struct ShapeView {
   std::vector<ViewState> states = {};     // at least one, of as many nodes each; the last is the result
   // What the slider leads through, one at a time: together all states in their order. The last is shown
   // first. Empty: one way of all states.
-  std::vector<ViewWay> ways = {};
+  std::vector<ViewSequence> sequences = {};
   std::vector<ViewField> fields = {};  // of vertices and triangles; the first is shown
   std::optional<ViewField> line_force = {};
   std::vector<ViewField> line_values = {};  // told of the lines at a node, after their force

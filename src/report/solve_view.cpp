@@ -161,10 +161,10 @@ ViewState result_state(const std::string& label, const Report& report) {
   return state;
 }
 
-std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& way) {
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history) {
   std::vector<ViewState> states;
-  for (const RecordedShape& shape : way)
-    states.push_back({.label = label(shape.iteration, states.empty()), .x = shape.x, .is_on_the_way = true});
+  for (const RecordedShape& shape : history)
+    states.push_back({.label = label(shape.iteration, states.empty()), .x = shape.x, .is_history = true});
   states.push_back(result_state(label(report.result), report));
   return states;
 }
@@ -173,7 +173,7 @@ ShapeView solved_view(const Model& model, const Report& report) {
   ShapeView view = bare_view(model, report.fields);
   view.name = "coapt";
   if (view.is_valve) view.slider = "Open ↔ closed";
-  view.states = view_states(report, report.way);
+  view.states = view_states(report, report.shape_history);
   view.fields = view_fields(model, report.fields);
   if (model.lines.empty()) return view;
   const auto of_lines = [](const char* title, const char* unit, const Vector& values) {

@@ -20,8 +20,8 @@ ShapeView bare_view(const Model& model, const Fields& fields);
 std::vector<ViewField> view_fields(const Model& model, const Fields& fields);
 
 // From the start by the recorded iterates to the result, with its outlines and its coaptation line. `way`
-// holds positions relative to the model's origin, as report.way.
-std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& way);
+// holds positions relative to the model's origin, as report.shape_history.
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history);
 
 // One state, with its outlines and coaptation line.
 ViewState result_state(const std::string& label, const Report& report);

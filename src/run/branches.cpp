@@ -128,7 +128,7 @@ std::vector<BranchRange> ranges_of_others(const std::vector<NearbyEquilibrium>& 
 }
 
 // Takes a state that a perturbed start came to into the list, or counts it where it is known.
-void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
+void sort_in(const Result& result, Model& model, const IntersectionChecker& checker,
              std::vector<KnownState>& states, Branches& branches) {
   const Objective& objective = *model.objective;
   const KnownState state = {objective.positions(result.q), result.certificate.free_nodes};
@@ -142,7 +142,7 @@ void sort_in(const Result& result, Model& model, const IntersectionJudge& judge,
   states.push_back(state);
   branches.spread_mm = branches.spread_mm.cwiseMax((state.x - states.front().x).colwise().norm().transpose());
   const Fields fields = compute_fields(model, state.x);
-  branches.equilibria.push_back(nearby(result, from_own, measure(model, result.q, fields, judge)));
+  branches.equilibria.push_back(nearby(result, from_own, measure(model, result.q, fields, checker)));
   branches.equilibria.back().found = 1;
 }
 
@@ -172,8 +172,8 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
   branches.equilibria = {
       nearby(own, node_distance(states.front(), states.front(), objective.fixed()), report.metrics)};
   branches.spread_mm = Vector::Zero(objective.node_count());
-  const bool goes_the_way = search.goes_the_way && report.levels.empty();
-  for (int start = 0; start < (goes_the_way ? 2 : 1) * search.starts; ++start) {
+  const bool along_path = search.along_path && report.levels.empty();
+  for (int start = 0; start < (along_path ? 2 : 1) * search.starts; ++start) {
     const bool is_from_own_start = start >= search.starts;
     const Points from = is_from_own_start ? model.X : states.front().x;
     objective.prescribe(from);
@@ -183,9 +183,9 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
         is_from_own_start ? solve_along_path(x, model, setup) : solve_again(x, model, setup);
     if (result.status == Status::Cancelled) break;
     ++branches.starts;
-    if (is_from_own_start) ++branches.starts_of_the_way;
+    if (is_from_own_start) ++branches.starts_along_path;
     if (result.status == Status::Converged)
-      sort_in(result, model, options.judge, states, branches);
+      sort_in(result, model, options.checker, states, branches);
     else
       ++branches.not_converged;
   }

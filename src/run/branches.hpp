@@ -16,7 +16,7 @@ struct BranchSearch {
   std::uint64_t seed = 1;  // of the random moves: the same seed makes the same starts
   // Whether there are as many starts from the scene's own start too, where its way is on one mesh: small
   // changes divert the way more often than they move a state that is reached.
-  bool goes_the_way = true;
+  bool along_path = true;
 };
 
 // Moves every free node of the report's equilibrium by a random vector, uniform in the ball of that radius,

@@ -24,21 +24,21 @@ SolveSetup given_setup(const Scene& scene, const Given& given, const SolverTable
   return setup;
 }
 
-SceneGeometry given_ground(const Scene& scene, Given& given) {
+SceneGeometry given_geometry(const Scene& scene, Given& given) {
   return given.mesh ? scene_geometry(scene, std::move(*given.mesh)) : scene_geometry(scene);
 }
 
 RunReport run(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options) {
   SolveSetup setup = given_setup(scene, given, solvers, options);
-  const SceneGeometry ground = given_ground(scene, given);
+  const SceneGeometry geometry = given_geometry(scene, given);
   RunReport run;
-  run.model = build(scene, ground, given.terms);
+  run.model = build(scene, geometry, given.terms);
   if (given.observer) setup.observer = given.observer(run.model);
   std::optional<Points> start;
   if (given.start) start = relative_start(*given.start, run.model);
   run.folder = open_result_folder(scene, options);
   run.report =
-      run_built(scene, ground, std::move(setup), options, run.model, run.folder, start ? &*start : nullptr);
+      run_built(scene, geometry, std::move(setup), options, run.model, run.folder, start ? &*start : nullptr);
   return run;
 }
 

@@ -13,12 +13,12 @@ namespace coapt {
 // What a solve leaves, nothing of it measured.
 struct SolvedRun {
   CascadeOutcome outcome;
-  std::vector<RecordedShape> way;  // to the result, where it was kept
+  std::vector<RecordedShape> shape_history;  // to the result, where it was kept
 };
 
-// Solves as solve_scene() does, or from `start` as solve_again(). keeps_way: a page will show it.
-SolvedRun solve_run(const Scene& scene, const SceneGeometry& ground, Model& model, SolveSetup setup,
-                    bool keeps_way, const Points* start = nullptr);
+// Solves as solve_scene() does, or from `start` as solve_again(). keeps_history: a page will show it.
+SolvedRun solve_run(const Scene& scene, const SceneGeometry& geometry, Model& model, SolveSetup setup,
+                    bool keeps_history, const Points* start = nullptr);
 
 // What a report says beside what is measured.
 struct RunNotes {
@@ -32,14 +32,14 @@ bool wants_page(const Scene& scene, const RunOptions& options);
 
 // Measures the shape of the outcome; writes nothing.
 Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
-                   const RunNotes& notes, const IntersectionJudge& judge);
+                   const RunNotes& notes, const IntersectionChecker& checker);
 
 // The files of the result, result.json first, then its page. Throws InputError when one cannot be written.
 void write_run(const std::filesystem::path& folder, const Model& model, const Report& report);
 
 // What follows a solve: measures it and writes it into the folder; an empty one: writes nothing.
 Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& model, SolvedRun solved,
-                    const RunNotes& notes, const IntersectionJudge& judge,
+                    const RunNotes& notes, const IntersectionChecker& checker,
                     const std::filesystem::path& folder);
 
 // Where the options want results, made and without the frames of an earlier solve; empty where they want
@@ -52,7 +52,7 @@ SolveSetup given_setup(const Scene& scene, const Given& given, const SolverTable
                        const RunOptions& options);
 
 // Of the mesh that is given, which is taken out of it, or of the scene's own.
-SceneGeometry given_ground(const Scene& scene, Given& given);
+SceneGeometry given_geometry(const Scene& scene, Given& given);
 
 // A given start, 3 x node_count, relative to the model's origin. Throws InputError for another number of
 // nodes and for coordinates that are not finite.
@@ -60,7 +60,8 @@ Points relative_start(const Eigen::Map<const Points>& start, const Model& model)
 
 // All that run() does with a model once it is built, which is left at the end of the solve; folder: of
 // open_result_folder(); start: 3 x node_count, relative to the model's origin, or null for the scene's own.
-Report run_built(const Scene& scene, const SceneGeometry& ground, SolveSetup setup, const RunOptions& options,
-                 Model& model, const std::filesystem::path& folder, const Points* start = nullptr);
+Report run_built(const Scene& scene, const SceneGeometry& geometry, SolveSetup setup,
+                 const RunOptions& options, Model& model, const std::filesystem::path& folder,
+                 const Points* start = nullptr);
 
 }  // namespace coapt

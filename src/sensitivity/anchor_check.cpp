@@ -109,9 +109,9 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   check.is_same_branch = check.status == Status::Converged &&
                          apart <= std::max(kSame * check.travel, kNoise * objective_.extent(q_));
   if (check.status != Status::Converged)
-    check.message = "could not be compared with the anchor: the way at once does not converge";
+    check.message = "could not be compared with the anchor: the solve in one step does not converge";
   else if (check.is_same_branch)
-    check.message = "on the branch of the anchor: both ways lead to the same shape";
+    check.message = "on the branch of the anchor: both paths lead to the same shape";
   else
     check.message =
         "has left the branch of the anchor: the same numbers reached at once give a shape up to " +

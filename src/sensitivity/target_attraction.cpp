@@ -36,12 +36,12 @@ double TargetAttraction::evaluate(const Points& x, Sink& sink) const {
   double energy = 0;
   for (int e = 0; e < stencils_.count(); ++e) {
     const int node = stencils_.nodes[static_cast<size_t>(e)];
-    const ClosestPoint foot = target_->surface.closest(x.col(node), directions_.col(e));
-    const Vec3 way = x.col(node) - foot.point;
+    const ClosestPoint closest = target_->surface.closest(x.col(node), directions_.col(e));
+    const Vec3 way = x.col(node) - closest.point;
     const double stiffness = stiffness_ * areas_[e];
     energy += 0.5 * stiffness * way.squaredNorm();
     if (sink.wants_gradient()) sink.add_gradient(node, stiffness * way);
-    if (sink.wants_hessian()) sink.add_block(e, 1, 0, 0, stiffness * foot.away);
+    if (sink.wants_hessian()) sink.add_block(e, 1, 0, 0, stiffness * closest.away);
   }
   return energy;
 }

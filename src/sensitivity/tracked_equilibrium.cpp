@@ -83,7 +83,7 @@ void TrackedEquilibrium::assign(const Vector& value) {
   for (size_t k = 0; k < parameters_.size(); ++k)
     if (const Vector numbers = numbers_of(*parameters_[k], k, value); numbers != parameters_[k]->value())
       parameters_[k]->set(numbers);
-  objective_.renew_reference();
+  objective_.remeasure_reference();
 }
 
 Points TrackedEquilibrium::prescribed() const {

@@ -46,11 +46,11 @@ CoarsenOptions narrowed(const CoarsenOptions& finest, const Step& last) {
 }
 
 // From fine to coarse.
-std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& ground) {
+std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& geometry) {
   std::vector<Step> steps;
   steps.reserve(kMostCoarseMeshes);
-  const TriangleMesh* mesh = &ground.model.mesh;
-  const CoarsenOptions finest = coarsen_options(scene, ground);
+  const TriangleMesh* mesh = &geometry.model.mesh;
+  const CoarsenOptions finest = coarsen_options(scene, geometry);
   while (steps.size() < kMostCoarseMeshes && finest.share * mesh->triangle_count() >= kFewestTriangles) {
     Step step{coarsen(*mesh, steps.empty() ? finest : narrowed(finest, steps.back())), {}, mesh->vertices};
     if (step.coarsening.mesh.triangle_count() > kLeastCoarsening * mesh->triangle_count()) break;
@@ -170,9 +170,9 @@ struct Start {
   Points x;
   Status status = Status::Converged;
 };
-std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& ground,
+std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geometry,
                                   const Continuation& continuation, Cascade& cascade) {
-  const std::vector<Step> steps = coarser_meshes(scene, ground);
+  const std::vector<Step> steps = coarser_meshes(scene, geometry);
   if (steps.empty()) {
     cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
     return std::nullopt;
@@ -184,7 +184,7 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& groun
         "The mesh of " + std::to_string(mesh.triangle_count()) + " triangles of the cascade ";
     std::string failure;
     try {
-      Model model = build(scene, coarsened(ground, mesh, steps[k].kept));
+      Model model = build(scene, coarsened(geometry, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
       if (!is_coarsest && !make_startable(start.x, model))
         throw InputError("the shape found on a coarser one passes through itself there");
@@ -213,12 +213,12 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& groun
 
 }  // namespace
 
-CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& ground, Model& model,
+CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer,
                              const StabilityOptions& stability) {
   Cascade cascade(make_solver, stop, observer);
-  std::optional<Start> start = coarse_start(scene, ground, continuation, cascade);
+  std::optional<Start> start = coarse_start(scene, geometry, continuation, cascade);
   if (start && !make_startable(start->x, model)) {
     cascade.warn(
         "The start that the cascade gave passes through itself: the mesh was solved from its own start.");

@@ -17,9 +17,9 @@ using SolverMaker = std::function<std::unique_ptr<Solver>(const Model& model)>;
 // solved to a loose tolerance; where one of them fails, or the shape found does not lead to an equilibrium on
 // the scene's own mesh, that is solved from its own start, with a warning. The stop rule holds for the whole,
 // its iterations for each level. The observer sees the iterates of every level, whose unknowns are those of
-// that level. ground, model: of the scene's own mesh, whose result gets the certificate that `stability` asks
-// for.
-CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& ground, Model& model,
+// that level. geometry, model: of the scene's own mesh, whose result gets the certificate that `stability`
+// asks for.
+CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer = {},
                              const StabilityOptions& stability = {});

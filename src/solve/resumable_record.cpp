@@ -38,13 +38,13 @@ void write_record(const std::filesystem::path& path, const Seal& seal, const Ide
                   const Json& record) {
   Json own = Json::object();
   for (const IdentityItem& item : identity) own[item.key] = item.value;
-  write_sealed(path, seal, {{"identity", own}, {"record", record}});
+  write_checksummed(path, seal, {{"identity", own}, {"record", record}});
 }
 
 void read_record(const std::filesystem::path& path, const Seal& seal, const Identity& identity,
                  const std::function<void(const Json&)>& take) {
   const std::string file = path.string();
-  const Json json = read_sealed(path, seal);
+  const Json json = read_checksummed(path, seal);
   std::vector<std::string> defects;
   try {
     defects = differences(file, json.at("identity"), identity);

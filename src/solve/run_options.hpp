@@ -24,7 +24,7 @@ struct RunOptions {
 
   // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
-  IntersectionJudge judge;  // of the result
+  IntersectionChecker checker;  // of the result
 };
 
 }  // namespace coapt

@@ -93,10 +93,10 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   return setup;
 }
 
-CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& ground, Model& model,
+CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Model& model,
                            const SolveSetup& setup) {
   if (scene.solver.cascade)
-    return solve_cascade(scene, ground, model, setup.make_solver, setup.stop, setup.continuation,
+    return solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
                          setup.observer, setup.stability);
   CascadeOutcome outcome;
   outcome.result = solve(*setup.make_solver(model),

@@ -25,8 +25,8 @@ struct SolveSetup {
 SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options);
 
 // From the scene's own start, by the cascade where the scene wants one; levels are empty where it does not.
-// ground, model: of the scene's own mesh.
-CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& ground, Model& model,
+// geometry, model: of the scene's own mesh.
+CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Model& model,
                            const SolveSetup& setup);
 
 // Along the model's own motion and the continuation of the setup on this mesh alone, from the free

@@ -41,8 +41,8 @@ StressScene stress_scene(const Scene& scene) { return {scene, scene_geometry(sce
 StressScene copy_of(const StressScene& subject) {
   StressScene copy;
   copy.scene = subject.scene;
-  const SceneGeometry& from = subject.ground;
-  SceneGeometry& to = copy.ground;
+  const SceneGeometry& from = subject.geometry;
+  SceneGeometry& to = copy.geometry;
   to.model.origin = from.model.origin;
   to.model.X = from.model.X;
   to.model.mesh = from.model.mesh;
@@ -63,7 +63,7 @@ void StressRunner::check(const StressScene& subject) const {
   RunOptions run;
   run.factorisations = options_.factorisations;
   solve_setup(subject.scene, options_.solvers, run);
-  build(subject.scene, subject.ground);
+  build(subject.scene, subject.geometry);
 }
 
 StressRun StressRunner::solve(const StressScene& subject, const StressSolve& how) const {
@@ -77,20 +77,20 @@ StressRun StressRunner::solve(const StressScene& subject, const StressSolve& how
   SolveSetup setup =
       solve_setup(subject.scene,
                   how.recorder == nullptr ? options_.solvers : how.recorder->recorded(options_.solvers), run);
-  solved.model = build(subject.scene, subject.ground);
+  solved.model = build(subject.scene, subject.geometry);
   Model& model = solved.model;
   if (how.edit) how.edit(model);
-  const auto judge = [&](const Points& x) {
-    solved.intersections = std::max(solved.intersections, intersection_count(model, x, options_.judge));
+  const auto checker = [&](const Points& x) {
+    solved.intersections = std::max(solved.intersections, intersection_count(model, x, options_.checker));
     ++solved.judged;
   };
   std::optional<ShapeRecord> record;
-  if (how.keeps_way && has_shape_view()) record.emplace(model, page_shapes(model));
+  if (how.keeps_history && has_shape_view()) record.emplace(model, page_shapes(model));
   setup.observer = [&](const Iteration& iteration, const Vector& q) {
     if (record) record->see(iteration, q);
     // A coarser mesh of a cascade has other unknowns.
     if (how.judges_every_state && q.size() == model.objective->unknown_count())
-      judge(model.objective->positions(q));
+      checker(model.objective->positions(q));
     if (options_.is_cancelled && options_.is_cancelled()) return false;
     return !how.observer || how.observer(iteration, q);
   };
@@ -99,11 +99,11 @@ StressRun StressRunner::solve(const StressScene& subject, const StressSolve& how
   if (how.start != nullptr)
     solved.result = solve_again(*how.start, model, setup);
   else
-    solved.result = solve_scene(subject.scene, subject.ground, model, setup).result;
+    solved.result = solve_scene(subject.scene, subject.geometry, model, setup).result;
   solved.wall_s = wall_seconds() - start;
   solved.x = model.objective->positions(solved.result.q);
-  if (record && solved.x.allFinite()) solved.way = record->shapes(solved.x);
-  if (solved.x.allFinite() && model.mesh.triangle_count() > 0) judge(solved.x);
+  if (record && solved.x.allFinite()) solved.shape_history = record->shapes(solved.x);
+  if (solved.x.allFinite() && model.mesh.triangle_count() > 0) checker(solved.x);
   return solved;
 }
 
@@ -115,11 +115,11 @@ StressOutcome outcome_of(const StressRun& solved, StressVerdict verdict, std::st
   return outcome;
 }
 
-long intersection_count(const Model& model, const Points& x, const IntersectionJudge& judge) {
+long intersection_count(const Model& model, const Points& x, const IntersectionChecker& checker) {
   const auto own = model.mesh.triangles.cols();
   Triangles facets(3, own + model.obstacles.cols());
   facets << model.mesh.triangles, model.obstacles;
-  const auto pairs = judge.pairs(x, facets);
+  const auto pairs = checker.pairs(x, facets);
   return std::count_if(pairs.begin(), pairs.end(),
                        [&](const std::array<int, 2>& pair) { return std::min(pair[0], pair[1]) < own; });
 }
@@ -152,7 +152,7 @@ std::optional<StressOutcome> not_converged(const StressRun& solved, double toler
 }
 
 double fresh_residual(const StressScene& subject, const Points& x) {
-  Model model = build(subject.scene, subject.ground);
+  Model model = build(subject.scene, subject.geometry);
   if (model.objective->step_limiting_term() != nullptr) return kNaN;
   Problem problem = problem_at(x, model);
   return model.objective->true_residual(problem.q0);

@@ -13,7 +13,7 @@ namespace coapt {
 // A scene and its nodes, before it has terms. What is done to either is not seen by the file.
 struct StressScene {
   Scene scene;
-  SceneGeometry ground;
+  SceneGeometry geometry;
 };
 
 // Throws InputError.
@@ -29,7 +29,7 @@ struct StressSolve {
   const Points* start = nullptr;       // the supports are then where their motion ends
   Observer observer = {};              // besides that of the rows; may be empty
   RunRecorder* recorder = nullptr;     // keeps the run or takes it up; may be null. Not with a start
-  bool keeps_way = false;              // for a page
+  bool keeps_history = false;          // for a page
   bool judges_every_state = false;     // counts intersections at each accepted state, not at the last alone
   std::function<void(Model&)> edit = {};  // changes the model before the solve; may be empty
 };
@@ -37,12 +37,12 @@ struct StressSolve {
 struct StressRun {
   Model model;
   Result result;
-  Points x;                             // the last state, relative to the model's origin [mm]
-  std::vector<RecordedShape> way = {};  // to x, where it is kept
-  long intersections = 0;               // the most at any state that was judged
-  long judged = 0;                      // states
-  double seconds = 0;                   // time limit that held [s]
-  double wall_s = 0;                    // of the solve
+  Points x;                                       // the last state, relative to the model's origin [mm]
+  std::vector<RecordedShape> shape_history = {};  // to x, where it is kept
+  long intersections = 0;                         // the most at any state that was judged
+  long judged = 0;                                // states
+  double seconds = 0;                             // time limit that held [s]
+  double wall_s = 0;                              // of the solve
   bool promises_contact = false;
 };
 
@@ -62,7 +62,7 @@ class StressRunner {
 };
 
 // Pairs of facets at x that pass through each other, one or both of the mesh.
-long intersection_count(const Model& model, const Points& x, const IntersectionJudge& judge);
+long intersection_count(const Model& model, const Points& x, const IntersectionChecker& checker);
 
 // The outcome with status, residual and iterations of the solve.
 StressOutcome outcome_of(const StressRun& solved, StressVerdict verdict, std::string message);

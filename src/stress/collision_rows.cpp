@@ -185,7 +185,7 @@ StressOutcome moved_as_far_as_contact_lets(StressSubject& subject) {
     const double step = objective.step_limit(own.x, d, 1);
     shortened += step < 1 ? 1 : 0;
     for (int k = 1; k <= kLooks; ++k)
-      worst = std::max(worst, intersection_count(own.model, own.x + step * k / kLooks * d, options.judge));
+      worst = std::max(worst, intersection_count(own.model, own.x + step * k / kLooks * d, options.checker));
   }
   StressOutcome outcome = measured(own, static_cast<double>(worst), 0, "facets pass through each other");
   outcome.message += "; " + std::to_string(moves) + " moves, " + std::to_string(shortened) + " cut short";
@@ -210,7 +210,7 @@ std::vector<StressRow> collision_query_rows() {
 
 std::vector<StressRow> collision_rows(const SubjectPointer& subject) {
   return {{"S15", subject->name, "random moves from the solution, as far as contact lets them",
-           "most pairs of facets through each other on the way", "", false,
+           "most pairs of facets through each other at any iterate", "", false,
            [subject] { return moved_as_far_as_contact_lets(*subject); }}};
 }
 

@@ -39,7 +39,7 @@ std::optional<ChordPlace> tautest_chord(const StressScene& scene, const Points& 
   constexpr double kLeastStrain = 1e-4;
   std::optional<ChordPlace> tautest;
   double strain = kLeastStrain;
-  for (const auto& [path, placed] : scene.ground.networks)
+  for (const auto& [path, placed] : scene.geometry.networks)
     for (size_t k = 0; k < placed.network.chords.size(); ++k) {
       const Chord& chord = placed.network.chords[k];
       const double elongation =
@@ -53,7 +53,7 @@ std::optional<ChordPlace> tautest_chord(const StressScene& scene, const Points& 
 
 StressScene with_longer_chord(const StressScene& scene, const ChordPlace& place, double by) {
   StressScene changed = copy_of(scene);
-  changed.ground.networks.at(place.network).network.chords[place.number].rest_length += by;
+  changed.geometry.networks.at(place.network).network.chords[place.number].rest_length += by;
   return changed;
 }
 
@@ -64,7 +64,7 @@ double central_difference(double h, const Function& f) {
 }
 
 double energy_at(const StressScene& scene, const Points& x) {
-  Model model = build(scene.scene, scene.ground);
+  Model model = build(scene.scene, scene.geometry);
   const Problem problem = problem_at(x, model);
   return model.objective->value(problem.q0);
 }
@@ -72,7 +72,7 @@ double energy_at(const StressScene& scene, const Points& x) {
 StressOutcome derivative_by_chord(StressSubject& subject) {
   constexpr double kLimit = 1e-4, kStepFixed = 1e-3, kStepSolved = 3e-3;  // steps: shares of the elongation
   const StressScene scene = with_a_potential(own_scene(subject));
-  if (scene.ground.networks.empty())
+  if (scene.geometry.networks.empty())
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
   const StressRun solved = subject.bench.solve(scene);
   if (auto outcome = not_converged(solved, tolerance_of(scene))) return *outcome;

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBarredSeconds = 2;  // for a run that creeps up to where it cannot go on
 
 // The greatest way of a node that no support carries along [mm].
-double way_gone(const StressRun& solved, const Points& x, const Points& rest) {
+double distance_moved(const StressRun& solved, const Points& x, const Points& rest) {
   const FixedMask& fixed = solved.model.objective->fixed();
   double farthest = 0;
   for (Eigen::Index node = 0; node < x.cols(); ++node)
@@ -22,10 +22,10 @@ double way_gone(const StressRun& solved, const Points& x, const Points& rest) {
 
 StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const std::string& solver) {
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  const Points& rest = own_scene(subject).ground.model.X;
+  const Points& rest = own_scene(subject).geometry.model.X;
   const StressRun& own = own_solution(subject);
   const double farthest = (own.x - rest).colwise().norm().maxCoeff();
-  if (way_gone(own, own.x, rest) == 0)
+  if (distance_moved(own, own.x, rest) == 0)
     return {
         StressVerdict::NotApplicable, {}, {}, "nothing moves in the solution but what supports carry along"};
   const std::optional<double> seconds = part < 1 ? std::optional(kBarredSeconds) : std::nullopt;
@@ -38,7 +38,7 @@ StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const
   if (auto wrong = untruth(solved, tolerance)) return *wrong;
   // The way there is barred: a state beyond, or one that is called converged and is none, would be a lie.
   StressOutcome outcome =
-      measured(solved, way_gone(solved, solved.x, rest) / farthest, part, "ended where the term fails");
+      measured(solved, distance_moved(solved, solved.x, rest) / farthest, part, "ended where the term fails");
   if (solved.result.status == Status::Converged &&
       fresh_residual(own_scene(subject), solved.x) > kResidualSlack * tolerance)
     outcome = outcome_of(solved, StressVerdict::Fail, "called converged where it cannot be");
@@ -56,7 +56,7 @@ std::vector<StressRow> failure_rows(const SubjectPointer& subject) {
         rows.push_back(
             {"S16", subject->name,
              fault_name(fault) + (part < 1 ? ", before the solution, " : ", beyond the solution, ") + solver,
-             part < 1 ? "way gone, over that to the own solution" : kDistanceFromOwn, "",
+             part < 1 ? "distance moved, over that to the own solution" : kDistanceFromOwn, "",
              fault == Fault::NaN || fault == Fault::Throws,
              [subject, fault, part, solver] { return with_fault(*subject, fault, part, solver); }});
       }

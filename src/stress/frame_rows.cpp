@@ -28,16 +28,16 @@ StressOutcome in_another_frame(StressSubject& subject, const StressFrame& frame)
     return {StressVerdict::NotApplicable, {}, {}, obstacle};
   const StressRun solved = subject.bench.solve(in_frame(own_scene(subject), frame));
   const StressRun& own = own_solution(subject);
-  const bool judges_way = subject.same_way && (frame.length != 1 || frame.stress != 1);
-  if (judges_way && ends_otherwise(solved, own, tolerance_of(own_scene(subject))))
+  const bool judges_history = subject.same_history && (frame.length != 1 || frame.stress != 1);
+  if (judges_history && ends_otherwise(solved, own, tolerance_of(own_scene(subject))))
     return outcome_of(solved, StressVerdict::Fail,
                       solved.result.message + "; in the scene's own units: " + own.result.message);
-  const Points x = frame.back(solved.x, solved.model.origin, own_scene(subject).ground.model.origin);
+  const Points x = frame.back(solved.x, solved.model.origin, own_scene(subject).geometry.model.origin);
   StressOutcome outcome = same_shape_as_own(subject, solved, x, frame.stress * std::pow(frame.length, 3));
   if (outcome.verdict != StressVerdict::Pass) return outcome;
   outcome.message += "; " + std::to_string(solved.result.iterations) + " iterations, " +
                      std::to_string(own.result.iterations) + " in the scene's own frame";
-  if (judges_way && !is_as_long(solved, own)) outcome.verdict = StressVerdict::Fail;
+  if (judges_history && !is_as_long(solved, own)) outcome.verdict = StressVerdict::Fail;
   return outcome;
 }
 

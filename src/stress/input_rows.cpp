@@ -22,7 +22,7 @@ struct Tally {
   int shown = 0, wrong = 0;
   std::string first;  // the first that is wrong
 
-  void judge(const std::string& name, const std::string& defect) {
+  void checker(const std::string& name, const std::string& defect) {
     ++shown;
     if (defect.empty()) return;
     if (wrong++ == 0) first = name + ": " + defect;
@@ -76,9 +76,9 @@ std::string welcome_defect(const BadMesh& mesh, const fs::path& folder) {
 
 // Whatever happens: an exception of another kind is a defect like any other.
 template <class Judge>
-std::string caught(const Judge& judge) {
+std::string caught(const Judge& checker) {
   try {
-    return judge();
+    return checker();
   } catch (const InputError& error) {
     return "is refused: " + error.defects().front();
   } catch (const std::exception& error) {
@@ -110,12 +110,12 @@ StressOutcome shown_meshes(const StressRunner& bench) {
     formats::write_whole(folder / "mesh.obj", mesh.text);
     formats::write_whole(folder / "scene.json", scene_for(mesh));
     const bool is_of_file = mesh.welcome == Welcome::Refused && !mesh.touches;
-    tally.judge(mesh.name, caught([&] {
-                  return mesh.welcome == Welcome::Refused
-                             ? refusal_defect(bench, folder,
-                                              {is_of_file ? "mesh.obj" : "scene.json", mesh.said})
-                             : welcome_defect(mesh, folder);
-                }));
+    tally.checker(mesh.name, caught([&] {
+                    return mesh.welcome == Welcome::Refused
+                               ? refusal_defect(bench, folder,
+                                                {is_of_file ? "mesh.obj" : "scene.json", mesh.said})
+                               : welcome_defect(mesh, folder);
+                  }));
   }
   return tally.outcome("meshes, refused, warned of or taken as they must be");
 }
@@ -130,7 +130,7 @@ StressOutcome shown_scenes(const StressRunner& bench) {
     formats::write_whole(folder / "scene.json", scene.text);
     const bool is_of_scene = scene.said.front() != "far.json";
     if (is_of_scene) scene.said.emplace_back("scene.json");
-    tally.judge(scene.name, caught([&] { return refusal_defect(bench, folder, scene.said); }));
+    tally.checker(scene.name, caught([&] { return refusal_defect(bench, folder, scene.said); }));
   }
   formats::write_whole(folder / "scene.json", kSoundScene);
   return tally.outcome("scenes, each refused by name");
@@ -196,7 +196,7 @@ StressOutcome with_unknown_keys(StressSubject& subject) {
   Tally tally;
   for (const auto& place : spoilt.objects) {
     const std::string name = place_of(place / key);
-    tally.judge(name, missing(said, {name, spoilt.file.filename().string()}));
+    tally.checker(name, missing(said, {name, spoilt.file.filename().string()}));
   }
   return tally.outcome("keys that nobody knows, all named at once");
 }
@@ -211,8 +211,8 @@ StressOutcome with_nulls(StressSubject& subject) {
     const std::string said = refusal(scene, spoilt.file), name = place_of(place);
     // An entry of a list may be named by the list.
     const std::string list = name.ends_with(']') ? name.substr(0, name.rfind('[')) : name;
-    tally.judge(name,
-                said.empty() ? "is not refused" : missing(said, {list, spoilt.file.filename().string()}));
+    tally.checker(name,
+                  said.empty() ? "is not refused" : missing(said, {list, spoilt.file.filename().string()}));
   }
   return tally.outcome("values, each replaced by null, each refused by name");
 }

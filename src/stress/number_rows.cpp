@@ -45,7 +45,7 @@ StressRow scaled_row(const SubjectPointer& subject, const char* id, const std::s
 StressRow short_chords_row(const SubjectPointer& subject) {
   return row(subject, "S5", "chords that start half as long again as they should", true,
              [subject]() -> StressOutcome {
-               if (own_scene(*subject).ground.networks.empty())
+               if (own_scene(*subject).geometry.networks.empty())
                  return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
                return solved_anew(*subject, with_chords_scaled(own_scene(*subject), 1 / 1.5));
              });

@@ -9,7 +9,7 @@ namespace {
 StressOutcome intersections_on_the_way(StressSubject& subject, double load) {
   const StressScene pressed =
       load == 1 ? copy_of(own_scene(subject)) : with_energy_scaled(own_scene(subject), load, is_load);
-  if (pressed.ground.model.mesh.triangle_count() == 0)
+  if (pressed.geometry.model.mesh.triangle_count() == 0)
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no facets"};
   const StressRun solved = subject.bench.solve(pressed, {.judges_every_state = true});
   if (auto wrong = untruth(solved, tolerance_of(own_scene(subject)))) {

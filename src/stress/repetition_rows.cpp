@@ -53,7 +53,7 @@ StressOutcome same_bits_apart(StressSubject& subject) {
   const fs::path folder = options.folder / "S18", here = folder / "here", there = folder / "there";
   RunOptions run_options;
   run_options.factorisations = options.factorisations;
-  run_options.judge = options.judge;
+  run_options.checker = options.checker;
   run_options.max_seconds = options.row_seconds;
   run_options.folder = here;
   run_options.writes_page = false;
@@ -80,7 +80,7 @@ StressOutcome same_bits_apart(StressSubject& subject) {
 
 // Elements of the largest term. ElementTerm shares out the elements of one batch after the other.
 long largest_term(const StressScene& scene) {
-  const Model model = build(scene.scene, scene.ground);
+  const Model model = build(scene.scene, scene.geometry);
   long most = 0;
   for (const auto& term : model.objective->terms())
     most = std::max(most, static_cast<long>(term->stencils().count()));

@@ -18,7 +18,7 @@ constexpr double kMostBytes = 1024;  // for a triangle, without contact and fact
 // The greatest size that terms, gradient and Hessian take, over the number of triangles.
 StressOutcome bytes_by_triangle(const StressScene& scene) {
   const PeakMemory memory;
-  const Model model = build(scene.scene, scene.ground);
+  const Model model = build(scene.scene, scene.geometry);
   const Vector q = model.objective->unknowns(model.X);
   Vector gradient;
   Eigen::SparseMatrix<double> hessian;
@@ -57,7 +57,7 @@ Pairs pairs_of(const StressRunner& bench, int triangles) {
   const StressScene scene = written(bench.options().folder / "scenes",
                                     pressed_scene("S24_pressed_" + std::to_string(triangles), triangles,
                                                   height, sheet, 0.1, barrier_term(gap)));
-  Model model = build(scene.scene, scene.ground);
+  Model model = build(scene.scene, scene.geometry);
   Points x = model.X;
   x.row(2).array() -= height - 0.5 * gap;
   Vector gradient;
@@ -112,7 +112,7 @@ std::vector<StressRow> size_rows(const SubjectPointer& subject) {
   return {{"S24", subject->name, "terms, gradient and Hessian", "memory for each triangle", "B", false,
            [subject]() -> StressOutcome {
              const StressScene& scene = own_scene(*subject);
-             if (scene.ground.model.mesh.triangle_count() < kFewest)
+             if (scene.geometry.model.mesh.triangle_count() < kFewest)
                return {StressVerdict::NotApplicable, {}, {}, "fewer than 10000 triangles say nothing"};
              const auto& terms = scene.scene.terms;
              if (std::any_of(terms.begin(), terms.end(),

@@ -46,16 +46,17 @@ StressOutcome without_supports(StressSubject& subject) {
   constexpr int kMostIterations = 1000;  // within which it must be seen
   StressScene loose = copy_of(own_scene(subject));
   loose.scene.solver.max_iterations = std::min(loose.scene.solver.max_iterations, kMostIterations);
-  Prescribed& prescribed = loose.ground.prescribed;
+  Prescribed& prescribed = loose.geometry.prescribed;
   const FixedMask before = prescribed.fixed;
   prescribed.fixed.setConstant(false);
   prescribed.paths.clear();
-  for (const int node : loose.ground.model.obstacles.reshaped()) prescribed.fixed.col(node).setConstant(true);
+  for (const int node : loose.geometry.model.obstacles.reshaped())
+    prescribed.fixed.col(node).setConstant(true);
   // What belongs to no term was held for the sake of that alone.
   std::vector<bool> is_used(static_cast<size_t>(before.cols()), false);
-  for (const int node : loose.ground.model.mesh.triangles.reshaped())
+  for (const int node : loose.geometry.model.mesh.triangles.reshaped())
     is_used[static_cast<size_t>(node)] = true;
-  for (const auto& [path, placed] : loose.ground.networks)
+  for (const auto& [path, placed] : loose.geometry.networks)
     for (const Chord& chord : placed.network.chords)
       for (const ChordEnd& end : {chord.from, chord.to})
         is_used[static_cast<size_t>(placed.node(end))] = true;
@@ -76,8 +77,8 @@ StressOutcome without_supports(StressSubject& subject) {
 
 StressOutcome with_every_node_held(StressSubject& subject) {
   StressScene held = copy_of(own_scene(subject));
-  held.ground.prescribed.fixed.setConstant(true);
-  held.ground.prescribed.paths.clear();
+  held.geometry.prescribed.fixed.setConstant(true);
+  held.geometry.prescribed.paths.clear();
   const StressRun solved = subject.bench.solve(held);
   if (auto outcome = not_converged(solved, tolerance_of(held))) return *outcome;
   return measured(solved, solved.result.iterations, 0, "looked for what was there already");
@@ -95,7 +96,7 @@ constexpr double kChange = 1.1;
 
 StressOutcome longer_chords_and_back(StressSubject& subject) {
   if (auto outcome = no_yardstick(subject)) return *outcome;
-  if (own_scene(subject).ground.networks.empty())
+  if (own_scene(subject).geometry.networks.empty())
     return {StressVerdict::NotApplicable, {}, {}, "the scene has no network of chords"};
   return there_and_back(subject, with_chords_scaled(own_scene(subject), kChange));
 }

@@ -163,7 +163,7 @@ std::vector<StressRow> stress_rows(const StressOptions& options) {
       return built_in_valve(folder, has_contact);
     };
     subject->same_shape = kSameShape;
-    subject->same_way = true;
+    subject->same_history = true;
     std::vector<StressRow> more = subject_rows(subject);
     // What takes time with contact shows it without: of the quick ones the promises alone.
     if (has_contact)

@@ -73,7 +73,7 @@ struct StressOptions {
   std::filesystem::path folder;           // the built-in scenes are written into a folder here
   SolverTable solvers = scene_solvers();  // "newton" and "lbfgs" are used where they are there
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
-  IntersectionJudge judge;
+  IntersectionChecker checker;
   // Solves the scene file in a process of its own and writes the results into the folder, within so many
   // seconds; empty: the row that needs it is left out.
   std::function<void(const std::filesystem::path& scene, const std::filesystem::path& folder, double seconds)>

@@ -49,11 +49,13 @@ const StressScene& own_scene(StressSubject& subject) {
 }
 
 StressRun& own_solution(StressSubject& subject) {
-  if (!subject.solution) subject.solution = subject.bench.solve(own_scene(subject), {.keeps_way = true});
+  if (!subject.solution) subject.solution = subject.bench.solve(own_scene(subject), {.keeps_history = true});
   return *subject.solution;
 }
 
-double extent_of(StressSubject& subject) { return bounding_box_diagonal(own_scene(subject).ground.model.X); }
+double extent_of(StressSubject& subject) {
+  return bounding_box_diagonal(own_scene(subject).geometry.model.X);
+}
 
 std::optional<StressOutcome> no_yardstick(StressSubject& subject) {
   auto outcome = not_converged(own_solution(subject), tolerance_of(own_scene(subject)));
@@ -70,11 +72,11 @@ std::optional<ShownSolve> own_solve(const StressSubject& subject) {
   setup.stop.tolerance = scene.solver.tolerance;
   SolvedRun solved;
   solved.outcome.result = own.result;
-  solved.way = own.way;
+  solved.shape_history = own.shape_history;
   Report report = measure_run(scene, setup, own.model, std::move(solved), {.has_page = true},
-                              subject.bench.options().judge);
+                              subject.bench.options().checker);
   report.scene_file = subject.name;
-  if (report.way.empty()) report.way = {{{}, own.model.X}};
+  if (report.shape_history.empty()) report.shape_history = {{{}, own.model.X}};
   ShownSolve shown = shown_solve(subject.name + ": what the rows are compared with.", own.model, report);
   shown.view.name = "stress";
   return shown;

@@ -12,7 +12,7 @@ struct StressSubject {
   StressRunner bench;
   std::function<StressScene()> make;  // called once
   double same_shape = 1e-6;           // distance that counts as none, over the extent
-  bool same_way = false;              // judges status and number of iterations in other units too
+  bool same_history = false;          // judges status and number of iterations in other units too
   std::optional<StressScene> scene = {};
   std::optional<StressRun> solution = {};
 };

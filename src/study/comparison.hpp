@@ -7,7 +7,7 @@
 // between models.
 #pragma once
 
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "run/branches.hpp"
 #include "run/run.hpp"
 

@@ -55,7 +55,7 @@ void add_result(const RunReport& run, OrderedJson& json) {
                          {"factorisations", result.factorisations}};
   json["time"] = {{"wall_s", number_json(result.wall_s)}, {"cpu_s", number_json(result.cpu_s)}};
   json["metrics"] = metrics_json(report.metrics);
-  json["judge"] = report.metrics.intersection_judge;
+  json["judge"] = report.metrics.intersection_checker;
   json["warnings"] = report.warnings;
   json["branches"] = report.branches ? branches_json(*report.branches) : OrderedJson(nullptr);
 }

@@ -21,7 +21,7 @@ OrderedJson state_json(const std::optional<RunReport>& run) {
           {"residual", number_json(result.residual)},
           {"iterations", result.iterations},
           {"wall_s", number_json(result.wall_s)},
-          {"intersections_judge", run->report.metrics.intersection_judge},
+          {"judge", run->report.metrics.intersection_checker},
           {"folder", run->folder.filename().string()},
           {"warnings", run->report.warnings}};
 }

@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
-#include "results/registered_reference.hpp"
+#include "results/reference/registered_reference.hpp"
 #include "results/study_files.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/refine_scene.hpp"
@@ -16,12 +16,12 @@
 namespace coapt {
 namespace {
 
-MeshLevel solved_level(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup,
-                       const IntersectionJudge& judge) {
-  Model model = build(scene, ground);
-  const Result result = solve_scene(scene, ground, model, setup).result;
+MeshLevel solved_level(const Scene& scene, const SceneGeometry& geometry, const SolveSetup& setup,
+                       const IntersectionChecker& checker) {
+  Model model = build(scene, geometry);
+  const Result result = solve_scene(scene, geometry, model, setup).result;
   const Fields fields = compute_fields(model, model.objective->positions(result.q));
-  const Metrics metrics = measure(model, result.q, fields, judge);
+  const Metrics metrics = measure(model, result.q, fields, checker);
   MeshLevel level;
   level.triangles = model.mesh.triangle_count();
   level.vertices = model.mesh.vertex_count();
@@ -61,16 +61,20 @@ MeshStudy study_mesh(const Scene& scene, const SolverTable& solvers, int levels,
                      const std::function<void(const MeshLevel&)>& report) {
   if (levels < 1) throw InputError("--levels: the mesh must be cut at least once");
   const SolveSetup setup = solve_setup(scene, solvers, options);
-  std::list<SceneGeometry> grounds;  // which refer to the first
-  grounds.push_back(scene_geometry(scene));
-  if (grounds.front().model.mesh.triangle_count() == 0)
+  std::list<SceneGeometry> geometries;  // which refer to the first
+  geometries.push_back(scene_geometry(scene));
+  if (geometries.front().model.mesh.triangle_count() == 0)
     throw InputError(scene.file.string() + ": mesh: missing; there is nothing to refine");
-  MeshStudy study{
-      scene.file.filename().string(), setup.solver, setup.stop.tolerance, grounds.front().model.origin, {}};
-  for (int k = 0; k < levels; ++k) grounds.push_back(refined(grounds.back()));
-  build(scene, *std::next(grounds.begin()));  // what a finer mesh cannot have is said before the first solve
-  for (const SceneGeometry& ground : grounds) {
-    MeshLevel level = solved_level(scene, ground, setup, options.judge);
+  MeshStudy study{scene.file.filename().string(),
+                  setup.solver,
+                  setup.stop.tolerance,
+                  geometries.front().model.origin,
+                  {}};
+  for (int k = 0; k < levels; ++k) geometries.push_back(refined(geometries.back()));
+  build(scene,
+        *std::next(geometries.begin()));  // what a finer mesh cannot have is said before the first solve
+  for (const SceneGeometry& geometry : geometries) {
+    MeshLevel level = solved_level(scene, geometry, setup, options.checker);
     if (!study.levels.empty()) compare(level, study.levels.back());
     study.levels.push_back(std::move(level));
     if (report) report(study.levels.back());

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "formats/table.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "run/run.hpp"
 
 #include <functional>

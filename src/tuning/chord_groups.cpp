@@ -98,10 +98,10 @@ void move_paths(Json& json, const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-std::vector<TunableChord> tunable_chords(const Scene& scene, const SceneGeometry& ground,
+std::vector<TunableChord> tunable_chords(const Scene& scene, const SceneGeometry& geometry,
                                          const Model& model) {
   std::vector<TunableChord> all;
-  for (const auto& [path, placed] : ground.networks) {
+  for (const auto& [path, placed] : geometry.networks) {
     const std::vector<int> tips = tips_of(placed.network);
     std::vector<TunableChord> chords;
     for (size_t k = 0; k < placed.network.chords.size(); ++k)
@@ -175,8 +175,8 @@ std::vector<ChordGroup> chord_groups(const std::vector<TunableChord>& chords, co
   return groups;
 }
 
-NamedChords named_chords(const Scene& scene, const SceneGeometry& ground, const Model& model) {
-  NamedChords named{tunable_chords(scene, ground, model), {}};
+NamedChords named_chords(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
+  NamedChords named{tunable_chords(scene, geometry, model), {}};
   for (const ChordGrouping grouping : {ChordGrouping::Tip, ChordGrouping::Material})
     for (ChordGroup& group : chord_groups(named.chords, model, grouping, {}))
       if (group.name != kNoTip && group.name != kNoMaterial) named.groups.push_back(std::move(group));

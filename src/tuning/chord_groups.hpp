@@ -18,7 +18,8 @@ struct TunableChord {
 
 // All of them, network after network. Lines whose length is not that of a chord (mesh edges, tethers with a
 // `length` of their own, cables of constant force) are none of them.
-std::vector<TunableChord> tunable_chords(const Scene& scene, const SceneGeometry& ground, const Model& model);
+std::vector<TunableChord> tunable_chords(const Scene& scene, const SceneGeometry& geometry,
+                                         const Model& model);
 
 // Chords that get one factor.
 struct ChordGroup {
@@ -39,7 +40,7 @@ struct NamedChords {
   std::vector<TunableChord> chords;
   std::vector<ChordGroup> groups;
 };
-NamedChords named_chords(const Scene& scene, const SceneGeometry& ground, const Model& model);
+NamedChords named_chords(const Scene& scene, const SceneGeometry& geometry, const Model& model);
 
 // One number for each group: the factor on its rest lengths, first 1. Pre: lines as `chords` found them.
 std::unique_ptr<Parameter> make_group_factors(std::string name, const std::vector<TunableChord>& chords,

@@ -175,15 +175,15 @@ void solve_tuned(const std::string& text, const std::filesystem::path& scene, co
   formats::write_whole(
       file, tuned_scene_text(text, scene, found.folder, ready.chords, ready.groups, found.tuning.best.value));
   const Scene tuned = load_scene(file);
-  const SceneGeometry ground = scene_geometry(tuned);
+  const SceneGeometry geometry = scene_geometry(tuned);
   RunReport& after = found.after.emplace();
-  after.model = build(tuned, ground);
+  after.model = build(tuned, geometry);
   options.folder = found.folder / "after";
   options.observer = {};  // whoever interrupted the tuning wants what it found
   const Points x = found.before.model.objective->positions(found.tuning.best.q);
   after.folder = open_result_folder(tuned, options);
-  after.report =
-      run_built(tuned, ground, solve_setup(tuned, solvers, options), options, after.model, after.folder, &x);
+  after.report = run_built(tuned, geometry, solve_setup(tuned, solvers, options), options, after.model,
+                           after.folder, &x);
   ++found.solves;
 }
 
@@ -218,7 +218,7 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
   RunOptions own = run_options;
   own.folder = found.folder / "before";
   found.before.folder = open_result_folder(ready.scene, own);
-  found.before.report = run_built(ready.scene, ready.ground, ready.setup, own, model, found.before.folder,
+  found.before.report = run_built(ready.scene, ready.geometry, ready.setup, own, model, found.before.folder,
                                   options.known != nullptr ? &options.known->x_before : nullptr);
   if (options.report_before) options.report_before(found.before);
   const Fields& fields = found.before.report.fields;

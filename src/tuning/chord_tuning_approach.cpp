@@ -25,7 +25,7 @@ struct Drawn {
 
 Drawn draw(const PreparedTuning& ready, const Points& x, const TriangleMesh& target) {
   Drawn drawn;
-  drawn.model = build(ready.scene, ready.ground, [&](const Model& own) {
+  drawn.model = build(ready.scene, ready.geometry, [&](const Model& own) {
     auto springs = std::make_unique<TargetAttraction>("target attraction", own.mesh.triangles, x, target);
     drawn.springs = springs.get();
     std::vector<std::unique_ptr<EnergyTerm>> terms;

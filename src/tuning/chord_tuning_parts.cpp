@@ -56,8 +56,8 @@ PreparedTuning prepare_tuning(const std::string& text, const std::filesystem::pa
   collect(defects, [&] {
     ready.scene = parse_scene(text, file);
     ready.setup = solve_setup(ready.scene, solvers, run_options);
-    ready.ground = scene_geometry(ready.scene);
-    model = build(ready.scene, ready.ground);
+    ready.geometry = scene_geometry(ready.scene);
+    model = build(ready.scene, ready.geometry);
     is_built = true;
   });
   if (!is_built) throw InputError(std::move(defects));
@@ -65,7 +65,7 @@ PreparedTuning prepare_tuning(const std::string& text, const std::filesystem::pa
   if (options.orifice_weight > 0 && annulus_of(model) == nullptr)
     defects.push_back("--orifice-weight: " + file.string() +
                       ": has no node set \"annulus\", so that no orifice is measured");
-  ready.chords = tunable_chords(ready.scene, ready.ground, model);
+  ready.chords = tunable_chords(ready.scene, ready.geometry, model);
   if (ready.chords.empty())
     defects.push_back(file.string() +
                       ": terms: no chord of a network with a rest length; there is nothing to tune");

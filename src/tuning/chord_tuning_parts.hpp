@@ -11,7 +11,7 @@ namespace coapt {
 struct PreparedTuning {
   Scene scene;
   SolveSetup setup;
-  SceneGeometry ground;
+  SceneGeometry geometry;
   std::vector<TunableChord> chords;
   std::vector<ChordGroup> groups;
   std::vector<size_t> lines;  // of the chords that are tuned

@@ -78,7 +78,7 @@ Tuning search(const TunedScene& tuned, const RegionTuningOptions& options, const
 // The scene with the factors that were found, built anew and solved from where the search ended.
 void finish(const TunedScene& tuned, const RegionTuningOptions& options, const SolveSetup& setup,
             const Points& x, const Vector& factors, RegionTuning& found) {
-  Model model = build(tuned.scene(factors), tuned.ground);
+  Model model = build(tuned.scene(factors), tuned.geometry);
   const Result last = solve_again(x, model, setup);
   ++found.solves;
   found.after = tuning_state(model, model.objective->positions(last.q), options.yield_strain);
@@ -123,20 +123,20 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   const double start = wall_seconds();
   check(options);
   const SolveSetup setup = solve_setup(scene, solvers, run);
-  SceneGeometry ground = scene_geometry(scene);
-  const Model own = build(scene, ground);  // for its defects, in the scene's own words
+  SceneGeometry geometry = scene_geometry(scene);
+  const Model own = build(scene, geometry);  // for its defects, in the scene's own words
   if (options.orifice_limit_mm2 && annulus_of(own) == nullptr)
     throw InputError("--orifice: " + scene.file.string() +
                      ": has no node set \"annulus\", so that no orifice is measured; leave it out");
-  const TunedScene tuned(scene, std::move(ground), options);
+  const TunedScene tuned(scene, std::move(geometry), options);
 
   RegionTuning found;
   found.scene_file = scene.file.filename().string();
   found.yield_strain = options.yield_strain;
   Vector factors = Vector::Ones(tuned.factor_count());
   const Scene split = tuned.scene(factors);
-  Model model = build(split, tuned.ground);
-  const Result first = solve_scene(split, tuned.ground, model, setup).result;
+  Model model = build(split, tuned.geometry);
+  const Result first = solve_scene(split, tuned.geometry, model, setup).result;
   const Points x = model.objective->positions(first.q);
   found.solves = 1;
   found.before = found.after = tuning_state(model, x, options.yield_strain);
@@ -152,7 +152,7 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   } else {
     factors = tune_factors(tuned, options, setup, first, model, found);
   }
-  found.region_of_triangle = tuned.ground.model.mesh.regions;
+  found.region_of_triangle = tuned.geometry.model.mesh.regions;
   tuned.name_factors(factors, found.regions, found.chords);
   found.wall_s = wall_seconds() - start;
   return found;

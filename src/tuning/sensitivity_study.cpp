@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/timing.hpp"
-#include "results/registered_reference.hpp"
+#include "results/reference/registered_reference.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
@@ -28,18 +28,18 @@ struct Variation {
 };
 
 // Both scenes are built once, for the defects that show only there. Throws InputError.
-Variation variation(const Scene& scene, const SceneGeometry& ground, const SceneParameter& parameter,
+Variation variation(const Scene& scene, const SceneGeometry& geometry, const SceneParameter& parameter,
                     double perturbation) {
   Variation varied{parameter, scaled(scene, parameter, 1 - perturbation),
                    scaled(scene, parameter, 1 + perturbation)};
-  build(varied.smaller, ground);
-  build(varied.larger, ground);
+  build(varied.smaller, geometry);
+  build(varied.larger, geometry);
   return varied;
 }
 
 // All defects together. Parameters that nobody named and that cannot be varied go to `left_out`.
-std::vector<Variation> variations(const Scene& scene, const SceneGeometry& ground, const Objective& objective,
-                                  const SensitivityOptions& options, double share,
+std::vector<Variation> variations(const Scene& scene, const SceneGeometry& geometry,
+                                  const Objective& objective, const SensitivityOptions& options, double share,
                                   std::vector<std::string>& left_out) {
   const bool is_share = share > 0 && share < 1;
   std::vector<Variation> all;
@@ -48,7 +48,7 @@ std::vector<Variation> variations(const Scene& scene, const SceneGeometry& groun
   const auto add = [&](const auto& find, std::vector<std::string>& reasons) {
     try {
       const SceneParameter parameter = find();
-      if (is_share) all.push_back(variation(scene, ground, parameter, share));
+      if (is_share) all.push_back(variation(scene, geometry, parameter, share));
     } catch (const InputError& error) {
       reasons.insert(reasons.end(), error.defects().begin(), error.defects().end());
     }
@@ -67,12 +67,12 @@ std::vector<Variation> variations(const Scene& scene, const SceneGeometry& groun
 // The first solution, and what is compared with it.
 class Study {
  public:
-  Study(const SceneGeometry& ground, const SolveSetup& setup, Model model)
-      : ground_(ground), setup_(setup), model_(std::move(model)) {}
+  Study(const SceneGeometry& geometry, const SolveSetup& setup, Model model)
+      : geometry_(geometry), setup_(setup), model_(std::move(model)) {}
 
   SensitivityRun solve_first(const Scene& scene) {
     const double start = wall_seconds();
-    Result result = solve_scene(scene, ground_, model_, setup_).result;
+    Result result = solve_scene(scene, geometry_, model_, setup_).result;
     q_ = result.q;
     x_ = model_.objective->positions(q_);
     surface_ = surface_at(model_, x_);
@@ -83,9 +83,9 @@ class Study {
 
   SensitivityRun solve(const Scene& scene, double factor, bool starts_anew) const {
     const double start = wall_seconds();
-    Model model = build(scene, ground_);
+    Model model = build(scene, geometry_);
     const Result result =
-        starts_anew ? solve_scene(scene, ground_, model, setup_).result : solve_again(x_, model, setup_);
+        starts_anew ? solve_scene(scene, geometry_, model, setup_).result : solve_again(x_, model, setup_);
     const TriangleMesh surface = surface_at(model, model.objective->positions(result.q));
     SensitivityRun run = measured(factor, result, model, surface);
     run.to_base = distance_between(surface, surface_);
@@ -103,7 +103,7 @@ class Study {
     tracking.max_seconds = setup_.stop.max_seconds;
     tracking.observer = setup_.observer;
     equilibrium_ = std::make_unique<TrackedEquilibrium>(*model_.objective, q_, std::move(tracking));
-    equilibrium_->add(std::make_unique<SceneDerivatives>(ground_, std::move(neighbours), kDerivativeShare));
+    equilibrium_->add(std::make_unique<SceneDerivatives>(geometry_, std::move(neighbours), kDerivativeShare));
     if (const WarmSolve solved = equilibrium_->solve(); solved.status != Status::Converged)
       throw InputError("the first solution is no equilibrium any more: " + solved.message);
   }
@@ -141,7 +141,7 @@ class Study {
     return run;
   }
 
-  const SceneGeometry& ground_;
+  const SceneGeometry& geometry_;
   const SolveSetup& setup_;
   Model model_;
   Vector q_;  // of the first solution
@@ -166,7 +166,7 @@ bool solve_both(const Study& study, const Variation& varied, double share, bool 
 }
 
 // The derivative, or where it is not defined both solves; false: cancelled.
-bool derive_or_solve(const Scene& scene, const SceneGeometry& ground, const Variation& varied,
+bool derive_or_solve(const Scene& scene, const SceneGeometry& geometry, const Variation& varied,
                      Eigen::Index which, Study& study, ParameterSensitivity& found) {
   if (study.is_cancelled()) return false;
   if (found.message.empty()) try {
@@ -176,8 +176,8 @@ bool derive_or_solve(const Scene& scene, const SceneGeometry& ground, const Vari
       found.message = error.defects().front();
     }
   try {
-    return solve_both(study, variation(scene, ground, varied.parameter, kPerturbation), kPerturbation, false,
-                      found);
+    return solve_both(study, variation(scene, geometry, varied.parameter, kPerturbation), kPerturbation,
+                      false, found);
   } catch (const InputError& error) {  // beyond a limit: what can be said has been said
     found.message += "; " + error.defects().front();
     return true;
@@ -210,8 +210,8 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
                                    const SensitivityOptions& options, const RunOptions& run) {
   const double start = wall_seconds();
   const SolveSetup setup = solve_setup(scene, solvers, run);
-  const SceneGeometry ground = scene_geometry(scene);
-  Model model = build(scene, ground);
+  const SceneGeometry geometry = scene_geometry(scene);
+  Model model = build(scene, geometry);
   if (model.mesh.triangle_count() == 0)
     throw InputError(scene.file.string() + ": mesh: missing; the study compares surfaces");
   SensitivityStudy study;
@@ -222,10 +222,10 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
   if (options.starts_anew && !study.perturbation) study.perturbation = kPerturbation;
   study.starts_anew = options.starts_anew;
   const std::vector<Variation> varied =
-      variations(scene, ground, *model.objective, options, study.perturbation.value_or(kDerivativeShare),
+      variations(scene, geometry, *model.objective, options, study.perturbation.value_or(kDerivativeShare),
                  study.left_out);
 
-  Study solution(ground, setup, std::move(model));
+  Study solution(geometry, setup, std::move(model));
   study.base = solution.solve_first(scene);
   study.is_cancelled = study.base.status == Status::Cancelled;
   std::string message;
@@ -241,7 +241,7 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
     const bool is_whole =
         study.perturbation
             ? solve_both(solution, varied[k], *study.perturbation, study.starts_anew, found)
-            : derive_or_solve(scene, ground, varied[k], static_cast<Eigen::Index>(k), solution, found);
+            : derive_or_solve(scene, geometry, varied[k], static_cast<Eigen::Index>(k), solution, found);
     study.is_cancelled = !is_whole;
     if (!is_whole) break;  // half a parameter says nothing
     found.wall_s = wall_seconds() - begin;

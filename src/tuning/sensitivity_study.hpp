@@ -7,7 +7,7 @@
 // (mass-spring mitral valve, change of the mean surface error per change of a parameter).
 #pragma once
 
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "run/run.hpp"
 
 #include <functional>

@@ -179,13 +179,13 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
     throw InputError(scene.file.string() +
                      ": a term that is given has no Hessian, which an equilibrium that is followed needs");
   SolveSetup setup = given_setup(scene, given, solvers, options);
-  SceneGeometry ground = given_ground(scene, given);
-  TrackedScene tracked{build(scene, ground, given.terms), {}, nullptr, nullptr, nullptr};
+  SceneGeometry geometry = given_geometry(scene, given);
+  TrackedScene tracked{build(scene, geometry, given.terms), {}, nullptr, nullptr, nullptr};
   if (given.observer) setup.observer = given.observer(tracked.model);
   tracked.first = given.start ? solve_again(relative_start(*given.start, tracked.model), tracked.model, setup)
-                              : solve_scene(scene, ground, tracked.model, setup).result;
-  tracked.chords = std::make_shared<NamedChords>(named_chords(scene, ground, tracked.model));
-  tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(ground));
+                              : solve_scene(scene, geometry, tracked.model, setup).result;
+  tracked.chords = std::make_shared<NamedChords>(named_chords(scene, geometry, tracked.model));
+  tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(geometry));
   tracking.factorisation = setup.stability.factorisation;
   tracked.equilibrium =
       std::make_unique<TrackedEquilibrium>(*tracked.model.objective, tracked.first.q, std::move(tracking));

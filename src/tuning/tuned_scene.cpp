@@ -61,10 +61,10 @@ std::set<int> regions_of(const std::vector<int>& triangles, const TriangleMesh& 
 }  // namespace
 
 TunedScene::TunedScene(const Scene& scene, SceneGeometry own, const RegionTuningOptions& options)
-    : ground(std::move(own)), split_(scene) {
-  const TriangleMesh own_mesh = ground.model.mesh;
-  TriangleMesh& mesh = ground.model.mesh;
-  set_regions(mesh, ground.model.sets, options, scene);
+    : geometry(std::move(own)), split_(scene) {
+  const TriangleMesh own_mesh = geometry.model.mesh;
+  TriangleMesh& mesh = geometry.model.mesh;
+  set_regions(mesh, geometry.model.sets, options, scene);
   split_.terms.clear();
   bool has_chords = false;
   for (const TermSpec& term : scene.terms) {
@@ -99,7 +99,7 @@ TunedScene::TunedScene(const Scene& scene, SceneGeometry own, const RegionTuning
 
 // Only regions that a tuned term covers have a factor, in the order of the mesh.
 void TunedScene::number_tuned_regions() {
-  factor_of_region_.assign(ground.model.mesh.region_names.size(), std::nullopt);
+  factor_of_region_.assign(geometry.model.mesh.region_names.size(), std::nullopt);
   for (const Part& part : parts_) factor_of_region_[part.region] = 0;
   for (std::optional<size_t>& factor : factor_of_region_)
     if (factor) factor = region_count_++;
@@ -128,7 +128,7 @@ std::vector<std::string> TunedScene::terms_of(Eigen::Index factor) const {
 
 void TunedScene::name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                               std::vector<TunedFactor>& chords) const {
-  const TriangleMesh& mesh = ground.model.mesh;
+  const TriangleMesh& mesh = geometry.model.mesh;
   for (size_t r = 0; r < mesh.region_names.size(); ++r) {
     const std::optional<size_t> factor = factor_of_region_[r];
     regions.push_back(

@@ -21,7 +21,7 @@ class TunedScene {
   void name_factors(const Vector& factors, std::vector<TunedFactor>& regions,
                     std::vector<TunedFactor>& chords) const;
 
-  SceneGeometry ground;  // the mesh's regions are those that are tuned
+  SceneGeometry geometry;  // the mesh's regions are those that are tuned
 
  private:
   struct Part {

@@ -16,7 +16,7 @@ namespace {
 
 // Length of the shortest way along edges from the nearest of some vertices, infinite where there is none
 // [length].
-std::vector<double> ways_from(const std::vector<int>& sources, const TriangleMesh& mesh) {
+std::vector<double> path_lengths_from(const std::vector<int>& sources, const TriangleMesh& mesh) {
   const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
   const auto count = static_cast<size_t>(mesh.vertex_count());
   std::vector<double> ways(count, kInfinity);
@@ -167,8 +167,8 @@ LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>&
     for (const int t : leaflets[k]) areas[k] += area_vector(mesh.vertices, mesh.triangles.col(t)).norm();
   const std::vector<int> sectors = shared_out(wanted / zones, areas);
 
-  const std::vector<double> from_annulus = ways_from(annulus, mesh),
-                            from_edge = ways_from(free_edge_of(mesh, annulus), mesh);
+  const std::vector<double> from_annulus = path_lengths_from(annulus, mesh),
+                            from_edge = path_lengths_from(free_edge_of(mesh, annulus), mesh);
   double farthest = 0;
   for (const double length : from_annulus)
     if (std::isfinite(length)) farthest = std::max(farthest, length);

@@ -99,7 +99,7 @@ class CommandTest(CommandCase):
         result = self.result()
         branches = result["branches"]
         self.assertIn(branches["message"], run.stdout)
-        self.assertEqual((branches["starts"], branches["starts_of_the_way"]), (4, 2))
+        self.assertEqual((branches["starts"], branches["starts_along_path"]), (4, 2))
         self.assertEqual(sum(e["found"] for e in branches["equilibria"]) + branches["not_converged"], 4)
         self.assertEqual(branches["equilibria"][0]["energy_mj"], result["energy_mj"])
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])

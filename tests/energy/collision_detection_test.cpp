@@ -26,7 +26,7 @@ struct Count {
   int limited = 0, stopped = 0, missed = 0, too_near = 0, undecided = 0, false_alarms = 0;
 };
 
-void judge(const Query& query, double step, Count& count) {
+void checker(const Query& query, double step, Count& count) {
   ASSERT_GE(step, 0);
   ASSERT_LE(step, 1);
   const MovingPair pair(query.x, query.d, query.first);
@@ -59,7 +59,7 @@ void judge_all_families(int queries) {
       for (const Query& query : all) steps.push_back(step_of(query, kKept));
       const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       Count count;
-      for (int k = 0; k < queries; ++k) judge(all[k], steps[k], count);
+      for (int k = 0; k < queries; ++k) checker(all[k], steps[k], count);
       const std::string name = (first == 1 ? "PT " : "EE ") + family.name;
       std::printf("%-21s %8d %8d %6d %7d %9d %10d %13d %6.0f\n", name.c_str(), queries, count.limited,
                   count.stopped, count.missed, count.too_near, count.undecided, count.false_alarms,

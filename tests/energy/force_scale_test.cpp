@@ -209,7 +209,7 @@ TEST(ForceScale, FollowsAChangeOfTheTerms) {
   for (const auto& term : changed.terms())
     if (auto* membrane = dynamic_cast<ElementTerm<CstStVK>*>(term.get()))
       membrane->set_rest(dynamic_cast<const ElementTerm<CstStVK>&>(*wanted).rest());
-  changed.renew_reference();
+  changed.remeasure_reference();
   EXPECT_EQ(changed.true_residual(q), fresh.true_residual(q));
   EXPECT_EQ(changed.reference_force(q), fresh.reference_force(q));
 }

@@ -63,10 +63,10 @@ class FibresTest : public testing::Test {
 
 TEST_F(FibresTest, CostNothingWhereNothingAsks) {
   const Scene plain = scene("");
-  const SceneGeometry ground = scene_geometry(plain);
-  const Model model = build(plain, ground);
+  const SceneGeometry geometry = scene_geometry(plain);
+  const Model model = build(plain, geometry);
   EXPECT_EQ(model.fibres.cols(), 0);
-  EXPECT_FALSE(ground.fibres->has_value());
+  EXPECT_FALSE(geometry.fibres->has_value());
   for (const VtpArray& array : closed_surface(model, compute_fields(model, model.X)).triangle_arrays)
     EXPECT_NE(array.name, "fibre");
 }
@@ -201,10 +201,10 @@ TEST_F(MitralFibresTest, RunAroundTheLeafletsAndRadiallyAtTheTrigones) {
 // file as well.
 TEST_F(MitralFibresTest, PassToTheCoarserMeshesOfACascade) {
   Scene fine = scene(2500, R"("fibres": {}, )");
-  const SceneGeometry ground = scene_geometry(fine);
-  const Model model = build(fine, ground);
-  const Coarsening step = coarsen(ground.model.mesh, coarsen_options(fine, ground));
-  const Model coarse = build(fine, coarsened(ground, step.mesh, step.kept));
+  const SceneGeometry geometry = scene_geometry(fine);
+  const Model model = build(fine, geometry);
+  const Coarsening step = coarsen(geometry.model.mesh, coarsen_options(fine, geometry));
+  const Model coarse = build(fine, coarsened(geometry, step.mesh, step.kept));
   ASSERT_EQ(coarse.fibres.cols(), step.mesh.triangle_count());
   ASSERT_LT(step.mesh.triangle_count(), model.mesh.triangle_count() / 2);
   std::ostringstream csv;

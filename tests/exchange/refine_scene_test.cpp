@@ -21,17 +21,17 @@ class RefinedValve : public testing::Test {
   RefinedValve() {
     write_valve_scene(mitral_valve({.triangles = 400}), folder_.path(), {});
     scene_ = load_scene(folder_.path() / "scene.json");
-    ground_ = scene_geometry(scene_);
-    fine_ = refined(ground_);
+    geometry_ = scene_geometry(scene_);
+    fine_ = refined(geometry_);
   }
 
   TemporaryFolder folder_;
   Scene scene_;
-  SceneGeometry ground_, fine_;
+  SceneGeometry geometry_, fine_;
 };
 
 TEST_F(RefinedValve, IsTheSameSurfaceWithTheSameChords) {
-  const Model a = build(scene_, ground_), b = build(scene_, fine_);
+  const Model a = build(scene_, geometry_), b = build(scene_, fine_);
   EXPECT_EQ(b.mesh.triangle_count(), 4 * a.mesh.triangle_count());
   EXPECT_NEAR(surface_area(b.X, b.mesh.triangles) / surface_area(a.X, a.mesh.triangles), 1, 1e-12);
   EXPECT_EQ(b.X.leftCols(b.mesh.vertex_count()), b.mesh.vertices);
@@ -56,7 +56,7 @@ TEST_F(RefinedValve, IsTheSameSurfaceWithTheSameChords) {
 // The annulus stays an ordered loop, with a middle behind each of its vertices, which goes where the mean of
 // its ends goes.
 TEST_F(RefinedValve, MovesTheMiddlesOfItsAnnulusWithTheirEnds) {
-  const Model a = build(scene_, ground_), b = build(scene_, fine_);
+  const Model a = build(scene_, geometry_), b = build(scene_, fine_);
   const std::vector<int>&coarse = a.sets.at("annulus"), &finer = b.sets.at("annulus");
   ASSERT_EQ(finer.size(), 2 * coarse.size());
   for (const double t : {0.5, 1.0}) {
@@ -77,7 +77,8 @@ TEST_F(RefinedValve, MovesTheMiddlesOfItsAnnulusWithTheirEnds) {
 
 class RefinedSheet : public testing::Test {
  protected:
-  SceneGeometry ground(const TriangleMesh& mesh, const std::string& boundary, const std::string& load = "") {
+  SceneGeometry geometry(const TriangleMesh& mesh, const std::string& boundary,
+                         const std::string& load = "") {
     write_mesh(folder_.path() / "sheet.obj", mesh);
     scene_ =
         load_scene(folder_.write("scene.json", R"({"mesh": {"file": "sheet.obj"}, "boundary": )" + boundary +
@@ -92,7 +93,7 @@ class RefinedSheet : public testing::Test {
 
 // All vertices of a strip are on its boundary, but the middles of the edges across it are not.
 TEST_F(RefinedSheet, HoldsItsBoundaryAloneThoughInnerEdgesJoinPlacesOfIt) {
-  const SceneGeometry coarse = ground(rectangle(4, 1, 8), R"([{"nodes": "boundary", "fix": true}])");
+  const SceneGeometry coarse = geometry(rectangle(4, 1, 8), R"([{"nodes": "boundary", "fix": true}])");
   ASSERT_TRUE(coarse.prescribed.fixed.all());
   const SceneGeometry fine = refined(coarse), finer = refined(fine);
   for (const SceneGeometry* level : {&fine, &finer}) {
@@ -105,7 +106,7 @@ TEST_F(RefinedSheet, HoldsItsBoundaryAloneThoughInnerEdgesJoinPlacesOfIt) {
 }
 
 TEST_F(RefinedSheet, HoldsCoordinatesOneByOneAndInnerNodesToo) {
-  const SceneGeometry coarse = ground(
+  const SceneGeometry coarse = geometry(
       square(10, 200), R"([{"nodes": {"box": {"min": [-1, -1, -1], "max": [5.5, 11, 1]}}, "fix": ["z"]}])");
   const SceneGeometry fine = refined(coarse);
   for (int v = 0; v < fine.model.X.cols(); ++v) {
@@ -117,7 +118,7 @@ TEST_F(RefinedSheet, HoldsCoordinatesOneByOneAndInnerNodesToo) {
 // A value on each vertex or triangle, through two cuts and back to a coarser mesh.
 TEST_F(RefinedSheet, CarriesValuesThroughCutsAndCascades) {
   const SceneGeometry own =
-      ground(square(10, 800, CellPattern::Cross), R"([{"nodes": "boundary", "fix": true}])");
+      geometry(square(10, 800, CellPattern::Cross), R"([{"nodes": "boundary", "fix": true}])");
   const Vec3 slope(0.3, -0.7, 0);
   const auto linear = [&](const Points& x) { return Vector((slope.transpose() * x).transpose()); };
   const auto centres = [](const SceneGeometry& level) {
@@ -162,8 +163,8 @@ double total_force(const Scene& scene, const SceneGeometry& level) {
 
 // Forces that the scene gives by node are shared out: their sum stays, also on a coarser mesh of a finer one.
 TEST_F(RefinedSheet, KeepsTheWholeOfForcesThatAreGivenByNode) {
-  const SceneGeometry own = ground(square(10, 800), R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])",
-                                   R"(, {"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})");
+  const SceneGeometry own = geometry(square(10, 800), R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])",
+                                     R"(, {"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})");
   const SceneGeometry fine = refined(own);
   const Coarsening coarsening = coarsen(fine.model.mesh, coarsen_options(scene_, fine));
   const SceneGeometry thin = coarsened(fine, coarsening.mesh, coarsening.kept);
@@ -177,7 +178,7 @@ TEST_F(RefinedSheet, KeepsTheWholeOfForcesThatAreGivenByNode) {
 TEST_F(RefinedValve, KeepsListedNodesWhatTheyAre) {
   NodeSelection listed;
   listed.kind = NodeSelection::Kind::Indices;
-  listed.indices = {3, static_cast<int>(ground_.model.X.cols()) - 1};
+  listed.indices = {3, static_cast<int>(geometry_.model.X.cols()) - 1};
   const SceneGeometry finer = refined(fine_);
   const Coarsening coarsening = coarsen(fine_.model.mesh, coarsen_options(scene_, fine_));
   const SceneGeometry thin = coarsened(fine_, coarsening.mesh, coarsening.kept);
@@ -185,11 +186,11 @@ TEST_F(RefinedValve, KeepsListedNodesWhatTheyAre) {
     const std::vector<int> nodes = selected_nodes(listed, *level, "");
     ASSERT_EQ(nodes.size(), 2u);
     for (size_t k = 0; k < 2; ++k)
-      EXPECT_EQ(level->model.X.col(nodes[k]), ground_.model.X.col(listed.indices[k]));
+      EXPECT_EQ(level->model.X.col(nodes[k]), geometry_.model.X.col(listed.indices[k]));
   }
   const std::vector<int> left = selected_nodes(listed, thin, "");
   ASSERT_FALSE(left.empty());
-  EXPECT_EQ(thin.model.X.col(left.back()), ground_.model.X.col(listed.indices[1]));
+  EXPECT_EQ(thin.model.X.col(left.back()), geometry_.model.X.col(listed.indices[1]));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ bool is_same(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-void judge(const TriangleMesh& mesh) {
+void checker(const TriangleMesh& mesh) {
   require(mesh.triangle_count() > 0, "a mesh has triangles");
   require(mesh.vertices.allFinite(), "coordinates are finite");
   require(mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertex_count(),
@@ -44,7 +44,7 @@ void run_target(std::string_view bytes) {
       continue;
     }
     is_read = true;
-    judge(file.mesh);
+    checker(file.mesh);
   }
   if (!is_read) throw InputError("input: no mesh");
 }

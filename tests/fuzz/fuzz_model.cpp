@@ -7,7 +7,7 @@
 namespace coapt::fuzz {
 namespace {
 
-void judge(const Valve& valve) {
+void checker(const Valve& valve) {
   const TriangleMesh& mesh = valve.leaflets;
   require(mesh.vertices.allFinite(), "coordinates are finite");
   require(mesh.triangle_count() > 0, "a valve has leaflets");
@@ -24,7 +24,7 @@ void run_target(std::string_view bytes) {
   const std::string text = formats::as_utf8(std::string(bytes));
   formats::FeModel model =
       is_xml ? formats::read_febio(text, "input.feb") : formats::read_abaqus(text, "input.inp");
-  judge(formats::valve_of(model));
+  checker(formats::valve_of(model));
 }
 
 }  // namespace coapt::fuzz

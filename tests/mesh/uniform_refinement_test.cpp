@@ -1,4 +1,4 @@
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 
 #include "mesh/mesh_check.hpp"
 #include "support/meshes.hpp"
@@ -21,7 +21,7 @@ TriangleMesh bent_sheet() {
 
 TEST(CutInFour, AddsTheMiddleOfEachEdgeBehindTheVertices) {
   const TriangleMesh mesh = bent_sheet();
-  const FinerMesh finer = cut_in_four(mesh);
+  const FinerMesh finer = refined_uniformly(mesh);
   const std::vector<Edge> all = edges(mesh.triangles);
   ASSERT_EQ(finer.parents.size(), all.size());
   ASSERT_EQ(finer.mesh.vertex_count(), mesh.vertex_count() + static_cast<int>(all.size()));
@@ -41,7 +41,7 @@ TEST(CutInFour, AddsTheMiddleOfEachEdgeBehindTheVertices) {
 // corners, the last in the middle.
 TEST(CutInFour, CutsEachTriangleIntoFourOfItsPlaneAndRegion) {
   const TriangleMesh mesh = bent_sheet();
-  const FinerMesh finer = cut_in_four(mesh);
+  const FinerMesh finer = refined_uniformly(mesh);
   ASSERT_EQ(finer.mesh.triangle_count(), 4 * mesh.triangle_count());
   ASSERT_EQ(finer.mesh.regions.size(), static_cast<size_t>(finer.mesh.triangle_count()));
   EXPECT_EQ(finer.mesh.region_names, mesh.region_names);
@@ -63,7 +63,7 @@ TEST(CutInFour, CutsEachTriangleIntoFourOfItsPlaneAndRegion) {
 TEST(CutInFour, KeepsTheTopologyOfAnySurface) {
   for (const TriangleMesh& mesh :
        {bent_sheet(), disc_mesh(3), sphere_mesh(1), joined(disc_mesh(1), grid_mesh(1, 1))}) {
-    const TriangleMesh fine = cut_in_four(mesh).mesh;
+    const TriangleMesh fine = refined_uniformly(mesh).mesh;
     EXPECT_EQ(check_mesh(fine).size(), check_mesh(mesh).size());
     const auto euler = [](const TriangleMesh& m) {
       return m.vertex_count() - static_cast<int>(edges(m.triangles).size()) + m.triangle_count();
@@ -83,7 +83,7 @@ TEST(CutInFour, AsksOnceForEachEdge) {
   Triangles fan(3, 3);
   fan << 0, 1, 0, 1, 0, 1, 2, 3, 4;
   std::vector<std::pair<int, int>> asked;
-  const Triangles fine = cut_in_four(fan, [&](int a, int b) {
+  const Triangles fine = refined_uniformly(fan, [&](int a, int b) {
     asked.emplace_back(std::minmax(a, b));
     return 5 + static_cast<int>(asked.size()) - 1;
   });
@@ -91,7 +91,7 @@ TEST(CutInFour, AsksOnceForEachEdge) {
   EXPECT_EQ(std::set(asked.begin(), asked.end()).size(), 7u);
   EXPECT_EQ(fine.cols(), 12);
   EXPECT_EQ(fine.maxCoeff(), 11);
-  const FinerMesh nothing = cut_in_four(TriangleMesh());
+  const FinerMesh nothing = refined_uniformly(TriangleMesh());
   EXPECT_EQ(nothing.mesh.vertex_count() + nothing.mesh.triangle_count(), 0);
   EXPECT_TRUE(nothing.parents.empty());
 }

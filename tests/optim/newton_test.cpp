@@ -360,9 +360,9 @@ TEST(CarryAlong, TakesASheetWhereItsRimGoesAndLeavesTheRestAlone) {
   const Vec3 shift(0.3, -2, 5);
   const Points target = mesh.vertices.colwise() + shift;
   const Vector q = objective.unknowns(mesh.vertices);
-  const Vector carried = carried_along(objective, q, target);
+  const Vector carried = extended_harmonically(objective, q, target);
   EXPECT_LT((carried - objective.unknowns(target)).lpNorm<Eigen::Infinity>(), 1e-6);
-  EXPECT_LT((carried_along(objective, q, mesh.vertices) - q).lpNorm<Eigen::Infinity>(), 1e-15);
+  EXPECT_LT((extended_harmonically(objective, q, mesh.vertices) - q).lpNorm<Eigen::Infinity>(), 1e-15);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(RunRecord, LeadsACancelledRunToTheSameResult) {
           << result.message;
       EXPECT_LT((result.q - wanted.q).lpNorm<Eigen::Infinity>(), 1e-9) << solver << " cut at " << most;
       EXPECT_EQ(second.record().ends.size(), whole.record().ends.size());
-      EXPECT_FALSE(second.is_cut_short() || second.has_left_the_way());
+      EXPECT_FALSE(second.is_cut_short() || second.has_left_history());
 
       kept.iterate.resize(0);
       RunRecorder third(kept, 1e9, {});
@@ -98,7 +98,7 @@ TEST(RunRecord, DropsWhatDoesNotFit) {
   RunRecorder recorder(foreign, 0, {});
   RunRecorder own({}, 0, {});
   EXPECT_EQ(solved("newton", recorder).q, solved("newton", own).q);
-  EXPECT_TRUE(recorder.has_left_the_way());
+  EXPECT_TRUE(recorder.has_left_history());
 }
 
 }  // namespace

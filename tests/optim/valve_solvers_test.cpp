@@ -68,7 +68,7 @@ TEST_P(GradientOnly, ReachesNewtonsValveToAMillionthOfAMillimetre) {
   if (takes_rounds) {
     EXPECT_GT(found.result.outer_iterations, 1);
     EXPECT_EQ(found.result.route,
-              "potential of the surface closed by a fan, remainder held dead and renewed in " +
+              "potential of the surface closed by a fan, remainder lagged and updated in " +
                   std::to_string(found.result.outer_iterations) + " outer iterations");
   } else {
     EXPECT_EQ(found.result.outer_iterations, 0);

@@ -14,7 +14,7 @@ inline void expect_a_way(const ShapeView& view) {
   for (size_t k = 0; k < view.states.size(); ++k) {
     const ViewState& state = view.states[k];
     const bool is_last = k + 1 == view.states.size();
-    EXPECT_EQ(state.is_on_the_way, !is_last) << k;
+    EXPECT_EQ(state.is_history, !is_last) << k;
     if (k == 0) continue;
     EXPECT_GT((state.x - view.states[k - 1].x).cwiseAbs().maxCoeff(), 0) << k;
     EXPECT_EQ(state.label.rfind(is_last ? "result: converged" : "iterate ", 0), 0U) << state.label;

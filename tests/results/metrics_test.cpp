@@ -6,7 +6,7 @@
 #include "formats/json/valve_json.hpp"
 #include "mesh/distance/vertex_gaps.hpp"
 #include "mesh/shapes.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "support/sanitized.hpp"
 #include "support/trough_valve.hpp"
 

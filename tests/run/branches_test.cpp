@@ -57,7 +57,7 @@ class BranchesOfAScene : public testing::Test {
 TEST_F(BranchesOfAScene, FindsTheShallowPyramidTurnedInsideOut) {
   const Branches branches = found(pyramid(), {.starts = 12, .kick = 0.5, .seed = 1});
   EXPECT_EQ(branches.starts, 24);
-  EXPECT_EQ(branches.starts_of_the_way, 12);
+  EXPECT_EQ(branches.starts_along_path, 12);
   EXPECT_EQ(branches.not_converged, 0);
   ASSERT_EQ(branches.equilibria.size(), 2u) << branches_message(branches);
   const NearbyEquilibrium &own = branches.equilibria[0], &other = branches.equilibria[1];
@@ -248,9 +248,9 @@ TEST_F(BranchesOfAScene, DoesTheSameForTheSameSeed) {
 }
 
 TEST_F(BranchesOfAScene, GoesTheWayAgainWhereItIsToldTo) {
-  const Branches alone = found(pyramid(), {.starts = 3, .kick = 1e-3, .goes_the_way = false});
+  const Branches alone = found(pyramid(), {.starts = 3, .kick = 1e-3, .along_path = false});
   EXPECT_EQ(alone.starts, 3);
-  EXPECT_EQ(alone.starts_of_the_way, 0);
+  EXPECT_EQ(alone.starts_along_path, 0);
   const Branches both = found(pyramid(), {.starts = 3, .kick = 1e-3});
   EXPECT_EQ(both.starts, 6);
   EXPECT_EQ(both.equilibria[0].found, 6);

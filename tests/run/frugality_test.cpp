@@ -58,12 +58,12 @@ class SceneFrugality : public CountedAllocations {
 TEST_F(SceneFrugality, NothingIsKeptOfAnIterateForAPageThatNobodyWants) {
   const long vector = 8 * 3 * disc(10, 300).vertex_count();
   EXPECT_EQ(per_iterate(false), 0);
-  EXPECT_TRUE(report_.way.empty());
+  EXPECT_TRUE(report_.shape_history.empty());
   EXPECT_EQ(files(),
             (std::set<std::string>{"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv"}));
   if (has_shape_view()) {
     EXPECT_GT(per_iterate(true), vector);  // so it would have been seen
-    EXPECT_GT(report_.way.size(), 1u);
+    EXPECT_GT(report_.shape_history.size(), 1u);
     EXPECT_TRUE(files().contains("report.html"));
   }
 }

@@ -36,9 +36,9 @@ JudgedScene solve_judged(const Scene& scene) {
     judged.intersections = std::max(judged.intersections, seen);
     return true;
   };
-  const SceneGeometry ground = scene_geometry(scene);
-  judged.model = build(scene, ground);
-  judged.outcome = solve_scene(scene, ground, judged.model, setup);
+  const SceneGeometry geometry = scene_geometry(scene);
+  judged.model = build(scene, geometry);
+  judged.outcome = solve_scene(scene, geometry, judged.model, setup);
   judged.metrics =
       measure(judged.model, judged.outcome.result.q, compute_fields(judged.model, judged.positions()));
   return judged;

@@ -85,8 +85,8 @@ TEST_F(XpbdValve, TheAnnulusGoesWithThePhasesAndTheOrificeOpensAgain) {
   options.motion_time = 0.01;  // 100 steps
   options.phase = HeartPhase::Diastole;
   const Scene scene = xpbd_scene(folder_, options);
-  const SceneGeometry ground = scene_geometry(scene);
-  Model model = build(scene, ground);
+  const SceneGeometry geometry = scene_geometry(scene);
+  Model model = build(scene, geometry);
   SolveSetup setup = solve_setup(scene, scene_solvers(), {});
   std::vector<Points> states;
   setup.observer = [&](const Iteration&, const Vector& q) {
@@ -94,7 +94,7 @@ TEST_F(XpbdValve, TheAnnulusGoesWithThePhasesAndTheOrificeOpensAgain) {
     return true;
   };
   const double open = orifice_of(model, model.q0);
-  const Result result = solve_scene(scene, ground, model, setup).result;
+  const Result result = solve_scene(scene, geometry, model, setup).result;
   ASSERT_EQ(states.size(), 301U);
   const std::vector<int>& annulus = model.sets.at("annulus");
   const Points first = model.X(Eigen::all, annulus), closed = model.motion.positions(1)(Eigen::all, annulus);

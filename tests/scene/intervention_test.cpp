@@ -19,9 +19,9 @@ const EnergyTerm* term_named(const Model& model, const std::string& name) {
 }
 
 TEST_F(RepairedValve, ShortensAndLengthensTheChordsThatAreMeant) {
-  const SceneGeometry before = ground(scene());
+  const SceneGeometry before = geometry(scene());
   const auto lengths = [&](const std::string& what) {
-    return network(ground(scene(R"({"type": "chord_length", "chords": [2, 5], )" + what + "}"))).chords;
+    return network(geometry(scene(R"({"type": "chord_length", "chords": [2, 5], )" + what + "}"))).chords;
   };
   const auto &old = network(before).chords, halved = lengths(R"("factor": 0.5)"),
              longer = lengths(R"("by": "3 mm")"), given = lengths(R"("to": "0.7 cm")");
@@ -34,9 +34,9 @@ TEST_F(RepairedValve, ShortensAndLengthensTheChordsThatAreMeant) {
 }
 
 TEST_F(RepairedValve, CutsChordsWithWhatHangsOnThemAlone) {
-  const SceneGeometry before = ground(scene());
+  const SceneGeometry before = geometry(scene());
   const ChordNetwork& old = network(before);
-  const SceneGeometry after = ground(scene(R"({"type": "chord_cut", "tips": 0})"));
+  const SceneGeometry after = geometry(scene(R"({"type": "chord_cut", "tips": 0})"));
   const ChordNetwork& cut = network(after);
   EXPECT_LT(cut.chords.size(), old.chords.size());
   std::vector<int> held(static_cast<size_t>(cut.junctions.cols()), 0);
@@ -49,7 +49,7 @@ TEST_F(RepairedValve, CutsChordsWithWhatHangsOnThemAlone) {
 }
 
 TEST_F(RepairedValve, ANeochordIsACableOfItsOwnFromTheNearestTip) {
-  const SceneGeometry before = ground(scene());
+  const SceneGeometry before = geometry(scene());
   const int vertex = before.model.sets.at("free_edge")[4];
   const Scene repaired = scene(R"({"type": "neochord", "at": [)" + std::to_string(vertex) +
                                R"(], "length": "17 mm", "young": "500 MPa", "area": "0.07 mm2"})");
@@ -124,7 +124,7 @@ TEST_F(RepairedValve, AClipHoldsTheLeafletsTogether) {
 
 TEST_F(RepairedValve, ThreeClipsJoinMorePairsThanOne) {
   const auto count = [&](const char* at) {
-    return ground(scene(std::string(R"({"type": "clip", "at": )") + at + "}")).links.at("clip").size();
+    return geometry(scene(std::string(R"({"type": "clip", "at": )") + at + "}")).links.at("clip").size();
   };
   EXPECT_GT(count("[0.25, 0.5, 0.75]"), count("[0.5]"));
 }

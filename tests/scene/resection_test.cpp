@@ -11,7 +11,7 @@ constexpr const char* kWedge =
     R"({"type": "resection", "leaflet": "posterior", "at": 0.5, "width": "9 mm", "depth": "7 mm", "stiffness": "50 N/mm"})";
 
 TEST_F(RepairedValve, ResectionTakesTheAreaOfTheWedge) {
-  const SceneGeometry before = ground(scene()), after = ground(scene(kWedge));
+  const SceneGeometry before = geometry(scene()), after = geometry(scene(kWedge));
   const TriangleMesh& mesh = after.model.mesh;
   const double removed = surface_area(before.model.mesh.vertices, before.model.mesh.triangles) -
                          surface_area(mesh.vertices, mesh.triangles);
@@ -30,7 +30,7 @@ TEST_F(RepairedValve, ResectionTakesTheAreaOfTheWedge) {
 }
 
 TEST_F(RepairedValve, TheSidesOfAResectionMeet) {
-  const SceneGeometry laid = ground(scene(kWedge));
+  const SceneGeometry laid = geometry(scene(kWedge));
   const auto& pairs = laid.links.at("resection");
   ASSERT_GE(pairs.size(), 2u);
   const RunReport found = solved(scene(kWedge));

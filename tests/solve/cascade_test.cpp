@@ -34,17 +34,17 @@ class CascadeTest : public testing::Test {
   }
 
   CascadeOutcome solve(const Scene& scene, const SolverMaker& maker, const Observer& observer = {}) {
-    ground_ = scene_geometry(scene);
-    model_ = build(scene, ground_);
+    geometry_ = scene_geometry(scene);
+    model_ = build(scene, geometry_);
     StopRule stop;
     stop.tolerance = scene.solver.tolerance;
-    return solve_cascade(scene, ground_, model_, maker, stop, scene.solver.continuation, observer);
+    return solve_cascade(scene, geometry_, model_, maker, stop, scene.solver.continuation, observer);
   }
 
   static std::unique_ptr<Solver> lbfgs(const Model&) { return make_lbfgs(); }
 
   TemporaryFolder folder_;
-  SceneGeometry ground_;
+  SceneGeometry geometry_;
   Model model_;
 };
 
@@ -90,12 +90,12 @@ TEST_F(CascadeTest, ItsMotionEndsWhereTheDirectOneEnds) {
 TEST_F(CascadeTest, KeepsTheWholeOfForcesThatAreGivenByNode) {
   const Scene scene = this->scene(R"({"type": "load_field", "direction": [0, 0, -1], "force": "1 mN"})",
                                   R"([{"nodes": {"nearest": [0, 0, 0]}, "fix": true}])");
-  const SceneGeometry ground = scene_geometry(scene);
-  const Coarsening coarsening = coarsen(ground.model.mesh, coarsen_options(scene, ground));
-  const SceneGeometry thin = coarsened(ground, coarsening.mesh, coarsening.kept);
+  const SceneGeometry geometry = scene_geometry(scene);
+  const Coarsening coarsening = coarsen(geometry.model.mesh, coarsen_options(scene, geometry));
+  const SceneGeometry thin = coarsened(geometry, coarsening.mesh, coarsening.kept);
   double total[2];
   int k = 0;
-  for (const SceneGeometry* level : {&ground, &thin}) {
+  for (const SceneGeometry* level : {&geometry, &thin}) {
     Model model = build(scene, *level);
     Points forces = Points::Zero(3, model.X.cols());
     Sink sink(forces.data());

@@ -278,9 +278,9 @@ TEST_F(StressedScene, RowsThatAreNotThereAreNamedWithThoseThatAre) {
 
 TEST_F(StressedScene, SliversAreThinAndKeepTheirSides) {
   StressScene scene = stress_scene(quarter());
-  const TriangleMesh before = scene.ground.model.mesh;
+  const TriangleMesh before = scene.geometry.model.mesh;
   ASSERT_GT(add_slivers(scene, 1e-4, 10), 3);
-  const TriangleMesh& after = scene.ground.model.mesh;
+  const TriangleMesh& after = scene.geometry.model.mesh;
   double thinnest = 1;
   for (const auto& t : after.triangles.colwise()) {
     const Vec3 area = area_vector(after.vertices, t);
@@ -292,7 +292,7 @@ TEST_F(StressedScene, SliversAreThinAndKeepTheirSides) {
   }
   EXPECT_LT(thinnest, 2e-4);
   EXPECT_GT(thinnest, 1e-5);
-  EXPECT_EQ(after.vertices, scene.ground.model.X.leftCols(after.vertex_count()));
+  EXPECT_EQ(after.vertices, scene.geometry.model.X.leftCols(after.vertex_count()));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A solve to a wanted accuracy: its estimate against a truth that is computed later.
 #include "study/bench/accuracy.hpp"
 
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 #include "study/bench/discretisation.hpp"
 #include "study/bench_fixture.hpp"
 #include "study/mesh_study.hpp"
@@ -34,7 +34,7 @@ TEST_F(AccuracyTest, KeepsWhatItPromises) {
     ASSERT_EQ(closed.triangle_count(), level.triangles);
     TriangleMesh sampled = closed;
     for (auto k = static_cast<size_t>(estimate.cuts) + 1; k < study.levels.size(); ++k)
-      sampled = cut_in_four(sampled).mesh;
+      sampled = refined_uniformly(sampled).mesh;
     const double later = distance_between(sampled, study.levels.back().closed).p95;
     std::printf("  wanted %g mm: %s; later %.4f mm, order %.2f\n", wanted, estimate.message.c_str(), later,
                 estimate.order.value_or(-1));

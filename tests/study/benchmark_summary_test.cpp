@@ -2,7 +2,7 @@
 // error.
 #include "study/bench/benchmark_summary.hpp"
 
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 #include "study/bench/discretisation.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(DiscretisationEstimate, SamplesBothMeshesAsClosely) {
   coarse.vertices << 0, 1, 0, 0, 0, 1, 0, 0, 0;
   coarse.triangles.resize(3, 1);
   coarse.triangles << 0, 1, 2;
-  TriangleMesh fine = cut_in_four(coarse).mesh;
+  TriangleMesh fine = refined_uniformly(coarse).mesh;
   for (auto x : fine.vertices.colwise()) x[2] = 0.01 * (x[0] * (1 - x[0]) + x[1] * (1 - x[1]));
   const MeshDistances found = distances_between_meshes({coarse, fine});
   ASSERT_EQ(found.to_next.size(), 1u);

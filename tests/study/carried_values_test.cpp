@@ -228,10 +228,10 @@ TEST(TunedTissue, HasTheFactorsOfItsRegions) {
   const TunedScene tuned(scene, scene_geometry(scene), options);
   ASSERT_EQ(tuned.factor_count(), 6);
   const Vector factors = Vector::LinSpaced(6, 0.5, 3);
-  const Model model = build(tuned.scene(factors), tuned.ground);
+  const Model model = build(tuned.scene(factors), tuned.geometry);
   ASSERT_EQ(model.membrane.size(), static_cast<size_t>(valve.leaflets.triangle_count()));
   for (int t = 0; t < valve.leaflets.triangle_count(); ++t) {
-    const double factor = factors[tuned.ground.model.mesh.regions[static_cast<size_t>(t)]];
+    const double factor = factors[tuned.geometry.model.mesh.regions[static_cast<size_t>(t)]];
     EXPECT_NEAR(model.membrane[static_cast<size_t>(t)].young, 3e-3 * (300 + t) * factor, 1e-9);
   }
 }

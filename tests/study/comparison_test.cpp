@@ -435,7 +435,7 @@ TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   // Iterates of newton, each of the run itself: the shapes that its own page leads through.
   const Report& newton = found.reference().run->report;
   for (size_t k = last[1] + 1; k < last[2]; ++k)
-    EXPECT_TRUE(std::any_of(newton.way.begin(), newton.way.end(), [&](const RecordedShape& shape) {
+    EXPECT_TRUE(std::any_of(newton.shape_history.begin(), newton.shape_history.end(), [&](const RecordedShape& shape) {
       return json.at("states").at(k).at("nodes") == nodes(shape.x);
     })) << k;
   EXPECT_EQ(json.at("states").at(last[1]).at("nodes"), nodes(found.methods[3].run->report.fields.x));

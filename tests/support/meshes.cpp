@@ -116,7 +116,7 @@ TriangleMesh sphere_mesh(int subdivisions) {
   TriangleMesh mesh = icosahedron();
   std::vector<Vec3> points(mesh.vertices.colwise().begin(), mesh.vertices.colwise().end());
   for (int level = 0; level < subdivisions; ++level)
-    mesh.triangles = cut_in_four(mesh.triangles, [&](int a, int b) {
+    mesh.triangles = refined_uniformly(mesh.triangles, [&](int a, int b) {
       points.push_back((points[a] + points[b]).normalized());
       return static_cast<int>(points.size()) - 1;
     });

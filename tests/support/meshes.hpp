@@ -1,7 +1,7 @@
 // Simple meshes that tests build themselves, so that no test depends on the code of another room.
 #pragma once
 
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 
 #include <functional>
 #include <vector>

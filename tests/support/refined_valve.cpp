@@ -28,7 +28,7 @@ Valve refined_mitral_valve(int triangles, int refinements) {
   std::vector<Eigen::Vector2d> coordinates(mesh.coordinates.colwise().begin(),
                                            mesh.coordinates.colwise().end());
   for (int level = 0; level < refinements; ++level)
-    valve.leaflets.triangles = cut_in_four(valve.leaflets.triangles, [&](int a, int b) {
+    valve.leaflets.triangles = refined_uniformly(valve.leaflets.triangles, [&](int a, int b) {
       coordinates.push_back(halfway(coordinates[a], coordinates[b]));
       return static_cast<int>(coordinates.size()) - 1;
     });

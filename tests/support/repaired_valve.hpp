@@ -27,10 +27,10 @@ class RepairedValve : public testing::Test {
     return parse_scene(with_interventions(text_, {interventions}, file_.string()), file_);
   }
 
-  static SceneGeometry ground(const Scene& scene) { return scene_geometry(scene); }
+  static SceneGeometry geometry(const Scene& scene) { return scene_geometry(scene); }
 
-  static const ChordNetwork& network(const SceneGeometry& ground) {
-    return ground.networks.begin()->second.network;
+  static const ChordNetwork& network(const SceneGeometry& geometry) {
+    return geometry.networks.begin()->second.network;
   }
 
   // Why a scene is refused.

@@ -5,7 +5,7 @@
 #include "exchange/import.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 #include "scene/file/scene_text.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/minimisers.hpp"

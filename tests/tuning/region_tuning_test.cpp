@@ -56,9 +56,9 @@ class RegionTuningTest : public testing::Test {
       factors[static_cast<Eigen::Index>(k)] = found.regions[k].factor;
     EXPECT_GT((factors.array() - 1).abs().maxCoeff(), 0.01);
     const Scene anew = tuned.scene(factors);
-    Model model = build(anew, tuned.ground);
+    Model model = build(anew, tuned.geometry);
     const Result result =
-        solve_scene(anew, tuned.ground, model, solve_setup(anew, scene_solvers(), {})).result;
+        solve_scene(anew, tuned.geometry, model, solve_setup(anew, scene_solvers(), {})).result;
     ASSERT_EQ(result.status, Status::Converged) << result.message;
     const Points x = model.objective->positions(result.q);
     double most = 0;
@@ -77,9 +77,9 @@ TEST_F(RegionTuningTest, DerivativesByFactorsAreThoseOfSolvedShapes) {
   const Scene valve = scene("none");
   const TunedScene tuned(valve, scene_geometry(valve), options_);
   const Scene split = tuned.scene(Vector::Ones(tuned.factor_count()));
-  Model model = build(split, tuned.ground);
+  Model model = build(split, tuned.geometry);
   const Result first =
-      solve_scene(split, tuned.ground, model, solve_setup(split, scene_solvers(), {})).result;
+      solve_scene(split, tuned.geometry, model, solve_setup(split, scene_solvers(), {})).result;
   ASSERT_EQ(first.status, Status::Converged);
 
   TrackingOptions tracking;

@@ -3,7 +3,7 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
 #include "energy/load_pressure.hpp"
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 #include "support/films.hpp"
 #include "support/sanitized.hpp"
 #include "support/sheets.hpp"
@@ -230,7 +230,7 @@ double area_in_steep_quadrilateral(int cells, int cuts) {
   TriangleMesh mesh = grid_mesh(cells, cells, 2, 2, Diagonal::Same);
   mesh.vertices.topRows(2).array() -= 1;
   mesh.vertices.row(2) = 2 * mesh.vertices.row(0).cwiseProduct(mesh.vertices.row(1));
-  for (int cut = 0; cut < cuts; ++cut) mesh = cut_in_four(mesh).mesh;
+  for (int cut = 0; cut < cuts; ++cut) mesh = refined_uniformly(mesh).mesh;
   const Equilibrium found = find_equilibrium(mesh.vertices, fixed_boundary(mesh),
                                              terms_of(film_term(mesh.triangles)), {.tolerance = 1e-8});
   EXPECT_EQ(found.result.status, Status::Converged) << found.result.message;

@@ -10,7 +10,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "registration/wanted_registration.hpp"
-#include "results/reference_results.hpp"
+#include "results/reference/reference_results.hpp"
 
 #include <cstdio>
 #include <filesystem>

@@ -81,7 +81,7 @@ void stress(const StressArguments& arguments, int& exit_code) {
   options.folder = folder_of(arguments, scene);
   options.solvers = all_solvers();
   options.factorisations = all_factorisations();
-  options.judge = intersection_judge();
+  options.checker = intersection_checker();
   options.is_cancelled = is_interrupted;
   options.solve_apart = solve_apart;
   RowPrinter print;

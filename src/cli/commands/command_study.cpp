@@ -145,7 +145,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "--sweep", arguments->sweeps,
           "KEY=a..b[:n] or KEY=a,b,c, such as ring.size=26..34mm:5; KEY is NAME.KEY of an intervention "
-          "or a term, or a way through the file, terms[1].young. Several make a grid")
+          "or a term, or a path in the file, terms[1].young. Several make a grid")
       ->required()
       ->allow_extra_args(false);
   command->add_option("--rank-by", arguments->metric, "Metric of result.json that ranks the points")

@@ -36,7 +36,7 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
   if (arguments.orifice > 0) options.orifice_limit_mm2 = arguments.orifice;
   options.report = [](int round, const TuningState& state) {
     end_progress();
-    print_state(("round " + std::to_string(round)).c_str(), state);
+    print_state(("iteration " + std::to_string(round)).c_str(), state);
   };
   const std::filesystem::path folder = arguments.prepared_folder(scene);
   const RegionTuning found = tune_regions(scene, all_solvers(), options, arguments.options());
@@ -45,7 +45,7 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
   print_state("before", found.before);
   print_state("after", found.after);
   if (found.orifice_limit_mm2) std::printf("  %-22s %.2f mm2\n", "orifice at most", *found.orifice_limit_mm2);
-  std::printf("  %-22s %d (%d not converged) in %d rounds, %.2f s\n", "solves", found.solves,
+  std::printf("  %-22s %d (%d not converged) in %d iterations, %.2f s\n", "solves", found.solves,
               found.failed_solves, found.rounds, found.wall_s);
   print_table(factor_table(found));
   write_region_tuning(folder, found);

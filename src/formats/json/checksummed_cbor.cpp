@@ -64,14 +64,14 @@ std::string fingerprint(std::string_view bytes) {
   return result.digits();
 }
 
-void write_sealed(const std::filesystem::path& path, const Seal& seal, const Json& json) {
+void write_checksummed(const std::filesystem::path& path, const Seal& seal, const Json& json) {
   std::string body;
   Json::to_cbor(json, body);
   formats::write_durable(
       path, std::string(seal.kind) + " " + std::string(seal.format) + " " + fingerprint(body) + "\n" + body);
 }
 
-Json read_sealed(const std::filesystem::path& path, const Seal& seal) {
+Json read_checksummed(const std::filesystem::path& path, const Seal& seal) {
   const std::string bytes = formats::read_whole(path), file = path.string(), remedy(seal.remedy);
   const std::string_view all = bytes;
   const std::string begin = std::string(seal.kind) + " ";

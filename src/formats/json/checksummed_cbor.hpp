@@ -30,11 +30,11 @@ struct Seal {
 
 // The file appears whole or not at all, and is on the disk when this returns. Throws InputError where it
 // cannot be written.
-void write_sealed(const std::filesystem::path& path, const Seal& seal, const Json& json);
+void write_checksummed(const std::filesystem::path& path, const Seal& seal, const Json& json);
 
 // Throws InputError where there is no file, where it is none of these, damaged, cut off or of another format,
 // and where it nests deeper than 16.
-Json read_sealed(const std::filesystem::path& path, const Seal& seal);
+Json read_checksummed(const std::filesystem::path& path, const Seal& seal);
 
 // What such a file says was counted, and timed [s]. Throw std::domain_error: negative or not finite; a count
 // that is not whole or more than an int holds.

@@ -66,14 +66,14 @@ class Judge {
 }  // namespace
 
 std::vector<std::array<int, 2>> intersecting_pairs_cgal(const Points& points, const Triangles& triangles) {
-  const Judge judge(points, triangles);
+  const Judge checker(points, triangles);
   std::vector<TriangleBox> boxes;
   boxes.reserve(static_cast<size_t>(triangles.cols()));
-  for (int t = 0; t < triangles.cols(); ++t) boxes.emplace_back(judge.box(t), t);
+  for (int t = 0; t < triangles.cols(); ++t) boxes.emplace_back(checker.box(t), t);
   std::vector<std::array<int, 2>> pairs;
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const TriangleBox& a, const TriangleBox& b) {
     const int s = std::min(a.number(), b.number()), t = std::max(a.number(), b.number());
-    if (!judge.share_a_vertex(s, t) && judge.meet(s, t)) pairs.push_back({s, t});
+    if (!checker.share_a_vertex(s, t) && checker.meet(s, t)) pairs.push_back({s, t});
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

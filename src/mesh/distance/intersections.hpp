@@ -25,7 +25,7 @@ std::vector<Intersection> intersections(const Points& points, const Triangles& t
 std::vector<std::array<int, 2>> intersecting_pairs(const Points& points, const Triangles& triangles);
 
 // Who counts the intersections of a result.
-struct IntersectionJudge {
+struct IntersectionChecker {
   std::string name = "own exact predicates";
   std::function<std::vector<std::array<int, 2>>(const Points&, const Triangles&)> pairs = intersecting_pairs;
 };

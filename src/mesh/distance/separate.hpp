@@ -1,4 +1,4 @@
-// Pushes apart what runs through itself at the start, so that a contact that needs a start without
+// Resolves initial self-intersections, so that a contact that needs a start without
 // intersections can take over.
 #pragma once
 

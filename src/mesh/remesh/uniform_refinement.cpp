@@ -1,4 +1,4 @@
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 
 namespace coapt {
 
-Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, int)>& add_middle) {
+Triangles refined_uniformly(const Triangles& triangles, const std::function<int(int, int)>& add_middle) {
   std::map<std::pair<int, int>, int> middle;
   const auto middle_of = [&](int a, int b) {
     const auto [where, is_new] = middle.try_emplace(std::minmax(a, b));
@@ -22,9 +22,9 @@ Triangles cut_in_four(const Triangles& triangles, const std::function<int(int, i
   return fine;
 }
 
-FinerMesh cut_in_four(const TriangleMesh& mesh) {
+FinerMesh refined_uniformly(const TriangleMesh& mesh) {
   FinerMesh finer;
-  finer.mesh.triangles = cut_in_four(mesh.triangles, [&](int a, int b) {
+  finer.mesh.triangles = refined_uniformly(mesh.triangles, [&](int a, int b) {
     finer.parents.push_back({std::min(a, b), std::max(a, b)});
     return mesh.vertex_count() + static_cast<int>(finer.parents.size()) - 1;
   });

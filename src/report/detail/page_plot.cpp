@@ -1,5 +1,6 @@
 #include "report/detail/page_plot.hpp"
 
+#include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/detail/report_files.hpp"
@@ -90,11 +91,7 @@ std::vector<size_t> drawn_points(const PageSeries& series, bool is_log_x) {
 }
 
 // To the six digits that its table has: a picture shows fewer.
-double rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
+double rounded(double value) { return std::strtod(number_text(value, 6).c_str(), nullptr); }
 
 OrderedJson series_json(const PagePlot& plot, size_t index, bool is_log_x) {
   const PageSeries& series = plot.series[index];

@@ -7,9 +7,9 @@ function readData() {
     return read.map(each => typeof each === "number" ? read[each] : each);
   };
   for (const name of ["triangles", "lines", "obstacles"]) data[name] = integers(data[name]);
-  if (!data.ways.length) data.ways = [{ label: "", states: data.states.length }];
+  if (!data.sequences.length) data.sequences = [{ label: "", states: data.states.length }];
   let first = 0;
-  for (const way of data.ways) {
+  for (const way of data.sequences) {
     Object.assign(way, { first, last: first + way.states - 1 });
     for (const state of data.states.slice(first, first += way.states)) state.way = way;
   }
@@ -57,7 +57,7 @@ function makeViewer() {
 
 function connectSlider({ data, shown, show }) {
   const slider = byId("state"), play = byId("play"), choice = byId("way");
-  let timer = 0, way = data.ways[data.ways.length - 1];
+  let timer = 0, way = data.sequences[data.sequences.length - 1];
   const go = state => {
     slider.value = state - way.first;
     slider.setAttribute("aria-valuetext", data.states[state].label);
@@ -87,10 +87,10 @@ function connectSlider({ data, shown, show }) {
     play.textContent = "Stop";
     timer = setInterval(() => shown.state === way.last ? stop() : go(shown.state + 1), 350);
   });
-  data.ways.forEach((each, k) => choice.appendChild(element("option", each.label)).value = k);
-  choice.value = data.ways.length - 1;
-  choice.addEventListener("change", () => take(data.ways[choice.value]));
-  byId("ways").hidden = data.ways.length === 1;
+  data.sequences.forEach((each, k) => choice.appendChild(element("option", each.label)).value = k);
+  choice.value = data.sequences.length - 1;
+  choice.addEventListener("change", () => take(data.sequences[choice.value]));
+  byId("ways").hidden = data.sequences.length === 1;
   take(way);
 }
 

@@ -13,16 +13,16 @@ namespace coapt {
 namespace {
 
 // What the geometry knows of the model.
-Model begun(const SceneGeometry& ground) {
+Model model_of(const SceneGeometry& geometry) {
   Model model;
-  model.origin = ground.model.origin;
-  model.X = ground.model.X;
-  model.mesh = ground.model.mesh;
-  model.obstacles = ground.model.obstacles;
-  model.sets = ground.model.sets;
-  model.closed_reference = ground.model.closed_reference;
-  model.registration = ground.model.registration;
-  model.warnings = ground.model.warnings;
+  model.origin = geometry.model.origin;
+  model.X = geometry.model.X;
+  model.mesh = geometry.model.mesh;
+  model.obstacles = geometry.model.obstacles;
+  model.sets = geometry.model.sets;
+  model.closed_reference = geometry.model.closed_reference;
+  model.registration = geometry.model.registration;
+  model.warnings = geometry.model.warnings;
   return model;
 }
 
@@ -42,26 +42,26 @@ void add_given(const GivenTerms& given, const Model& model, std::vector<TermPoin
   }
 }
 
-std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ground, Model& model,
+std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& geometry, Model& model,
                                      std::vector<std::string>& defects) {
   BuildContext context{model,
-                       ground.prescribed.fixed,
-                       ground.networks,
-                       [&ground](const NodeSelection& selection, const std::string& where) {
-                         return selected_nodes(selection, ground, where);
+                       geometry.prescribed.fixed,
+                       geometry.networks,
+                       [&geometry](const NodeSelection& selection, const std::string& where) {
+                         return selected_nodes(selection, geometry, where);
                        },
-                       [&ground](const NodeSelection* selection, const std::string& where) {
-                         return multiplicity(selection, ground, where);
+                       [&geometry](const NodeSelection* selection, const std::string& where) {
+                         return multiplicity(selection, geometry, where);
                        },
-                       scene_mesh(ground),
-                       [&ground](const Vector& values) { return at_vertices(values, ground); },
-                       [&ground](const Vector& values) { return on_triangles(values, ground); },
+                       scene_mesh(geometry),
+                       [&geometry](const Vector& values) { return at_vertices(values, geometry); },
+                       [&geometry](const Vector& values) { return on_triangles(values, geometry); },
                        [&]() -> const Points& {
-                         find_fibres(scene, ground, model);
+                         find_fibres(scene, geometry, model);
                          return model.fibres;
                        },
-                       ground.links,
-                       scene_ground(ground).patches};
+                       geometry.links,
+                       finest_geometry(geometry).patches};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
@@ -83,23 +83,25 @@ std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& gr
 
 }  // namespace
 
-std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ground) {
-  Model model = begun(ground);
+std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& geometry) {
+  Model model = model_of(geometry);
   std::vector<std::string> defects;
-  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+  std::vector<TermPointer> terms = build_terms(scene, geometry, model, defects);
   if (!defects.empty()) throw InputError(defects);
   return terms;
 }
 
 Model build(const Scene& scene) { return build(scene, scene_geometry(scene)); }
 
-Model build(const Scene& scene, const SceneGeometry& ground) { return build(scene, ground, GivenTerms()); }
+Model build(const Scene& scene, const SceneGeometry& geometry) {
+  return build(scene, geometry, GivenTerms());
+}
 
-Model build(const Scene& scene, const SceneGeometry& ground, const GivenTerms& given) {
-  Model model = begun(ground);
-  const Prescribed& prescribed = ground.prescribed;
-  std::vector<std::string> defects = ground.defects;
-  std::vector<TermPointer> terms = build_terms(scene, ground, model, defects);
+Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms& given) {
+  Model model = model_of(geometry);
+  const Prescribed& prescribed = geometry.prescribed;
+  std::vector<std::string> defects = geometry.defects;
+  std::vector<TermPointer> terms = build_terms(scene, geometry, model, defects);
   add_given(given, model, terms, defects);
   if (!defects.empty()) throw InputError(defects);
   warn_of_unsupported_parts(model, terms, prescribed.fixed);

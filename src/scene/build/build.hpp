@@ -15,7 +15,7 @@ struct SceneGeometry;
 Model build(const Scene& scene);
 
 // The same on nodes, sets and supports that are known already, those of a coarser mesh for instance.
-Model build(const Scene& scene, const SceneGeometry& ground);
+Model build(const Scene& scene, const SceneGeometry& geometry);
 
 // The problem that starts at x (3 x node_count, relative to the model's origin), with the supports where
 // their motion ends.

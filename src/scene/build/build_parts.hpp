@@ -10,9 +10,9 @@ namespace coapt {
 SceneGeometry scene_geometry(const Scene& scene, TriangleMesh mesh);
 
 // With the given terms behind those of the scene. Names must differ.
-Model build(const Scene& scene, const SceneGeometry& ground, const GivenTerms& given);
+Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms& given);
 
 // The terms alone, in the order of an objective's.
-std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ground);
+std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& geometry);
 
 }  // namespace coapt

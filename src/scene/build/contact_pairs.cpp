@@ -20,8 +20,8 @@ Triangles all_facets(const Model& model) {
   return all;
 }
 
-FacetPairs membrane_intersections(const Points& x, const Model& model, const IntersectionJudge& judge) {
-  FacetPairs pairs = judge.pairs(x, all_facets(model));
+FacetPairs membrane_intersections(const Points& x, const Model& model, const IntersectionChecker& checker) {
+  FacetPairs pairs = checker.pairs(x, all_facets(model));
   std::erase_if(pairs, [count = model.mesh.triangle_count()](const std::array<int, 2>& pair) {
     return std::min(pair[0], pair[1]) >= count;
   });

@@ -17,7 +17,8 @@ Triangles all_facets(const Model& model);
 
 // Pairs of all_facets() that pass through each other at x (3 x node_count [mm], finite), as `judge` sees it.
 // At least one of a pair is the membrane's: obstacles may overlap among themselves.
-FacetPairs membrane_intersections(const Points& x, const Model& model, const IntersectionJudge& judge = {});
+FacetPairs membrane_intersections(const Points& x, const Model& model,
+                                  const IntersectionChecker& checker = {});
 
 // Two facet numbers a line, separated by a comma; lines that start with # are passed over. Throws InputError
 // with every bad line as FILE:LINE.

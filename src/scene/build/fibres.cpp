@@ -23,10 +23,10 @@ std::vector<int> trigones_of(const Model& model, const std::vector<int>& annulus
 }
 
 // How the chords of all networks pull at the leaflets.
-std::vector<FibrePull> pulls_of(const SceneGeometry& ground) {
-  const Points& X = ground.model.X;
+std::vector<FibrePull> pulls_of(const SceneGeometry& geometry) {
+  const Points& X = geometry.model.X;
   std::vector<FibrePull> pulls;
-  for (const auto& [path, placed] : ground.networks)
+  for (const auto& [path, placed] : geometry.networks)
     for (const Chord& chord : placed.network.chords)
       for (const auto& [end, other] : {std::pair(chord.from, chord.to), std::pair(chord.to, chord.from)})
         if (end.kind == ChordEnd::Kind::Leaflet)
@@ -35,8 +35,8 @@ std::vector<FibrePull> pulls_of(const SceneGeometry& ground) {
   return pulls;
 }
 
-std::vector<FibreGuide> default_guides(const SceneFibres& fibres, const SceneGeometry& ground) {
-  const Model& model = ground.model;
+std::vector<FibreGuide> default_guides(const SceneFibres& fibres, const SceneGeometry& geometry) {
+  const Model& model = geometry.model;
   const std::vector<int> annulus = set_of(model, "annulus");
   if (fibres.defaults == "none") return {};
   if (fibres.defaults == "boundary" || (fibres.defaults == "auto" && annulus.empty()))
@@ -45,7 +45,7 @@ std::vector<FibreGuide> default_guides(const SceneFibres& fibres, const SceneGeo
     throw InputError(fibres.where +
                      ".defaults: \"valve\" needs the node set \"annulus\"; name it in `sets` or in "
                      "the file of `mesh.sets`, or take \"boundary\"");
-  return valve_guides(model.mesh, annulus, trigones_of(model, annulus), pulls_of(ground));
+  return valve_guides(model.mesh, annulus, trigones_of(model, annulus), pulls_of(geometry));
 }
 
 // Along or across: the boundary edges that join two of the nodes, where there are none any edge that does.
@@ -83,10 +83,10 @@ void add_entry(const FibreEntry& entry, const Model& model, std::vector<FibreGui
   guides.insert(guides.end(), more.begin(), more.end());
 }
 
-FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& ground) {
-  const Model& model = ground.model;
+FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& geometry) {
+  const Model& model = geometry.model;
   if (fibres.file) return in_surface(read_csv(fibres.file->string()), model.mesh, fibres.file->string());
-  std::vector<FibreGuide> guides = default_guides(fibres, ground);
+  std::vector<FibreGuide> guides = default_guides(fibres, geometry);
   std::vector<std::string> defects;
   for (const FibreEntry& entry : fibres.entries) try {
       add_entry(entry, model, guides);
@@ -102,7 +102,7 @@ FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& ground
 }
 
 // Each triangle's four parts have its fibre.
-FibreField cut_in_four(const FibreField& coarse) {
+FibreField refined_uniformly(const FibreField& coarse) {
   FibreField fine;
   fine.directions.resize(3, 4 * coarse.directions.cols());
   for (Eigen::Index t = 0; t < coarse.directions.cols(); ++t)
@@ -113,16 +113,16 @@ FibreField cut_in_four(const FibreField& coarse) {
 
 // Solved for on the scene's own mesh alone, so that all meshes are of one material; kept where it was asked
 // for.
-const FibreField& field_here(const SceneFibres& fibres, const SceneGeometry& ground) {
-  std::optional<FibreField>& here = *ground.fibres;
+const FibreField& field_here(const SceneFibres& fibres, const SceneGeometry& geometry) {
+  std::optional<FibreField>& here = *geometry.fibres;
   if (here) return *here;
-  if (ground.finest == nullptr)
-    here = field_of_scene(fibres, ground);
-  else if (ground.is_refined)
-    here = cut_in_four(field_here(fibres, *ground.coarser));
+  if (geometry.finest == nullptr)
+    here = field_of_scene(fibres, geometry);
+  else if (geometry.is_refined)
+    here = refined_uniformly(field_here(fibres, *geometry.coarser));
   else
-    here = coarsened(field_here(fibres, *ground.finest), ground.finest->model.mesh, ground.model.mesh,
-                     kept_vertices(ground));
+    here = coarsened(field_here(fibres, *geometry.finest), geometry.finest->model.mesh, geometry.model.mesh,
+                     kept_vertices(geometry));
   return *here;
 }
 
@@ -138,11 +138,11 @@ void warn_of_isotropic(const FibreField& field, const SceneFibres& fibres, Model
 
 }  // namespace
 
-void find_fibres(const Scene& scene, const SceneGeometry& ground, Model& model) {
+void find_fibres(const Scene& scene, const SceneGeometry& geometry, Model& model) {
   if (model.fibres.cols() > 0) return;
   SceneFibres fibres = scene.fibres.value_or(SceneFibres());
   if (!scene.fibres) fibres.where = scene.file.string() + ": fibres";
-  const FibreField& field = field_here(fibres, ground);
+  const FibreField& field = field_here(fibres, geometry);
   model.fibres = field.directions;
   model.fibre_anisotropy = field.anisotropy;
   warn_of_isotropic(field, fibres, model);

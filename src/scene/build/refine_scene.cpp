@@ -1,6 +1,6 @@
 #include "scene/build/refine_scene.hpp"
 
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -14,7 +14,7 @@ class Cut {
  public:
   explicit Cut(const Model& model)
       : old_count_(model.mesh.vertex_count()),
-        finer(cut_in_four(model.mesh)),
+        finer(refined_uniformly(model.mesh)),
         is_boundary_(static_cast<size_t>(old_count_), false),
         beside_(finer.parents.size()) {
     for (size_t k = 0; k < finer.parents.size(); ++k) number_[finer.parents[k]] = k;
@@ -125,19 +125,19 @@ Prescribed refined_supports(const Prescribed& coarse, const Points& X, const Cut
 
 }  // namespace
 
-SceneGeometry refined(const SceneGeometry& ground) {
-  const Model& coarse = ground.model;
+SceneGeometry refined(const SceneGeometry& geometry) {
+  const Model& coarse = geometry.model;
   const int old_vertices = coarse.mesh.vertex_count();
   const Cut cut(coarse);
   SceneGeometry fine;
-  fine.finest = ground.finest != nullptr ? ground.finest : &ground;
+  fine.finest = geometry.finest != nullptr ? geometry.finest : &geometry;
   fine.is_refined = true;
-  fine.coarser = &ground;
+  fine.coarser = &geometry;
   fine.parents = cut.finer.parents;
   const auto count = fine.finest->model.X.cols();
   for (int node = 0; node < count; ++node)
     fine.number.push_back(
-        cut.moved(ground.finest != nullptr ? ground.number[static_cast<size_t>(node)] : node));
+        cut.moved(geometry.finest != nullptr ? geometry.number[static_cast<size_t>(node)] : node));
 
   Model& model = fine.model;
   model.origin = coarse.origin;
@@ -153,13 +153,13 @@ SceneGeometry refined(const SceneGeometry& ground) {
   all.clear();
   for (int node = 0; node < model.X.cols(); ++node) all.push_back(node);
 
-  fine.networks = ground.networks;
+  fine.networks = geometry.networks;
   for (auto& [path, placed] : fine.networks) {
     placed.first_papillary += cut.added();
     placed.first_junction += cut.added();
   }
-  for (const auto& [name, pairs] : ground.links) fine.links[name] = refined_links(pairs, cut);
-  fine.prescribed = refined_supports(ground.prescribed, coarse.X, cut, old_vertices);
+  for (const auto& [name, pairs] : geometry.links) fine.links[name] = refined_links(pairs, cut);
+  fine.prescribed = refined_supports(geometry.prescribed, coarse.X, cut, old_vertices);
   return fine;
 }
 

@@ -325,63 +325,64 @@ SceneGeometry scene_geometry(const Scene& scene, TriangleMesh mesh) {
   return assembled(scene, std::move(assembly));
 }
 
-const SceneGeometry& scene_ground(const SceneGeometry& ground) {
-  return ground.finest == nullptr ? ground : scene_ground(*ground.finest);
+const SceneGeometry& finest_geometry(const SceneGeometry& geometry) {
+  return geometry.finest == nullptr ? geometry : finest_geometry(*geometry.finest);
 }
 
-std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeometry& ground,
+std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeometry& geometry,
                                 const std::string& where) {
   const bool is_listed = selection.kind == NodeSelection::Kind::Indices;
-  if (ground.finest == nullptr || (ground.is_refined && !is_listed))
-    return selected_nodes(selection, ground.model, where);
+  if (geometry.finest == nullptr || (geometry.is_refined && !is_listed))
+    return selected_nodes(selection, geometry.model, where);
   std::vector<int> nodes;
-  for (const int node : selected_nodes(selection, *ground.finest, where))
-    if (const int here = ground.number[static_cast<size_t>(node)]; here >= 0) nodes.push_back(here);
+  for (const int node : selected_nodes(selection, *geometry.finest, where))
+    if (const int here = geometry.number[static_cast<size_t>(node)]; here >= 0) nodes.push_back(here);
   return nodes;
 }
 
-std::vector<int> kept_vertices(const SceneGeometry& ground) {
-  std::vector<int> kept(static_cast<size_t>(ground.model.mesh.vertex_count()));
-  for (int v = 0; v < ground.finest->model.mesh.vertex_count(); ++v)
-    if (const int here = ground.number[static_cast<size_t>(v)]; here >= 0)
+std::vector<int> kept_vertices(const SceneGeometry& geometry) {
+  std::vector<int> kept(static_cast<size_t>(geometry.model.mesh.vertex_count()));
+  for (int v = 0; v < geometry.finest->model.mesh.vertex_count(); ++v)
+    if (const int here = geometry.number[static_cast<size_t>(v)]; here >= 0)
       kept[static_cast<size_t>(here)] = v;
   return kept;
 }
 
-double multiplicity(const NodeSelection* selection, const SceneGeometry& ground, const std::string& where) {
-  if (ground.finest == nullptr) return 1;
-  const Model& own = scene_ground(ground).model;
+double multiplicity(const NodeSelection* selection, const SceneGeometry& geometry, const std::string& where) {
+  if (geometry.finest == nullptr) return 1;
+  const Model& own = finest_geometry(geometry).model;
   if (selection == nullptr)
-    return static_cast<double>(own.mesh.vertex_count()) / ground.model.mesh.vertex_count();
-  const size_t left = selected_nodes(*selection, ground, where).size();
+    return static_cast<double>(own.mesh.vertex_count()) / geometry.model.mesh.vertex_count();
+  const size_t left = selected_nodes(*selection, geometry, where).size();
   const size_t all = selected_nodes(*selection, own, where).size();
   return left > 0 ? static_cast<double>(all) / static_cast<double>(left) : 1;
 }
 
-const TriangleMesh& scene_mesh(const SceneGeometry& ground) { return scene_ground(ground).model.mesh; }
+const TriangleMesh& scene_mesh(const SceneGeometry& geometry) { return finest_geometry(geometry).model.mesh; }
 
-Vector at_vertices(const Vector& values, const SceneGeometry& ground) {
-  if (ground.finest == nullptr) return values;
-  Vector here(ground.model.mesh.vertex_count());
-  if (ground.is_refined) {
-    const Vector coarse = at_vertices(values, *ground.coarser);
+Vector at_vertices(const Vector& values, const SceneGeometry& geometry) {
+  if (geometry.finest == nullptr) return values;
+  Vector here(geometry.model.mesh.vertex_count());
+  if (geometry.is_refined) {
+    const Vector coarse = at_vertices(values, *geometry.coarser);
     here.head(coarse.size()) = coarse;
-    for (size_t k = 0; k < ground.parents.size(); ++k)
+    for (size_t k = 0; k < geometry.parents.size(); ++k)
       here[coarse.size() + static_cast<Eigen::Index>(k)] =
-          0.5 * (coarse[ground.parents[k][0]] + coarse[ground.parents[k][1]]);
+          0.5 * (coarse[geometry.parents[k][0]] + coarse[geometry.parents[k][1]]);
     return here;
   }
-  const Vector fine = at_vertices(values, *ground.finest);
+  const Vector fine = at_vertices(values, *geometry.finest);
   for (Eigen::Index v = 0; v < fine.size(); ++v)
-    if (const int kept = ground.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = fine[v];
+    if (const int kept = geometry.number[static_cast<size_t>(v)]; kept >= 0) here[kept] = fine[v];
   return here;
 }
 
-Vector on_triangles(const Vector& values, const SceneGeometry& ground) {
-  if (ground.finest == nullptr) return values;
-  if (ground.is_refined) return on_triangles(values, *ground.coarser).transpose().replicate(4, 1).reshaped();
-  const TriangleMesh& fine = ground.finest->model.mesh;
-  const Vector there = on_triangles(values, *ground.finest);
+Vector on_triangles(const Vector& values, const SceneGeometry& geometry) {
+  if (geometry.finest == nullptr) return values;
+  if (geometry.is_refined)
+    return on_triangles(values, *geometry.coarser).transpose().replicate(4, 1).reshaped();
+  const TriangleMesh& fine = geometry.finest->model.mesh;
+  const Vector there = on_triangles(values, *geometry.finest);
   Vector sum = Vector::Zero(fine.vertex_count()), count = sum;
   for (int t = 0; t < fine.triangle_count(); ++t)
     for (const int v : fine.triangles.col(t)) {
@@ -389,10 +390,11 @@ Vector on_triangles(const Vector& values, const SceneGeometry& ground) {
       ++count[v];
     }
   const Vector mean = sum.cwiseQuotient(count.cwiseMax(1));
-  Vector here = Vector::Zero(ground.model.mesh.triangle_count());
-  const std::vector<int> kept = kept_vertices(ground);
+  Vector here = Vector::Zero(geometry.model.mesh.triangle_count());
+  const std::vector<int> kept = kept_vertices(geometry);
   for (int t = 0; t < here.size(); ++t)
-    for (const int v : ground.model.mesh.triangles.col(t)) here[t] += mean[kept[static_cast<size_t>(v)]] / 3;
+    for (const int v : geometry.model.mesh.triangles.col(t))
+      here[t] += mean[kept[static_cast<size_t>(v)]] / 3;
   return here;
 }
 

@@ -45,25 +45,25 @@ SceneGeometry scene_geometry(const Scene& scene);
 
 // The nodes that a selection means on the scene's own mesh, those that are gone left out; on a refined mesh
 // those that it means there, listed nodes excepted.
-std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeometry& ground,
+std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeometry& geometry,
                                 const std::string& where);
 
 // How many nodes of the scene's own mesh there are for each that is left here, of a selection or of all mesh
 // vertices.
-double multiplicity(const NodeSelection* selection, const SceneGeometry& ground, const std::string& where);
+double multiplicity(const NodeSelection* selection, const SceneGeometry& geometry, const std::string& where);
 
 // The geometry of the scene's own mesh.
-const SceneGeometry& scene_ground(const SceneGeometry& ground);
+const SceneGeometry& finest_geometry(const SceneGeometry& geometry);
 
 // On a coarser mesh: the vertex of the mesh that it was made from, of each vertex here.
-std::vector<int> kept_vertices(const SceneGeometry& ground);
+std::vector<int> kept_vertices(const SceneGeometry& geometry);
 
 // The scene's own mesh, and values given on its vertices or triangles (one entry each) on those here. A
 // coarser mesh keeps the values of its vertices, and its triangles take the mean over their corners of the
 // mean over the triangles that met there. On a finer mesh triangles have the value of the one that they are
 // part of, new vertices the mean of the ends of their edge.
-const TriangleMesh& scene_mesh(const SceneGeometry& ground);
-Vector at_vertices(const Vector& values, const SceneGeometry& ground);
-Vector on_triangles(const Vector& values, const SceneGeometry& ground);
+const TriangleMesh& scene_mesh(const SceneGeometry& geometry);
+Vector at_vertices(const Vector& values, const SceneGeometry& geometry);
+Vector on_triangles(const Vector& values, const SceneGeometry& geometry);
 
 }  // namespace coapt

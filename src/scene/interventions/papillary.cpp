@@ -37,7 +37,7 @@ void move_tips(const InterventionSpec& spec, SupportEdit& edit) {
 InterventionType papillary_intervention() {
   return {.name = "papillary",
           .summary =
-              "Papillary tips are moved, at the start and all along their way to the closed valve; "
+              "Papillary tips are moved, at the start and along their whole path to the closed valve; "
               "chords keep their rest lengths.",
           .spec = {.keys = {{.name = "by",
                              .kind = KeyKind::Triple,

@@ -37,7 +37,7 @@ double FacingSurface::orientation_of(const Points& x, const Points& normals, con
 
 ClosestPoint FacingSurface::closest(const Vec3& p, const Vec3& direction) const {
   const ClosestOnSurface nearest = tree_.closest(p);
-  if (facet_normal(nearest.triangle).dot(direction) >= 0) return foot(nearest);
+  if (facet_normal(nearest.triangle).dot(direction) >= 0) return closest_point(nearest);
   double reach = std::max(least_reach_, kWidening * std::sqrt(nearest.distance_squared));
   for (int widening = 0; widening < kWidenings; ++widening, reach *= kWidening) {
     ClosestOnSurface found;
@@ -48,16 +48,16 @@ ClosestPoint FacingSurface::closest(const Vec3& p, const Vec3& direction) const 
       if (at.distance_squared < found.distance_squared)
         found = {t, at.point, at.weights, at.distance_squared};
     }
-    if (found.triangle >= 0) return foot(found);
+    if (found.triangle >= 0) return closest_point(found);
   }
-  return foot(nearest);
+  return closest_point(nearest);
 }
 
-ClosestPoint FacingSurface::foot(const ClosestOnSurface& at) const {
-  ClosestPoint foot{{}, at.point, at.weights, Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero()};
+ClosestPoint FacingSurface::closest_point(const ClosestOnSurface& at) const {
+  ClosestPoint closest{{}, at.point, at.weights, Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero()};
   int on = 0, opposite = 0;
   for (int k = 0; k < 3; ++k) {
-    foot.corners[static_cast<size_t>(k)] = triangles_(k, at.triangle);
+    closest.corners[static_cast<size_t>(k)] = triangles_(k, at.triangle);
     if (at.weights[k] > 0)
       ++on;
     else
@@ -65,18 +65,18 @@ ClosestPoint FacingSurface::foot(const ClosestOnSurface& at) const {
   }
   if (on == 3) {
     const Vec3 area = facet_normal(at.triangle), normal = area.stableNormalized();
-    foot.away = normal * normal.transpose();
+    closest.away = normal * normal.transpose();
     for (int k = 0; k < 3; ++k)
-      foot.slopes.col(k) =
+      closest.slopes.col(k) =
           normal.cross(corner(at.triangle, k + 2) - corner(at.triangle, k + 1)) / area.norm();
   } else if (on == 2) {
     const Vec3 edge = corner(at.triangle, opposite + 2) - corner(at.triangle, opposite + 1);
     const Vec3 along = edge.stableNormalized();
-    foot.away -= along * along.transpose();
-    foot.slopes.col((opposite + 2) % 3) = along / edge.norm();
-    foot.slopes.col((opposite + 1) % 3) = -along / edge.norm();
+    closest.away -= along * along.transpose();
+    closest.slopes.col((opposite + 2) % 3) = along / edge.norm();
+    closest.slopes.col((opposite + 1) % 3) = -along / edge.norm();
   }
-  return foot;
+  return closest;
 }
 
 Points vertex_normals(const Points& x, const Triangles& triangles) {

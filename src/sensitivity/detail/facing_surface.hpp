@@ -31,7 +31,7 @@ class FacingSurface {
  private:
   Vec3 corner(int triangle, int k) const { return x_.col(triangles_(k % 3, triangle)); }
   Vec3 facet_normal(int triangle) const;
-  ClosestPoint foot(const ClosestOnSurface& at) const;
+  ClosestPoint closest_point(const ClosestOnSurface& at) const;
 
   const Points& x_;
   const Triangles& triangles_;

@@ -68,11 +68,11 @@ class SurfaceResiduals final : public MeasuredResiduals {
 
   Vector values(const Points& x) const override {
     Vector r(3 * (own_.count() + of_target_.count()));
-    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& foot) {
-      r.segment<3>(3 * k) = root * (x.col(node) - foot.point);
+    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& closest) {
+      r.segment<3>(3 * k) = root * (x.col(node) - closest.point);
     });
-    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& foot) {
-      r.segment<3>(3 * k) = root * (p - foot.point);
+    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& closest) {
+      r.segment<3>(3 * k) = root * (p - closest.point);
     });
     return r;
   }
@@ -82,15 +82,15 @@ class SurfaceResiduals final : public MeasuredResiduals {
   // what p does not follow, and the turning of the facet or the edge.
   Eigen::MatrixXd derivatives(const Points& x, const std::vector<Points>& motions) const override {
     Eigen::MatrixXd rows(3 * (own_.count() + of_target_.count()), static_cast<Eigen::Index>(motions.size()));
-    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& foot) {
+    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& closest) {
       for (size_t j = 0; j < motions.size(); ++j)
-        rows.block<3, 1>(3 * k, static_cast<Eigen::Index>(j)) = root * foot.away * motions[j].col(node);
+        rows.block<3, 1>(3 * k, static_cast<Eigen::Index>(j)) = root * closest.away * motions[j].col(node);
     });
-    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& foot) {
-      const std::array<Eigen::Matrix3d, 3> blocks = corner_blocks(p, root, foot);
+    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& closest) {
+      const std::array<Eigen::Matrix3d, 3> blocks = corner_blocks(p, root, closest);
       for (size_t j = 0; j < motions.size(); ++j) {
         Vec3 sum = Vec3::Zero();
-        for (size_t c = 0; c < 3; ++c) sum += blocks[c] * motions[j].col(foot.corners[c]);
+        for (size_t c = 0; c < 3; ++c) sum += blocks[c] * motions[j].col(closest.corners[c]);
         rows.block<3, 1>(3 * k, static_cast<Eigen::Index>(j)) = sum;
       }
     });
@@ -99,13 +99,13 @@ class SurfaceResiduals final : public MeasuredResiduals {
 
   Points pull_back(const Points& x, const Vector& weights) const override {
     Points sum = Points::Zero(3, x.cols());
-    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& foot) {
-      sum.col(node) += root * foot.away * weights.segment<3>(3 * k);
+    each_own(x, [&](Eigen::Index k, int node, double root, const ClosestPoint& closest) {
+      sum.col(node) += root * closest.away * weights.segment<3>(3 * k);
     });
-    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& foot) {
-      const std::array<Eigen::Matrix3d, 3> blocks = corner_blocks(p, root, foot);
+    each_of_target(x, [&](Eigen::Index k, const Vec3& p, double root, const ClosestPoint& closest) {
+      const std::array<Eigen::Matrix3d, 3> blocks = corner_blocks(p, root, closest);
       for (size_t c = 0; c < 3; ++c)
-        sum.col(foot.corners[c]) += blocks[c].transpose() * weights.segment<3>(3 * k);
+        sum.col(closest.corners[c]) += blocks[c].transpose() * weights.segment<3>(3 * k);
     });
     return sum;
   }
@@ -139,11 +139,12 @@ class SurfaceResiduals final : public MeasuredResiduals {
 
  private:
   // Of the residual of a target's vertex, by the motion of each corner.
-  static std::array<Eigen::Matrix3d, 3> corner_blocks(const Vec3& p, double root, const ClosestPoint& foot) {
+  static std::array<Eigen::Matrix3d, 3> corner_blocks(const Vec3& p, double root,
+                                                      const ClosestPoint& closest) {
     std::array<Eigen::Matrix3d, 3> blocks;
     for (int c = 0; c < 3; ++c)
-      blocks[static_cast<size_t>(c)] =
-          -root * (foot.weights[c] * foot.away + foot.slopes.col(c) * (p - foot.point).transpose());
+      blocks[static_cast<size_t>(c)] = -root * (closest.weights[c] * closest.away +
+                                                closest.slopes.col(c) * (p - closest.point).transpose());
     return blocks;
   }
 

@@ -56,7 +56,7 @@ StressRow row_of(const StressRunner& bench, const BuiltRow& row) {
   return {row.id, row.scene.name, row.name, row.measure, row.unit, row.is_quick, [bench, row] {
             const StressScene scene = written(bench.options().folder / "scenes", row.scene);
             const StressRun solved = bench.solve(scene, {.judges_every_state = row.judges_every_state});
-            return row.judge(scene, solved);
+            return row.checker(scene, solved);
           }};
 }
 

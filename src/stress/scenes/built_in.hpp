@@ -37,7 +37,7 @@ struct BuiltRow {
   std::string id, name, measure, unit;
   bool is_quick = false;
   BuiltScene scene;
-  std::function<StressOutcome(const StressScene&, const StressRun&)> judge;
+  std::function<StressOutcome(const StressScene&, const StressRun&)> checker;
   bool judges_every_state = false;
 };
 StressRow row_of(const StressRunner& bench, const BuiltRow& row);

@@ -21,7 +21,7 @@ NodeSelection by_number(const NodeSelection& selection, const StressScene& subje
   using Kind = NodeSelection::Kind;
   if (selection.kind == Kind::Set || selection.kind == Kind::Indices) return selection;
   NodeSelection listed;
-  listed.indices = selected_nodes(selection, subject.ground, where);
+  listed.indices = selected_nodes(selection, subject.geometry, where);
   return listed;
 }
 
@@ -60,8 +60,8 @@ void move_term(TermSpec& term, const StressScene& subject, const StressFrame& fr
   }
 }
 
-void move_networks(SceneGeometry& ground, double length) {
-  for (auto& [path, placed] : ground.networks)
+void move_networks(SceneGeometry& geometry, double length) {
+  for (auto& [path, placed] : geometry.networks)
     for (Chord& chord : placed.network.chords) {
       chord.rest_length *= length;
       chord.area *= length * length;
@@ -140,15 +140,15 @@ void renumber_term(TermSpec& term, const StressScene& subject, const std::vector
   }
 }
 
-void renumber_mesh(SceneGeometry& ground, const std::vector<int>& number) {
-  TriangleMesh& mesh = ground.model.mesh;
+void renumber_mesh(SceneGeometry& geometry, const std::vector<int>& number) {
+  TriangleMesh& mesh = geometry.model.mesh;
   const std::vector<int> order = shuffled(mesh.triangles.cols());
   for (int& corner : mesh.triangles.reshaped()) corner = number[static_cast<size_t>(corner)];
   mesh.triangles = reordered_columns(mesh.triangles, order);
   mesh.triangles = Triangles(mesh.triangles({1, 2, 0}, Eigen::all));
   mesh.regions = reordered(mesh.regions, order);
-  mesh.vertices = ground.model.X.leftCols(mesh.vertex_count());
-  for (auto& [name, values] : ground.patches)
+  mesh.vertices = geometry.model.X.leftCols(mesh.vertex_count());
+  for (auto& [name, values] : geometry.patches)
     values = reordered_columns(Eigen::RowVectorXd(values.transpose()), order).transpose();
 }
 
@@ -176,7 +176,7 @@ std::string frame_obstacle(const StressScene& subject, const StressFrame& frame)
   if (is_turned && subject.scene.fibres &&
       (subject.scene.fibres->file || !subject.scene.fibres->entries.empty()))
     return "the scene gives fibre directions in its own frame";
-  if (is_turned && !renames_axes(frame.turn) && holds_single_coordinates(subject.ground.prescribed.fixed))
+  if (is_turned && !renames_axes(frame.turn) && holds_single_coordinates(subject.geometry.prescribed.fixed))
     return "a support holds single coordinates";
   return "";
 }
@@ -188,8 +188,8 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
     for (FibreEntry& entry : moved.scene.fibres->entries)
       entry.nodes = by_number(entry.nodes, subject, entry.where);
 
-  SceneGeometry& ground = moved.ground;
-  Model& model = ground.model;
+  SceneGeometry& geometry = moved.geometry;
+  Model& model = geometry.model;
   const Vec3 origin = model.origin;
   const Points absolute = model.X.colwise() + origin, turned = frame.length * frame.turn * absolute;
   model.X = turned.colwise() + frame.shift;
@@ -200,20 +200,20 @@ StressScene in_frame(const StressScene& subject, const StressFrame& frame) {
   model.mesh.vertices = model.X.leftCols(model.mesh.vertex_count());
   if (frame.turn.determinant() < 0) turn_over(model.mesh.triangles);
   model.closed_reference.reset();
-  for (auto& [node, path] : ground.prescribed.paths)
+  for (auto& [node, path] : geometry.prescribed.paths)
     for (Vec3& station : path)
       station = frame.length * frame.turn * (station + origin) + frame.shift - model.origin;
-  ground.prescribed.fixed = holds_single_coordinates(ground.prescribed.fixed)
-                                ? turned_mask(ground.prescribed.fixed, frame.turn)
-                                : ground.prescribed.fixed;
-  move_networks(ground, frame.length);
+  geometry.prescribed.fixed = holds_single_coordinates(geometry.prescribed.fixed)
+                                  ? turned_mask(geometry.prescribed.fixed, frame.turn)
+                                  : geometry.prescribed.fixed;
+  move_networks(geometry, frame.length);
   return moved;
 }
 
 StressScene turned_over(const StressScene& subject) {
   StressScene turned = with_energy_scaled(
       subject, -1, [](const TermSpec& term) { return kind_of(term) == TermKind::Pressure; });
-  turn_over(turned.ground.model.mesh.triangles);
+  turn_over(turned.geometry.model.mesh.triangles);
   return turned;
 }
 
@@ -226,9 +226,9 @@ std::string numbering_obstacle(const StressScene& subject) {
 }
 
 Renumbered renumbered(const StressScene& subject) {
-  Renumbered found{copy_of(subject), shuffled(subject.ground.model.mesh.vertex_count())};
-  SceneGeometry& ground = found.scene.ground;
-  Model& model = ground.model;
+  Renumbered found{copy_of(subject), shuffled(subject.geometry.model.mesh.vertex_count())};
+  SceneGeometry& geometry = found.scene.geometry;
+  Model& model = geometry.model;
   std::vector<int>& number = found.number;
   while (std::ssize(number) < model.X.cols()) number.push_back(static_cast<int>(number.size()));
   for (TermSpec& term : found.scene.scene.terms) renumber_term(term, subject, number);
@@ -236,18 +236,18 @@ Renumbered renumbered(const StressScene& subject) {
     for (FibreEntry& entry : found.scene.scene.fibres->entries)
       entry.nodes = renumbered_selection(entry.nodes, subject, number, entry.where);
   model.X = reordered_columns(model.X, number);
-  renumber_mesh(ground, number);
+  renumber_mesh(geometry, number);
   for (auto& [name, nodes] : model.sets) renumber_nodes(nodes, number);
-  for (auto& [path, placed] : ground.networks)
+  for (auto& [path, placed] : geometry.networks)
     for (Chord& chord : placed.network.chords)
       for (ChordEnd* end : {&chord.from, &chord.to})
         if (end->kind == ChordEnd::Kind::Leaflet) end->index = number[static_cast<size_t>(end->index)];
-  Prescribed& prescribed = ground.prescribed;
+  Prescribed& prescribed = geometry.prescribed;
   prescribed.fixed = reordered_columns(prescribed.fixed, number);
   std::map<int, std::vector<Vec3>> paths;
   for (const auto& [node, path] : prescribed.paths) paths[number[static_cast<size_t>(node)]] = path;
   prescribed.paths = std::move(paths);
-  for (auto& [name, pairs] : ground.links)
+  for (auto& [name, pairs] : geometry.links)
     for (std::array<int, 2>& pair : pairs)
       for (int& node : pair) node = number[static_cast<size_t>(node)];
   return found;
@@ -268,7 +268,7 @@ StressScene with_energy_scaled(const StressScene& subject, double factor,
 
 StressScene with_chords_scaled(const StressScene& subject, double factor) {
   StressScene scaled = copy_of(subject);
-  for (auto& [path, placed] : scaled.ground.networks)
+  for (auto& [path, placed] : scaled.geometry.networks)
     for (Chord& chord : placed.network.chords) chord.rest_length *= factor;
   return scaled;
 }

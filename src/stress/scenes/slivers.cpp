@@ -6,15 +6,15 @@ namespace coapt {
 namespace {
 
 // Vertices that lines end at, supports hold, or the boundary runs through.
-std::vector<bool> bound_vertices(const SceneGeometry& ground) {
-  const TriangleMesh& mesh = ground.model.mesh;
+std::vector<bool> bound_vertices(const SceneGeometry& geometry) {
+  const TriangleMesh& mesh = geometry.model.mesh;
   std::vector<bool> kept(static_cast<size_t>(mesh.vertex_count()), false);
   const auto keep = [&](int node) {
     if (node < mesh.vertex_count()) kept[static_cast<size_t>(node)] = true;
   };
   for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (ground.prescribed.fixed.col(v).any()) keep(v);
-  for (const auto& [path, placed] : ground.networks)
+    if (geometry.prescribed.fixed.col(v).any()) keep(v);
+  for (const auto& [path, placed] : geometry.networks)
     for (const Chord& chord : placed.network.chords)
       for (const ChordEnd& end : {chord.from, chord.to}) keep(placed.node(end));
   for (const Edge& edge : edges(mesh.triangles))
@@ -45,9 +45,9 @@ std::vector<int> corners_of(const TriangleMesh& mesh, const std::vector<int>& tr
 }  // namespace
 
 int add_slivers(StressScene& subject, double share, int every) {
-  Model& model = subject.ground.model;
+  Model& model = subject.geometry.model;
   TriangleMesh& mesh = model.mesh;
-  std::vector<bool> kept = bound_vertices(subject.ground);
+  std::vector<bool> kept = bound_vertices(subject.geometry);
   std::vector<std::vector<int>> around(kept.size());
   for (int t = 0; t < mesh.triangle_count(); ++t)
     for (const int v : mesh.triangles.col(t)) around[static_cast<size_t>(v)].push_back(t);

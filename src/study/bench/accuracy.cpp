@@ -51,9 +51,9 @@ class Search {
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
     estimate.wanted_mm = wanted_mm;
     estimate.tolerance = kFirstTolerance;
-    grounds_.push_back(scene_geometry(scene));
-    build(scene, grounds_.back());
-    build(scene, ground(1));  // what a finer mesh cannot have is said before the first solve
+    geometries_.push_back(scene_geometry(scene));
+    build(scene, geometries_.back());
+    build(scene, geometry(1));  // what a finer mesh cannot have is said before the first solve
   }
 
   SolvedMesh solve() {
@@ -98,9 +98,9 @@ class Search {
     return options;
   }
 
-  const SceneGeometry& ground(size_t cuts) {
-    while (grounds_.size() <= cuts) grounds_.push_back(refined(grounds_.back()));
-    return *std::next(grounds_.begin(), static_cast<std::ptrdiff_t>(cuts));
+  const SceneGeometry& geometry(size_t cuts) {
+    while (geometries_.size() <= cuts) geometries_.push_back(refined(geometries_.back()));
+    return *std::next(geometries_.begin(), static_cast<std::ptrdiff_t>(cuts));
   }
 
   double seconds_left() const { return std::max(0.0, most_seconds_ - (wall_seconds() - start_)); }
@@ -108,8 +108,8 @@ class Search {
   SolvedMesh solved(size_t cuts) {
     setup_.stop.tolerance = estimate.tolerance;
     setup_.stop.max_seconds = seconds_left();
-    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, ground(cuts)), .solved = {}};
-    mesh.solved = solve_run(scene_, ground(cuts), mesh.model, setup_, wants_page(scene_, options_));
+    SolvedMesh mesh{.cuts = cuts, .model = build(scene_, geometry(cuts)), .solved = {}};
+    mesh.solved = solve_run(scene_, geometry(cuts), mesh.model, setup_, wants_page(scene_, options_));
     const Result& result = mesh.result();
     estimate.levels.push_back({mesh.model.mesh.triangle_count(), estimate.tolerance, result.status,
                                result.iterations, result.wall_s, result.cpu_s});
@@ -137,7 +137,7 @@ class Search {
     if (residual <= kRoundOff) return 0;
     going_on_.stop.tolerance = std::max(kRoundOff, kGoingOn * residual);
     going_on_.stop.max_seconds = seconds_left();
-    Model model = build(scene_, ground(mesh.cuts));
+    Model model = build(scene_, geometry(mesh.cuts));
     const Points x = mesh.model.objective->positions(mesh.result().q);
     const Result result = solve_again(x, model, going_on_);
     const double ratio = result.residual / residual;
@@ -152,7 +152,7 @@ class Search {
   const RunOptions& options_;
   int most_triangles_;
   double most_seconds_, start_ = wall_seconds();
-  std::list<SceneGeometry> grounds_;  // the scene's own first; the others refer to it
+  std::list<SceneGeometry> geometries_;  // the scene's own first; the others refer to it
 };
 
 void check(const Scene& scene, double wanted_mm, const RunOptions& options) {
@@ -220,7 +220,7 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
   notes.accuracy = std::move(estimate);
   run.model = std::move(mesh.model);
   run.report =
-      complete_run(scene, setup, run.model, std::move(mesh.solved), notes, options.judge, run.folder);
+      complete_run(scene, setup, run.model, std::move(mesh.solved), notes, options.checker, run.folder);
   return run;
 }
 

@@ -38,18 +38,18 @@ void check_options(const Scene& scene, const SolverTable& solvers, const BenchOp
 }
 
 // The scene's own nodes first, then every mesh that is asked for and one more. Each refers to the first.
-std::list<SceneGeometry> laid_grounds(const Scene& scene, int levels) {
-  std::list<SceneGeometry> grounds;
-  grounds.push_back(scene_geometry(scene));
-  if (grounds.front().model.mesh.triangle_count() > 0)
-    for (int k = 0; k <= levels; ++k) grounds.push_back(refined(grounds.back()));
-  build(scene, grounds.front());  // what is refused is refused before the first solve
-  if (grounds.size() > 1) build(scene, *std::next(grounds.begin()));
-  return grounds;
+std::list<SceneGeometry> refined_geometries(const Scene& scene, int levels) {
+  std::list<SceneGeometry> geometries;
+  geometries.push_back(scene_geometry(scene));
+  if (geometries.front().model.mesh.triangle_count() > 0)
+    for (int k = 0; k <= levels; ++k) geometries.push_back(refined(geometries.back()));
+  build(scene, geometries.front());  // what is refused is refused before the first solve
+  if (geometries.size() > 1) build(scene, *std::next(geometries.begin()));
+  return geometries;
 }
 
-BenchMesh described(const SceneGeometry& ground, bool is_benchmarked) {
-  const Model& model = ground.model;
+BenchMesh described(const SceneGeometry& geometry, bool is_benchmarked) {
+  const Model& model = geometry.model;
   BenchMesh mesh;
   mesh.triangles = model.mesh.triangle_count();
   mesh.vertices = model.mesh.vertex_count();
@@ -60,14 +60,14 @@ BenchMesh described(const SceneGeometry& ground, bool is_benchmarked) {
 
 // Distances between the reference equilibria from mesh to mesh, and what they say of the error of each.
 // Meshes from the first whose equilibrium is missing on are left out: two that are there say something.
-void estimate_meshes(const std::list<SceneGeometry>& grounds, const std::vector<Equilibrium>& equilibria,
+void estimate_meshes(const std::list<SceneGeometry>& geometries, const std::vector<Equilibrium>& equilibria,
                      Benchmark& found) {
   if (found.meshes.size() < 2) return;
   std::vector<TriangleMesh> shapes;
-  auto ground = grounds.begin();
+  auto geometry = geometries.begin();
   for (const Equilibrium& equilibrium : equilibria) {
     if (!equilibrium.is_found) break;
-    shapes.push_back(surface_at((ground++)->model, equilibrium.x));
+    shapes.push_back(surface_at((geometry++)->model, equilibrium.x));
   }
   if (shapes.size() < 2) return;
   const MeshDistances distances = distances_between_meshes(shapes);
@@ -83,12 +83,13 @@ void estimate_meshes(const std::list<SceneGeometry>& grounds, const std::vector<
 }
 
 // The reference equilibrium on the finest mesh that it is known on, none where the scene's own is the finest.
-std::optional<TriangleMesh> finest_shape(const std::list<SceneGeometry>& grounds,
+std::optional<TriangleMesh> finest_shape(const std::list<SceneGeometry>& geometries,
                                          const std::vector<Equilibrium>& equilibria, const Benchmark& found) {
   size_t last = 0;
   while (last + 1 < found.meshes.size() && found.meshes[last + 1].error_mm) ++last;
   if (last == 0) return std::nullopt;
-  return surface_at(std::next(grounds.begin(), static_cast<std::ptrdiff_t>(last))->model, equilibria[last].x);
+  return surface_at(std::next(geometries.begin(), static_cast<std::ptrdiff_t>(last))->model,
+                    equilibria[last].x);
 }
 
 // What all errors of a run come to; needs the estimates of the meshes.
@@ -127,7 +128,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
                         const RunOptions& wanted) {
   check_options(given, solvers, options);
   const Scene scene = with_closed_surface(given, options.closed);
-  const std::list<SceneGeometry> grounds = laid_grounds(scene, options.levels);
+  const std::list<SceneGeometry> geometries = refined_geometries(scene, options.levels);
   RunOptions run = wanted;
   run.modes = 0;  // eigenvalues are no part of a solve
   const SolveSetup setup = solve_setup(scene, solvers, run);
@@ -137,7 +138,7 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
   found.scene_file = scene.file.filename().string();
   found.scene_title = scene_title(scene);
   if (scene.closed_surface) found.closed_surface = scene.closed_surface->filename().string();
-  const Model& first = grounds.front().model;
+  const Model& first = geometries.front().model;
   found.extent_mm = bounding_box_diagonal(first.mesh.triangle_count() > 0 ? first.mesh.vertices : first.X);
   found.tolerances = options.tolerances;
   std::sort(found.tolerances.rbegin(), found.tolerances.rend());
@@ -150,30 +151,30 @@ Benchmark run_benchmark(const Scene& given, const SolverTable& solvers, const Be
 
   const BenchCourse course{scene, solvers, options, run};
   std::vector<Equilibrium> equilibria;
-  for (const SceneGeometry& ground : grounds) {
+  for (const SceneGeometry& geometry : geometries) {
     const bool is_benchmarked = found.meshes.size() <= static_cast<size_t>(options.levels);
-    found.meshes.push_back(described(ground, is_benchmarked));
+    found.meshes.push_back(described(geometry, is_benchmarked));
     const size_t mesh = found.meshes.size() - 1;
     equilibria.emplace_back();
-    if (!is_benchmarked) equilibria.back() = equilibrium_from_start(course, ground, found);
+    if (!is_benchmarked) equilibria.back() = equilibrium_from_start(course, geometry, found);
     for (size_t method = 0; is_benchmarked && method < found.methods.size() && !found.is_cancelled;
          ++method) {
-      const Equilibrium end = bench_pair(course, ground, mesh, method, equilibria.back(), found);
+      const Equilibrium end = bench_pair(course, geometry, mesh, method, equilibria.back(), found);
       if (method == 0) equilibria.back() = end;
     }
     found.meshes.back().missing = found.is_cancelled ? "cancelled" : equilibria.back().missing;
     if (const Equilibrium& reference = equilibria.back(); reference.is_found) {
       found.meshes.back().residual = reference.residual;
       if (is_benchmarked && !found.is_cancelled)
-        found.meshes.back().factorisation_s = factorisation_seconds(scene, ground, setup, reference.x);
+        found.meshes.back().factorisation_s = factorisation_seconds(scene, geometry, setup, reference.x);
     }
     if (found.is_cancelled) break;
   }
-  estimate_meshes(grounds, equilibria, found);
+  estimate_meshes(geometries, equilibria, found);
   add_totals(found);
   if ((run.writes || options.branches.starts > 0) && !found.is_cancelled) {
-    const std::optional<TriangleMesh> finest = finest_shape(grounds, equilibria, found);
-    found.shown = bench_shown(course, grounds.front(), finest ? &*finest : nullptr, found);
+    const std::optional<TriangleMesh> finest = finest_shape(geometries, equilibria, found);
+    found.shown = bench_shown(course, geometries.front(), finest ? &*finest : nullptr, found);
   }
   return found;
 }

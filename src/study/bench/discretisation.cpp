@@ -1,6 +1,6 @@
 #include "study/bench/discretisation.hpp"
 
-#include "mesh/remesh/cut_in_four.hpp"
+#include "mesh/remesh/uniform_refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace coapt {
 namespace {
 
 DistanceFigures between(TriangleMesh coarser, size_t cuts, const TriangleMesh& finer) {
-  for (size_t k = 0; k < cuts; ++k) coarser = cut_in_four(coarser).mesh;
+  for (size_t k = 0; k < cuts; ++k) coarser = refined_uniformly(coarser).mesh;
   return distance_between(coarser, finer);
 }
 

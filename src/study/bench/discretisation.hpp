@@ -1,8 +1,8 @@
 // How far the closed shape on a mesh is from that on ever finer ones, as far as a sequence of meshes shows
-// it, each the one before with every triangle cut into four.
+// it, each the one before with every triangle refined uniformly, 1:4.
 #pragma once
 
-#include "results/reference_distance.hpp"
+#include "results/reference/reference_distance.hpp"
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 // this room.
 #pragma once
 
-#include "results/reference_results.hpp"
+#include "results/reference/reference_results.hpp"
 #include "results/study_files.hpp"
 #include "study/comparison_report.hpp"
 

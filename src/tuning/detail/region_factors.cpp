@@ -40,7 +40,7 @@ struct Factors {
     there[which] = value;
     Scene scene = tuned.scene(there.array().exp());
     std::erase_if(scene.terms, [&](const TermSpec& spec) { return !is_among(needed, spec.name); });
-    std::vector<std::unique_ptr<EnergyTerm>> made = build_terms(scene, tuned.ground), wanted;
+    std::vector<std::unique_ptr<EnergyTerm>> made = build_terms(scene, tuned.geometry), wanted;
     for (const std::string& name : names)
       wanted.push_back(std::move(*std::find_if(
           made.begin(), made.end(), [&](const auto& term) { return term && term->name() == name; })));

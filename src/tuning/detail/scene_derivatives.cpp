@@ -6,9 +6,9 @@ namespace coapt {
 namespace {
 
 // The nodal gradient of all terms, loads without a potential included.
-Points nodal_gradient(const Scene& scene, const SceneGeometry& ground, const Points& x) {
+Points nodal_gradient(const Scene& scene, const SceneGeometry& geometry, const Points& x) {
   Points gradient = Points::Zero(3, x.cols()), circulatory = gradient;
-  for (const auto& term : build_terms(scene, ground)) {
+  for (const auto& term : build_terms(scene, geometry)) {
     Sink sink(gradient.data());
     term->prepare(x);
     term->evaluate(x, sink);
@@ -19,16 +19,16 @@ Points nodal_gradient(const Scene& scene, const SceneGeometry& ground, const Poi
 
 }  // namespace
 
-SceneDerivatives::SceneDerivatives(const SceneGeometry& ground, std::vector<Neighbours> neighbours,
+SceneDerivatives::SceneDerivatives(const SceneGeometry& geometry, std::vector<Neighbours> neighbours,
                                    double share)
-    : Parameter("scene"), ground_(ground), neighbours_(std::move(neighbours)), share_(share) {}
+    : Parameter("scene"), geometry_(geometry), neighbours_(std::move(neighbours)), share_(share) {}
 
 std::string SceneDerivatives::defect(const Vector& given) const {
   return given == value() ? std::string() : "parameter \"" + name() + "\": has derivatives only, and stays";
 }
 
 Points SceneDerivatives::force_derivative(const Neighbours& of, const Points& x) const {
-  return (nodal_gradient(of.larger, ground_, x) - nodal_gradient(of.smaller, ground_, x)) / (2 * share_);
+  return (nodal_gradient(of.larger, geometry_, x) - nodal_gradient(of.smaller, geometry_, x)) / (2 * share_);
 }
 
 Vector SceneDerivatives::pull_back(const Points& x, const Points& weights) const {

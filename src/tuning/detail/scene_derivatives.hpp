@@ -19,8 +19,8 @@ class SceneDerivatives final : public Parameter {
     Scene smaller, larger;
   };
 
-  // share: by which each neighbour differs, in (0, 1). ground: of all scenes; must outlive this object.
-  SceneDerivatives(const SceneGeometry& ground, std::vector<Neighbours> neighbours, double share);
+  // share: by which each neighbour differs, in (0, 1). geometry: of all scenes; must outlive this object.
+  SceneDerivatives(const SceneGeometry& geometry, std::vector<Neighbours> neighbours, double share);
 
   Vector value() const override { return Vector::Ones(static_cast<Eigen::Index>(neighbours_.size())); }
   std::string defect(const Vector& value) const override;
@@ -32,7 +32,7 @@ class SceneDerivatives final : public Parameter {
  private:
   Points force_derivative(const Neighbours& of, const Points& x) const;
 
-  const SceneGeometry& ground_;
+  const SceneGeometry& geometry_;
   std::vector<Neighbours> neighbours_;
   double share_;
 };

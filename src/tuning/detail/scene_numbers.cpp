@@ -60,7 +60,7 @@ std::unique_ptr<Parameter> SceneNumbers::make(const std::string& name, const Obj
     std::erase_if(scene.terms, [&](const TermSpec& spec) {
       return std::find(names.begin(), names.end(), spec.name) == names.end();
     });
-    Terms made = build_terms(scene, self->ground_);
+    Terms made = build_terms(scene, self->geometry_);
     const auto place = [&](const auto& term) {
       return std::find(names.begin(), names.end(), term->name()) - names.begin();
     };

@@ -15,7 +15,8 @@ namespace coapt {
 // The scene as it was given, and by which factors its numbers have been changed since.
 class SceneNumbers : public std::enable_shared_from_this<SceneNumbers> {
  public:
-  SceneNumbers(Scene scene, SceneGeometry&& ground) : scene_(std::move(scene)), ground_(std::move(ground)) {}
+  SceneNumbers(Scene scene, SceneGeometry&& geometry)
+      : scene_(std::move(scene)), geometry_(std::move(geometry)) {}
 
   // Those of one term, which is one of the objective's, by key. None for a load or a contact.
   std::vector<std::string> keys_of(const EnergyTerm& term, const Objective& objective) const;
@@ -29,7 +30,7 @@ class SceneNumbers : public std::enable_shared_from_this<SceneNumbers> {
   Scene with(const SceneParameter& parameter, double factor) const;
 
   Scene scene_;
-  SceneGeometry ground_;
+  SceneGeometry geometry_;
   std::map<std::string, std::pair<SceneParameter, double>> factors_;
 };
 

@@ -16,8 +16,8 @@ namespace {
 constexpr int kMostRefinements = 200;
 
 // Of all that errors are measured on: the mesh, or all nodes where there is none.
-Points measured(const SceneGeometry& ground, const Points& x) {
-  const Model& model = ground.model;
+Points measured(const SceneGeometry& geometry, const Points& x) {
+  const Model& model = geometry.model;
   return model.mesh.triangle_count() > 0 ? Points(x.leftCols(model.mesh.vertex_count())) : x;
 }
 
@@ -27,13 +27,13 @@ NodeError node_error(const Points& a, const Points& b) {
   return {std::sqrt(squares.maxCoeff()), std::sqrt(squares.mean())};
 }
 
-MethodGap gap_between(const SceneGeometry& ground, const Points& x, const Points& reference) {
+MethodGap gap_between(const SceneGeometry& geometry, const Points& x, const Points& reference) {
   MethodGap gap;
-  gap.same_vertex = apart(measured(ground, x), measured(ground, reference));
+  gap.same_vertex = apart(measured(geometry, x), measured(geometry, reference));
   Vector ignored;
-  if (ground.model.mesh.triangle_count() > 0)
+  if (geometry.model.mesh.triangle_count() > 0)
     gap.surfaces =
-        reference_distance(surface_at(ground.model, x), surface_at(ground.model, reference), ignored);
+        reference_distance(surface_at(geometry.model, x), surface_at(geometry.model, reference), ignored);
   return gap;
 }
 
@@ -71,14 +71,14 @@ std::string refining_solver(const BenchCourse& course, const std::string& method
 
 // Where newton, or where the build has none the method, goes on to from a shape; from a saddle it stays
 // there.
-Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const SceneGeometry& ground,
+Equilibrium equilibrium_near(const BenchCourse& course, const Scene& scene, const SceneGeometry& geometry,
                              const Points& x, const std::string& method, Benchmark& found) {
   const std::string solver = refining_solver(course, method);
   SolveSetup setup = solve_setup(scene, course.solvers, truth_options(course, solver, kEquilibrium));
   setup.stability = {};
   if (solver == kRefiningSolver)
     setup.stop.max_iterations = std::min(setup.stop.max_iterations, kMostRefinements);
-  Model model = build(scene, ground);
+  Model model = build(scene, geometry);
   const Result result = solve_again(x, model, setup);
   found.is_cancelled = result.status == Status::Cancelled;
   const bool is_found = !found.is_cancelled && result.residual <= found.equilibrium_residual();
@@ -107,13 +107,14 @@ BenchRun bench_run(const TimedRun& timed, size_t method, size_t mesh, double tol
 }
 
 // From the loosest tolerance to the tightest, or the first that is not reached. Returns the shapes.
-std::vector<Points> run_tolerances(const BenchCourse& course, const Scene& scene, const SceneGeometry& ground,
-                                   size_t mesh, size_t method, Benchmark& found) {
+std::vector<Points> run_tolerances(const BenchCourse& course, const Scene& scene,
+                                   const SceneGeometry& geometry, size_t mesh, size_t method,
+                                   Benchmark& found) {
   std::vector<Points> shapes;
   for (const double tolerance : found.tolerances) {
     const SolveSetup setup = solve_setup(
         scene, course.solvers, run_options(course, solver_of(found.methods[method].name), tolerance));
-    TimedRun timed = timed_run(scene, ground, setup, course.options.repeats);
+    TimedRun timed = timed_run(scene, geometry, setup, course.options.repeats);
     found.is_cancelled = timed.result.status == Status::Cancelled;
     if (found.is_cancelled) break;
     found.runs.push_back(bench_run(timed, method, mesh, tolerance));
@@ -136,26 +137,26 @@ Verdict verdict_of(const Benchmark& found, const BenchEnd& end, const Equilibriu
 }
 
 // Errors of the runs, and the end of the method. shapes: of the last runs of the benchmark, in their order.
-void measure_errors(const SceneGeometry& ground, const std::vector<Points>& shapes, const Equilibrium& own,
+void measure_errors(const SceneGeometry& geometry, const std::vector<Points>& shapes, const Equilibrium& own,
                     const Equilibrium& reference, BenchEnd& end, Benchmark& found) {
   if (own.is_found) end.residual = own.residual;
   if (end.method > 0 && reference.is_found)
-    end.gap = gap_between(ground, own.is_found ? own.x : shapes.back(), reference.x);
+    end.gap = gap_between(geometry, own.is_found ? own.x : shapes.back(), reference.x);
   end.verdict = verdict_of(found, end, own, reference);
   for (size_t k = 0; k < shapes.size(); ++k) {
     RunErrors& errors = found.runs[found.runs.size() - shapes.size() + k].errors;
     if (own.is_found) {
-      errors.algebraic = node_error(measured(ground, shapes[k]), measured(ground, own.x));
+      errors.algebraic = node_error(measured(geometry, shapes[k]), measured(geometry, own.x));
       if (end.gap) errors.method = gap_mm(*end.gap);
     } else if (end.gap) {
-      errors.method = gap_mm(gap_between(ground, shapes[k], reference.x));
+      errors.method = gap_mm(gap_between(geometry, shapes[k], reference.x));
     }
   }
 }
 
 }  // namespace
 
-Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& ground, size_t mesh, size_t method,
+Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& geometry, size_t mesh, size_t method,
                        const Equilibrium& reference, Benchmark& found) {
   BenchEnd end{.method = method, .mesh = mesh};
   Equilibrium own;
@@ -163,13 +164,13 @@ Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& ground, s
   try {
     const std::string& name = found.methods[method].name;
     const Scene scene = scene_of(name, course.scene);
-    const std::vector<Points> shapes = run_tolerances(course, scene, ground, mesh, method, found);
+    const std::vector<Points> shapes = run_tolerances(course, scene, geometry, mesh, method, found);
     const bool has_energy = found.methods[method].model != MethodModel::Constraints;
     if (has_energy && !found.is_cancelled && !shapes.empty())
-      own = equilibrium_near(course, scene, ground, shapes.back(), name, found);
+      own = equilibrium_near(course, scene, geometry, shapes.back(), name, found);
     if (!found.is_cancelled) end.missing = own.missing;
     if (!has_energy) own.missing = name + " solves constraints, which have no energy of the scene";
-    if (!found.is_cancelled && !shapes.empty()) measure_errors(ground, shapes, own, reference, end, found);
+    if (!found.is_cancelled && !shapes.empty()) measure_errors(geometry, shapes, own, reference, end, found);
   } catch (const InputError& error) {
     end.failure = in_one_line(error);
   } catch (const std::exception& error) {
@@ -184,17 +185,18 @@ Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& ground, s
   return own;
 }
 
-Equilibrium equilibrium_from_start(const BenchCourse& course, const SceneGeometry& ground, Benchmark& found) {
+Equilibrium equilibrium_from_start(const BenchCourse& course, const SceneGeometry& geometry,
+                                   Benchmark& found) {
   try {
     const std::string& method = found.methods.front().name;
     const SolveSetup setup =
         solve_setup(course.scene, course.solvers,
                     truth_options(course, refining_solver(course, method), found.tolerances.back()));
-    Model model = build(course.scene, ground);
-    const Result result = solve_scene(course.scene, ground, model, setup).result;
+    Model model = build(course.scene, geometry);
+    const Result result = solve_scene(course.scene, geometry, model, setup).result;
     found.is_cancelled = result.status == Status::Cancelled;
     if (result.status != Status::Converged) return missing_equilibrium(found, result);
-    return equilibrium_near(course, course.scene, ground, model.objective->positions(result.q), method,
+    return equilibrium_near(course, course.scene, geometry, model.objective->positions(result.q), method,
                             found);
   } catch (const InputError& error) {  // a finer mesh that cannot be solved leaves the others less well known
     Equilibrium none;

@@ -25,10 +25,11 @@ struct Equilibrium {
 // Adds the runs of a method over the tolerances and where it ends, the errors of the runs but for that of the
 // mesh, and returns its equilibrium. reference: that of the reference method on this mesh, not looked at for
 // that method itself. A method that fails says so in its end.
-Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& ground, size_t mesh, size_t method,
+Equilibrium bench_pair(const BenchCourse& course, const SceneGeometry& geometry, size_t mesh, size_t method,
                        const Equilibrium& reference, Benchmark& found);
 
 // That to which newton, or where the build has none the reference method, comes from the scene's own start.
-Equilibrium equilibrium_from_start(const BenchCourse& course, const SceneGeometry& ground, Benchmark& found);
+Equilibrium equilibrium_from_start(const BenchCourse& course, const SceneGeometry& geometry,
+                                   Benchmark& found);
 
 }  // namespace coapt

@@ -25,7 +25,7 @@ ViewField mesh_error(const Model& model, const Points& x, const TriangleMesh& fi
 
 }  // namespace
 
-std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeometry& ground,
+std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeometry& geometry,
                                       const TriangleMesh* finer, Benchmark& found) {
   const std::string& method = found.methods.front().name;
   RunOptions options = course.run;
@@ -36,8 +36,8 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeom
   try {
     const Scene scene = scene_of(method, course.scene);
     const SolveSetup setup = solve_setup(scene, course.solvers, options);
-    once.model = build(scene, ground);
-    once.report = run_built(scene, ground, setup, options, once.model, {});
+    once.model = build(scene, geometry);
+    once.report = run_built(scene, geometry, setup, options, once.model, {});
     if (once.report.result.status == Status::Converged)
       once.report = with_branches(scene, course.solvers, options, course.options.branches, once.model,
                                   std::move(once.report), {});

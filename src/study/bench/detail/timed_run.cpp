@@ -1,6 +1,6 @@
 #include "study/bench/detail/timed_run.hpp"
 
-#include "results/registered_reference.hpp"
+#include "results/reference/registered_reference.hpp"
 #include "scene/build/build.hpp"
 #include "solve/peak_memory.hpp"
 
@@ -18,13 +18,13 @@ Spread spread(std::vector<double> seconds) {
 
 }  // namespace
 
-TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup, int repeats) {
+TimedRun timed_run(const Scene& scene, const SceneGeometry& geometry, const SolveSetup& setup, int repeats) {
   TimedRun run;
   std::vector<double> wall, cpu;
   for (double spent = 0; run.repeats == 0 || (run.repeats < repeats && spent < kEnough); ++run.repeats) {
     const PeakMemory memory;
-    Model model = build(scene, ground);
-    Result result = solve_scene(scene, ground, model, setup).result;
+    Model model = build(scene, geometry);
+    Result result = solve_scene(scene, geometry, model, setup).result;
     if (run.repeats == 0) run.peak_memory_mb = memory.risen_mb();
     spent += result.wall_s;
     wall.push_back(result.wall_s);

@@ -18,6 +18,6 @@ struct TimedRun {
 
 // repeats: wanted, at least one; no more are begun once they took kEnough seconds together.
 inline constexpr double kEnough = 10;
-TimedRun timed_run(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup, int repeats);
+TimedRun timed_run(const Scene& scene, const SceneGeometry& geometry, const SolveSetup& setup, int repeats);
 
 }  // namespace coapt

@@ -13,9 +13,9 @@ constexpr double kShift = 1e-6;  // of the mean diagonal: what has no stiffness 
 
 }  // namespace
 
-double factorisation_seconds(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup,
+double factorisation_seconds(const Scene& scene, const SceneGeometry& geometry, const SolveSetup& setup,
                              const Points& x) {
-  const Model model = build(scene, ground);
+  const Model model = build(scene, geometry);
   Objective& objective = *model.objective;
   objective.prescribe(x);
   const Vector q = objective.unknowns(x);

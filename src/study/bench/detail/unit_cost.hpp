@@ -8,7 +8,7 @@ namespace coapt {
 
 // CPU time of one Hessian of projected elements at x (3 x node_count) and of its factorisation, without the
 // symbolic analysis: the least of three [s].
-double factorisation_seconds(const Scene& scene, const SceneGeometry& ground, const SolveSetup& setup,
+double factorisation_seconds(const Scene& scene, const SceneGeometry& geometry, const SolveSetup& setup,
                              const Points& x);
 
 }  // namespace coapt
