@@ -1,6 +1,7 @@
 // One surface brought onto another.
 #include "module.hpp"
 #include "registration/wanted_registration.hpp"
+#include "results/reference/coaptation_line.hpp"
 
 #include <optional>
 #include <pybind11/stl.h>
@@ -25,6 +26,19 @@ py::dict distances_of(const RegistrationDistances& distances) {
   return both;
 }
 
+py::object lines_of(const std::optional<LineDistance>& lines) {
+  if (!lines) return py::none();
+  py::dict both;
+  for (const auto& [key, d] : {std::pair{"to_target", lines->there}, std::pair{"from_target", lines->back}}) {
+    py::dict figures;
+    figures["mean_mm"] = d.mean;
+    figures["p95_mm"] = d.p95;
+    figures["max_mm"] = d.max;
+    both[key] = figures;
+  }
+  return both;
+}
+
 py::array_t<double> matrix_of(const RigidMotion& motion) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = motion.matrix();
   return py::array_t<double>({4, 4}, rows.data());
@@ -44,12 +58,14 @@ py::dict register_arrays(const Numbers& vertices, const Corners& triangles, cons
   TriangleMesh moved = moving;
   Registration found;
   RegistrationDistances before, after;
+  std::optional<LineDistance> lines;
   {
     const py::gil_scoped_release unlocked;
     found = register_by(wanted, moving, target);
     moved.vertices = found.motion.apply(moved.vertices);
     before = registration_distances(moving, target);
     after = registration_distances(moved, target);
+    lines = distance_of_lines(moved, target);
   }
   py::dict result;
   result["method"] = method;
@@ -65,6 +81,7 @@ py::dict register_arrays(const Numbers& vertices, const Corners& triangles, cons
   result["free_directions"] = found.free_directions;
   result["distances_before"] = distances_of(before);
   result["distances_after"] = distances_of(after);
+  result["coaptation_line"] = lines_of(lines);
   result["distance_to_target"] = vector_array(after.moving_vertices);
   result["distance_from_target"] = vector_array(after.target_vertices);
   result["warnings"] = registration_doubts(found);

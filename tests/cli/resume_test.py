@@ -136,7 +136,7 @@ class ResumeTest(CommandCase):
                 for name in files:
                     self.assertEqual((self.folder / "cut" / name).read_bytes(), earlier[name], name)
                 struck |= files
-        self.assertEqual(struck, {"closed.vtp", "report.html"}, "those that are longer than all before them")
+        self.assertEqual(struck, {"result.json", "trace.csv", "closed.vtp", "report.html"}, "those that are longer than all before them")
         code, _ = self.killed_beyond(1000, scene, "--checkpoint", self.kept, "--checkpoint-every", 1e-6)
         self.assertEqual(code, -signal.SIGXFSZ)
         self.assertLess(self.kept.stat().st_size, 1000, "an earlier checkpoint, whole")

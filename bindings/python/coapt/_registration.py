@@ -40,6 +40,9 @@ class Registration:
     distances_before: dict[str, dict[str, float]]
     """`to_target` and `from_target`, each `mean_mm`, `p95_mm`, `rms_mm`, `max_mm`."""
     distances_after: dict[str, dict[str, float]]
+    coaptation_line: dict[str, dict[str, float]] | None
+    """Distance between the coaptation lines after the registration, `to_target` and `from_target`, each `mean_mm`, `p95_mm`,
+    `max_mm`; None where the target has no closed boundary loop, or one of the lines is not seen."""
     distance_to_target: Array
     """Of each vertex of V to the target after the registration, (n,) [mm]."""
     distance_from_target: Array

@@ -10,6 +10,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "registration/wanted_registration.hpp"
+#include "results/reference/coaptation_line.hpp"
 #include "results/reference/reference_results.hpp"
 
 #include <cstdio>
@@ -33,6 +34,7 @@ struct RegisteredMeshes {
   TriangleMesh moving, target;
   Registration registration;
   RegistrationDistances before, after;
+  std::optional<LineDistance> lines;  // coaptation lines, after it
 };
 
 TriangleMesh mesh_of(const std::string& path) {
@@ -67,6 +69,10 @@ nlohmann::ordered_json distances_json(const RegistrationDistances& distances) {
   return {{"to_target", one(distances.to_target)}, {"from_target", one(distances.from_target)}};
 }
 
+nlohmann::ordered_json figures_json(const DistanceFigures& figures) {
+  return {{"mean_mm", figures.mean}, {"p95_mm", figures.p95}, {"max_mm", figures.max}};
+}
+
 nlohmann::ordered_json document(const RegisterArguments& arguments, const RegisteredMeshes& meshes) {
   const Registration& found = meshes.registration;
   nlohmann::ordered_json json = registration_json(found, moved_by(found.motion, meshes.moving.vertices));
@@ -74,6 +80,9 @@ nlohmann::ordered_json document(const RegisterArguments& arguments, const Regist
   json["target"] = arguments.target;
   json["distances_before"] = distances_json(meshes.before);
   json["distances_after"] = distances_json(meshes.after);
+  if (meshes.lines)
+    json["coaptation_line"] = {{"to_target", figures_json(meshes.lines->there)},
+                               {"from_target", figures_json(meshes.lines->back)}};
   json["warnings"] = registration_doubts(found);
   return json;
 }
@@ -107,6 +116,10 @@ Table distance_table(const RegisteredMeshes& meshes) {
   };
   add("before", meshes.before);
   add("after", meshes.after);
+  if (meshes.lines)
+    for (const auto& [direction, d] : {std::pair{"moving to target", meshes.lines->there},
+                                       std::pair{"target to moving", meshes.lines->back}})
+      table.rows.push_back({"coaptation lines", direction, d.mean, d.p95, "", d.max});
   return table;
 }
 
@@ -116,13 +129,14 @@ void register_meshes(RegisterArguments& arguments) {
     throw InputError("--landmarks A.mrk.json B.mrk.json and --method landmarks need each other");
   for (const std::string& path : {arguments.moving, arguments.target})
     refuse_folder_of(path, arguments.output);
-  RegisteredMeshes meshes{mesh_of(arguments.moving), mesh_of(arguments.target), {}, {}, {}};
+  RegisteredMeshes meshes{mesh_of(arguments.moving), mesh_of(arguments.target), {}, {}, {}, {}};
   meshes.registration = registration_of(arguments, meshes.moving, meshes.target);
   const Registration& found = meshes.registration;
   TriangleMesh moved = meshes.moving;
   moved.vertices = found.motion.apply(moved.vertices);
   meshes.before = registration_distances(meshes.moving, meshes.target);
   meshes.after = registration_distances(moved, meshes.target);
+  meshes.lines = distance_of_lines(moved, meshes.target);
   std::error_code error;
   fs::create_directories(arguments.output, error);
   if (error) throw InputError(arguments.output + ": cannot be made: " + error.message());

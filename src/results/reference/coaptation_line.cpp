@@ -1,6 +1,9 @@
 #include "results/reference/coaptation_line.hpp"
 
+#include "core/error.hpp"
 #include "mesh/distance/vertex_gaps.hpp"
+#include "mesh/projected_area.hpp"
+#include "registration/registration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -117,6 +120,21 @@ std::optional<LineDistance> line_distance(const std::vector<Seam>& from, const s
   if (!(length > 0)) return std::nullopt;
   const double piece = length / kPieces;
   return LineDistance{figures(from, to, piece), figures(to, from, piece)};
+}
+
+std::optional<LineDistance> distance_of_lines(const TriangleMesh& moved, const TriangleMesh& target) try {
+  const Points annulus = annulus_loop(target);
+  const Plane plane = best_fit_plane(annulus);
+  const Vec3 hang = target.vertices.rowwise().mean() - annulus.rowwise().mean();
+  const ViewFrame frame =
+      view_frame(plane.centre, hang.dot(plane.normal) > 0 ? Vec3(-plane.normal) : plane.normal);
+  const double contact = std::max(mean_edge_length(moved.vertices, moved.triangles),
+                                  mean_edge_length(target.vertices, target.triangles)) /
+                         2;
+  return line_distance(coaptation_line_of(moved, annulus, frame, contact),
+                       coaptation_line_of(target, annulus, frame, contact));
+} catch (const InputError&) {  // no loop, or one on a line
+  return std::nullopt;
 }
 
 }  // namespace coapt

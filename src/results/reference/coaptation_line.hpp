@@ -42,4 +42,10 @@ struct LineDistance {
 // Nothing where one of them has no length.
 std::optional<LineDistance> line_distance(const std::vector<Seam>& from, const std::vector<Seam>& to);
 
+// Between the lines of a surface in its place and of the one that it was registered onto, of which nothing
+// else is known: both are seen within the target's largest closed boundary loop, from the side that the
+// target does not hang on, and vertices are in contact within half a mean edge (of the coarser one). Nothing
+// where the target has no such loop, or a line is not seen.
+std::optional<LineDistance> distance_of_lines(const TriangleMesh& moved, const TriangleMesh& target);
+
 }  // namespace coapt
