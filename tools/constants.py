@@ -3,7 +3,7 @@ solving makes and compares; what each means and where it comes from.
 
     constants.py            writes the page; --check only says whether it is up to date
 
-A constant is a `constexpr` number whose name is k and a capital. What it means says the comment behind it, or the one above it,
+A constant is a `constexpr` number, or array of numbers, whose name is k and a capital. What it means says the comment behind it, or the one above it,
 which also stands for the constants below that have none. Where its value comes from says tools/constants.toml; what is not
 there was set by hand. An entry there may be a table with `meaning` and `origin`: its meaning goes before that of the source. A constant without a meaning and an origin without a constant are errors.
 """
@@ -16,8 +16,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/constants.md"
 FOLDERS = ("src/mesh/distance", "src/mesh/remesh", "src/energy", "src/optim", "src/xpbd", "src/sensitivity", "src/registration",
            "src/solve", "src/run", "src/tuning")
-NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t|Eigen::Index) "
+NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t|Eigen::Index|std::array) "
                     r"(k[A-Z]\w* *=[^;]*);[ \t]*(?://[ \t]*(.*))?$", re.MULTILINE)
+NUMBERS = re.compile(r"\{[\d., e+-]+\}")  # an array of these; one of names is no constant of a method
 BY_HAND = "set by hand"
 HEAD = """# Constants
 
@@ -68,7 +69,7 @@ def constants(root: pathlib.Path) -> list[tuple[str, str, str, str]]:
             file, parts = path.relative_to(root / "src").as_posix(), split(match[1])
             each = meaning.split("; ") if meaning.count(";") == len(parts) - 1 else [meaning] * len(parts)
             found += [(file, name, value, of) for (name, value), of in zip(parts, each)
-                      if not {name, f"{file}: {name}"} & STRUCTURAL]
+                      if not {name, f"{file}: {name}"} & STRUCTURAL and (value[0] != "{" or NUMBERS.fullmatch(value))]
     return found
 
 

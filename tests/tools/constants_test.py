@@ -43,6 +43,11 @@ class Constants(unittest.TestCase):
         self.assertEqual(self.found("static constexpr double kA = 1, kB = 2;  // of the step; of the force\n"),
                          [("kA", "1", "of the step"), ("kB", "2", "of the force")])
 
+    def test_takes_arrays_of_numbers_and_none_of_names(self):
+        self.assertEqual(self.found("constexpr std::array kA = {0.3, 3.0};  // of the step\n"
+                                    "constexpr std::array kB = {Status::Converged, Status::Stalled};  // in files\n"),
+                         [("kA", "{0.3, 3.0}", "of the step")])
+
     def test_leaves_out_what_is_no_choice(self):
         self.assertEqual(self.found('static constexpr int kNodes = 3;\nconstexpr const char* kText = "x";\n'), [])
 
