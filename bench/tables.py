@@ -5,8 +5,10 @@
     bench/newton.py ... | bench/tables.py --record newton --machine epyc --command "bench/newton.py ..."
                                     keeps a table that a benchmark prints as bench/results/newton.csv, with today's date
 
-A data file begins with lines "# key: value": date (of the measurement), machine (a row of machines.csv), command, and
-where needed a note; behind them it is a CSV file. A table of the page stands between the lines "<!-- table NAME -->" and
+    ... --record solves/newton      a new one in a folder of bench/results; its name, without the folder, is known from then on
+
+A data file begins with lines "# key: value": date (of the measurement), machine (a row of machines.csv), command, or by what
+it was made where no command did, and where needed a note; behind them it is a CSV file. A table of the page stands between the lines "<!-- table NAME -->" and
 "<!-- end -->"; what stands there is overwritten. Whole numbers from a thousand on get commas.
 """
 import argparse
@@ -22,7 +24,8 @@ PAGE = ROOT / "docs/benchmarks.md"
 RESULTS = ROOT / "bench/results"
 PAPERS = ROOT / "docs/papers"
 MARKED = re.compile(r"^<!-- table (\w+) -->\n.*?^<!-- end -->\n", re.MULTILINE | re.DOTALL)
-KEYS = ("date", "machine", "command", "note")
+KEYS = ("date", "machine", "command", "made", "note")
+NOT_TABLES = ("papers", "rows")  # folders of bench/results: tables of other pages, and single solves
 
 
 def parsed(text: str) -> tuple[dict[str, str], list[list[str]]]:
@@ -35,6 +38,8 @@ def parsed(text: str) -> tuple[dict[str, str], list[list[str]]]:
 
 def defects(name: str, about: dict[str, str], rows: list[list[str]], machines: set[str]) -> list[str]:
     found = [f"{name}: no {key}" for key in KEYS[:2] if key not in about]
+    if not {"command", "made"} & about.keys():
+        found.append(f"{name}: no command, and no word of what it was made by")
     found += [f"{name}: unknown key {key}" for key in about if key not in KEYS]
     if about.get("machine", "any") not in machines | {"any"}:
         found.append(f"{name}: machine {about['machine']} is not in machines.csv")
@@ -54,9 +59,15 @@ def rendered(about: dict[str, str], rows: list[list[str]]) -> str:
     lines = ["| " + " | ".join(rows[0]) + " |", "|" + "---|" * len(rows[0])]
     lines += ["| " + " | ".join(map(shown, row)) + " |" for row in rows[1:]]
     source = f"*{about['date']}" + ("*" if about["machine"] == "any" else f", {about['machine']}*")
-    command = f", `{about['command']}`" if "command" in about else ""
+    command = f", `{about['command']}`" if "command" in about else f", {about['made']}"
     note = f". {about['note']}" if "note" in about else "."
     return "\n".join(lines) + f"\n\n{source}{command}{note}\n"
+
+
+def data_files(results: pathlib.Path) -> dict[str, pathlib.Path]:
+    """By the names of their tables."""
+    return {path.stem: path for path in sorted(results.rglob("*.csv"))
+            if path.relative_to(results).parts[0] not in NOT_TABLES}
 
 
 def page_text(page: str, results: pathlib.Path) -> tuple[str, list[str]]:
@@ -64,15 +75,16 @@ def page_text(page: str, results: pathlib.Path) -> tuple[str, list[str]]:
     known = results / "machines.csv" if (results / "machines.csv").exists() else RESULTS / "machines.csv"
     machines = {row[0] for row in parsed(known.read_text(encoding="utf-8"))[1][1:]}
     tables, found = {}, []
-    for path in sorted(results.glob("*.csv")):
+    files = data_files(results)
+    for name, path in files.items():
         about, rows = parsed(path.read_text(encoding="utf-8"))
-        wrong = defects(path.stem, about, rows, machines)
+        wrong = defects(name, about, rows, machines)
         found += wrong
         if not wrong:
-            tables[path.stem] = rendered(about, rows)
+            tables[name] = rendered(about, rows)
     named = MARKED.findall(page)
     found += [f"{name}: the page has no such table" for name in sorted(tables.keys() - set(named))]
-    found += [f"{name}: the page shows it, and there are no data" for name in named if not (results / f"{name}.csv").exists()]
+    found += [f"{name}: the page shows it, and there are no data" for name in named if name not in files]
 
     def table(match: re.Match) -> str:
         body = tables.get(match[1])
@@ -114,14 +126,17 @@ def recorded(markdown: str, about: dict[str, str]) -> str:
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--check", action="store_true", help="write nothing; 1 where the page is out of date")
-    arguments.add_argument("--record", metavar="NAME", help="keep the table on the standard input under this name")
+    arguments.add_argument("--record", metavar="NAME", help="keep the table on the standard input under this name; a new one with its folder")
     for key in KEYS[1:]:
         arguments.add_argument("--" + key, help=f"with --record: {key} of the measurement")
     given = arguments.parse_args()
     if given.record:
+        if not (given.command or given.made):
+            arguments.error("--record needs --command, or --made where no command made it")
         about = {"date": str(datetime.date.today()), "machine": given.machine or "any",
-                 "command": given.command, "note": given.note}
-        (RESULTS / f"{given.record}.csv").write_text(recorded(sys.stdin.read(), about), encoding="utf-8")
+                 "command": given.command, "made": given.made, "note": given.note}
+        path = data_files(RESULTS).get(given.record, RESULTS / f"{given.record}.csv")
+        path.write_text(recorded(sys.stdin.read(), about), encoding="utf-8")
         return 0
     found = in_order(PAGE, RESULTS, given.check)
     for data in sorted((RESULTS / "papers").iterdir()):

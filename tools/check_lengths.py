@@ -6,7 +6,8 @@ list when the code got shorter, or left there when it came within the limit.
     check_lengths.py [--lower] [FOLDER]     the repository, or another tree with tools/lengths.toml in it
         --lower: write what got shorter into the list
 
-Functions are found by Universal Ctags, and counted from the line of their name to the closing brace, over all lines.
+Files of C++ are counted, of bindings those of Python too. Functions of C++ are found by Universal Ctags, and counted from
+the line of their name to the closing brace, over all lines.
 """
 import argparse
 import json
@@ -16,6 +17,7 @@ import subprocess
 import sys
 import tomllib
 
+SUFFIXES = {"bindings": {".cpp", ".hpp", ".py", ".pyi"}}  # elsewhere those of C++
 LONGEST_FILE = {"src": 400, "bindings": 400, "tests": 500, "bench": 500}
 LONGEST_FUNCTION = {"src": 60, "bindings": 60}
 LARGEST_ROOM, LARGEST_FOLDER = 8500, 40  # lines; files
@@ -27,7 +29,8 @@ HEAD = ("# Files and functions that were longer than CONTRIBUTING.md allows when
 def long_files(root: pathlib.Path) -> dict[str, int]:
     found = {}
     for folder, limit in LONGEST_FILE.items():
-        for path in sorted((root / folder).rglob("*.[ch]pp")):
+        suffixes = SUFFIXES.get(folder, {".cpp", ".hpp"})
+        for path in sorted(path for path in (root / folder).rglob("*") if path.suffix in suffixes):
             lines = path.read_text(encoding="utf-8").count("\n")
             if lines > limit:
                 found[path.relative_to(root).as_posix()] = lines

@@ -1,10 +1,11 @@
-"""Writes docs/constants.md: every heuristic constant of the energies, the solvers and registration, what it means and where it comes from.
+"""Writes docs/constants.md: every heuristic constant of energies, solvers, runs, tuning and registration, and of the meshes that
+solving makes and compares; what each means and where it comes from.
 
     constants.py            writes the page; --check only says whether it is up to date
 
-A constant is a `constexpr` number whose name is k and a capital. What it means says the comment behind it, or the one above it,
+A constant is a `constexpr` number, or array of numbers, whose name is k and a capital. What it means says the comment behind it, or the one above it,
 which also stands for the constants below that have none. Where its value comes from says tools/constants.toml; what is not
-there was set by hand. A constant without a meaning and an origin without a constant are errors.
+there was set by hand. An entry there may be a table with `meaning` and `origin`: its meaning goes before that of the source. A constant without a meaning and an origin without a constant are errors.
 """
 import pathlib
 import re
@@ -13,20 +14,24 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/constants.md"
-FOLDERS = ("src/energy", "src/optim", "src/xpbd", "src/sensitivity", "src/registration")
-NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t) "
+FOLDERS = ("src/mesh/distance", "src/mesh/remesh", "src/energy", "src/optim", "src/xpbd", "src/sensitivity", "src/registration",
+           "src/solve", "src/run", "src/tuning")
+NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t|Eigen::Index|std::array) "
                     r"(k[A-Z]\w* *=[^;]*);[ \t]*(?://[ \t]*(.*))?$", re.MULTILINE)
+NUMBERS = re.compile(r"\{[\d., e+-]+\}")  # an array of these; one of names is no constant of a method
 BY_HAND = "set by hand"
 HEAD = """# Constants
 
-Every heuristic constant of the energies, solvers, sensitivities and registration: numbers that a method needs and no formula gives. Written by
-`tools/constants.py` from the sources and `tools/constants.toml`; lengths, forces and stresses are relative to what the meaning names.
+Every heuristic constant of energies, solvers, sensitivities, registration, runs and tuning, and of the meshes that solving makes and compares:
+numbers that a method needs and no formula gives. Written by `tools/constants.py` from the sources and `tools/constants.toml`; lengths, forces and
+stresses are relative to what the meaning names.
 *Set by hand* says that no measurement or publication is on record for the value: {by_hand} of {all}.
 """
 
 
-# Sizes of arrays and counts of nodes, which are no choice.
-STRUCTURAL = {"kNodes", "kSize", "kTerms", "kPerPage", "energy/contact/collision_detection.cpp: kFirst"}
+# Sizes of arrays, counts of nodes and weights of quadrature rules, which are no choice.
+STRUCTURAL = {"kNodes", "kSize", "kTerms", "kPerPage", "kVertexWeight", "kEdgeWeight", "kCentroidWeight",
+              "energy/contact/collision_detection.cpp: kFirst"}
 
 
 def split(declarators: str) -> list[tuple[str, str]]:
@@ -64,12 +69,28 @@ def constants(root: pathlib.Path) -> list[tuple[str, str, str, str]]:
             file, parts = path.relative_to(root / "src").as_posix(), split(match[1])
             each = meaning.split("; ") if meaning.count(";") == len(parts) - 1 else [meaning] * len(parts)
             found += [(file, name, value, of) for (name, value), of in zip(parts, each)
-                      if not {name, f"{file}: {name}"} & STRUCTURAL]
+                      if not {name, f"{file}: {name}"} & STRUCTURAL and (value[0] != "{" or NUMBERS.fullmatch(value))]
     return found
 
 
-def page(found: list[tuple[str, str, str, str]], origins: dict[str, dict[str, str]]) -> str:
-    by_hand = sum(name not in origins.get(file, {}) for file, name, _, _ in found)
+Origins = dict[str, dict[str, str | dict[str, str]]]
+
+
+def with_meanings(found: list[tuple[str, str, str, str]], origins: Origins) -> list[tuple[str, str, str, str]]:
+    """The constants with the meanings that tools/constants.toml gives in place of the comments of the sources."""
+    def given(file: str, name: str, meaning: str) -> str:
+        entry = origins.get(file, {}).get(name)
+        return entry.get("meaning", meaning) if isinstance(entry, dict) else meaning
+    return [(file, name, value, given(file, name, meaning)) for file, name, value, meaning in found]
+
+
+def origin(origins: Origins, file: str, name: str) -> str:
+    entry = origins.get(file, {}).get(name, BY_HAND)
+    return entry.get("origin", BY_HAND) if isinstance(entry, dict) else entry
+
+
+def page(found: list[tuple[str, str, str, str]], origins: Origins) -> str:
+    by_hand = sum(origin(origins, file, name) == BY_HAND for file, name, _, _ in found)
     out = [HEAD.format(by_hand=by_hand, all=len(found))]
     room = file = last = None
     for place, name, value, meaning in found:
@@ -79,11 +100,11 @@ def page(found: list[tuple[str, str, str, str]], origins: dict[str, dict[str, st
         shown = f"`{place.split('/', 1)[1]}`" if place != file else ""
         said = "the same comment" if place == file and meaning == last else meaning.replace("|", "\\|")
         file, last = place, meaning
-        out.append(f"| {shown} | `{name}` | {value} | {said} | {origins.get(place, {}).get(name, BY_HAND)} |\n")
+        out.append(f"| {shown} | `{name}` | {value} | {said} | {origin(origins, place, name)} |\n")
     return "".join(out)
 
 
-def defects(found: list[tuple[str, str, str, str]], origins: dict[str, dict[str, str]]) -> list[str]:
+def defects(found: list[tuple[str, str, str, str]], origins: Origins) -> list[str]:
     known = {(file, name) for file, name, _, _ in found}
     wrong = [f"src/{file}: {name} has no comment that says what it is" for file, name, _, meaning in found if not meaning]
     return wrong + [f"tools/constants.toml: {file} has no {name}" for file, of in origins.items() for name in of
@@ -91,8 +112,8 @@ def defects(found: list[tuple[str, str, str, str]], origins: dict[str, dict[str,
 
 
 def main() -> int:
-    found = constants(ROOT)
     origins = tomllib.loads((ROOT / "tools/constants.toml").read_text(encoding="utf-8"))
+    found = with_meanings(constants(ROOT), origins)
     wrong = defects(found, origins)
     text = page(found, origins)
     if "--check" not in sys.argv:

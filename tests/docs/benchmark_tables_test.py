@@ -17,9 +17,10 @@ class BenchmarkTables(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.results = pathlib.Path(folder.name)
-        self.write("machines", "# date: 2026-11-21\n# machine: any\nmachine,what it is\nfast,a computer\n")
+        self.write("machines", "# date: 2026-11-21\n# machine: any\n# made: by hand\nmachine,what it is\nfast,a computer\n")
 
     def write(self, name: str, text: str):
+        (self.results / name).parent.mkdir(exist_ok=True)
         (self.results / f"{name}.csv").write_text(text, encoding="utf-8")
 
     def text(self, *names: str) -> tuple[str, list[str]]:
@@ -42,10 +43,18 @@ class BenchmarkTables(unittest.TestCase):
         self.assertIn("| case | triangles |\n|---|---|\n| valve | 2,490 |\n\n*2026-11-21, fast*, `bench/x`. Best of three.\n", text)
         self.assertNotIn("old", text)
 
+    def test_finds_data_in_folders_and_says_by_what_they_were_made(self):
+        self.write("solves/valves", DATA.replace("command: bench/x", "made: by hand"))
+        text, found = self.text("valves")
+        self.assertEqual(found, [])
+        self.assertIn("*2026-11-21, fast*, by hand. Best of three.\n", text)
+        self.write("rows/solves", "a,b\n1,2\n")  # of single solves: no table
+        self.assertEqual(self.text("valves")[1], [])
+
     def test_names_what_is_wrong_with_data(self):
         for broken, word in ((DATA.replace("# date: 2026-11-21\n", ""), "no date"), (DATA.replace("fast", "slow"), "slow"),
                              (DATA + "disc\n", "lengths"), (DATA.replace("11-21", "yesterday"), "yesterday"),
-                             (DATA.replace("# note", "# notes"), "notes")):
+                             (DATA.replace("# note", "# notes"), "notes"), (DATA.replace("# command: bench/x\n", ""), "no command")):
             self.write("solves", broken)
             _, found = self.text("solves")
             self.assertEqual(len(found), 1, found)

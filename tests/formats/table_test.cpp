@@ -1,4 +1,3 @@
-#include "core/number_text.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/terminal_table.hpp"
 
@@ -82,13 +81,6 @@ TEST(TerminalTable, RowsPrintedOneByOneStandInLine) {
 TEST(TerminalTable, WithoutRowsItIsItsHeadings) {
   EXPECT_EQ(terminal_table({.columns = {text_column("name"), {"n", "", "mm"}}}), "  name    n [mm]\n");
   EXPECT_EQ(terminal_table({.columns = {text_column("name")}}, false), "");
-}
-
-TEST(NumberText, FixedTextHasItsDecimals) {
-  EXPECT_EQ(fixed_text(0.125, 2), "0.12");
-  EXPECT_EQ(fixed_text(-3, 4), "-3.0000");
-  EXPECT_EQ(fixed_text(1e20, 3), "1e+20");
-  EXPECT_EQ(fixed_text(std::numeric_limits<double>::infinity(), 3), "inf");
 }
 
 }  // namespace

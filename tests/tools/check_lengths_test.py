@@ -64,6 +64,13 @@ class Lengths(unittest.TestCase):
         self.write("\n" * 401)
         self.expect_defect("src/room/one.cpp: 401 lines")
 
+    def test_finds_a_long_python_file_of_the_bindings_alone(self):
+        self.write("\n" * 401, "bindings/python/coapt/one.py")
+        self.expect_defect("bindings/python/coapt/one.py: 401 lines")
+        self.write("\n" * 400, "bindings/python/coapt/one.py")
+        self.write("\n" * 501, "bench/one.py")
+        self.expect_none()
+
     def test_allows_tests_five_hundred_lines(self):
         self.write("\n" * 500, "tests/room/one_test.cpp")
         self.expect_none()

@@ -24,12 +24,13 @@ from typing import Any
 from . import _core, autograd, metrics
 from ._api import minimize, solve
 from ._core import Iterate
-from ._equilibrium import AnchorCheck, Equilibrium, KinkWarning, LostBranch, Switch, WarmSolve
+from ._equilibrium import Equilibrium
 from ._errors import InputError
 from ._objective import LostBranchWarning, Objective, objective
 from ._registration import Registration, register
 from ._result import Result, Status
 from ._terms import Term, check_term
+from ._warm_solve import AnchorCheck, KinkWarning, LostBranch, Switch, WarmSolve
 
 __version__ = _core.version()
 __all__ = ["AnchorCheck", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",

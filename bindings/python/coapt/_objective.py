@@ -8,8 +8,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from ._equilibrium import Equilibrium, WarmSolve
+from ._equilibrium import Equilibrium
 from ._errors import InputError
+from ._warm_solve import WarmSolve
 from .metrics import MetricLike
 
 Array = npt.NDArray[np.float64]

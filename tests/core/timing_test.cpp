@@ -1,0 +1,49 @@
+#include "core/timing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace coapt {
+namespace {
+
+TEST(Timing, PhasesAddUpOverTheirVisits) {
+  PhaseTimes times;
+  times.add("assembly", 0.5);
+  times.add("line search", 1);
+  times.add("assembly", 0.25);
+  EXPECT_EQ(times.seconds(), (std::map<std::string, double>{{"assembly", 0.75}, {"line search", 1}}));
+}
+
+TEST(Timing, ATimerAddsTheWallTimeOfItsScope) {
+  PhaseTimes times;
+  const double before = wall_seconds();
+  {
+    const PhaseTimer timer(times, "pause");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_GE(times.seconds().at("pause"), 0.02);
+  EXPECT_LE(times.seconds().at("pause"), wall_seconds() - before);
+}
+
+TEST(Timing, WaitingTakesNoCpuTimeAndWorkDoes) {
+  const double before = cpu_seconds();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_LT(cpu_seconds() - before, 0.1);
+  const double start = cpu_seconds();
+  while (cpu_seconds() - start < 0.01) {
+  }
+  EXPECT_GE(cpu_seconds() - before, 0.01);
+}
+
+TEST(Timing, PeakMemoryRemembersWhatWasFreed) {
+  const double wanted = 100;
+  { const std::vector<char> memory(static_cast<size_t>(wanted * 1024 * 1024), 1); }
+  EXPECT_GE(peak_memory_mb(), wanted);
+  EXPECT_LT(peak_memory_mb(), 1e5);  // megabytes, not kilobytes
+}
+
+}  // namespace
+}  // namespace coapt
