@@ -202,8 +202,8 @@ std::vector<StressRow> collision_query_rows() {
           return collisions_found(make, first, kMostFalse);
         }};
   };
-  return {row("points on their way into triangles", colliding, 1),
-          row("edges on their way into edges", colliding, 2),
+  return {row("points that move into triangles", colliding, 1),
+          row("edges that move into edges", colliding, 2),
           row("triangles and edges without extent", without_extent, 0),
           row("pairs that never come nearer", sliding, 0)};
 }

@@ -401,14 +401,14 @@ std::string nodes(const Points& x) { return floats(x.array() + 0.0); }
 std::vector<size_t> ends(const nlohmann::json& shapes) {
   std::vector<size_t> all;
   size_t count = 0;
-  for (const nlohmann::json& way : shapes.at("ways"))
+  for (const nlohmann::json& way : shapes.at("sequences"))
     all.push_back((count += way.at("states").get<size_t>()) - 1);
   return all;
 }
 
 std::vector<std::string> way_labels(const nlohmann::json& shapes) {
   std::vector<std::string> all;
-  for (const nlohmann::json& way : shapes.at("ways")) all.push_back(way.at("label"));
+  for (const nlohmann::json& way : shapes.at("sequences")) all.push_back(way.at("label"));
   return all;
 }
 
@@ -435,9 +435,10 @@ TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   // Iterates of newton, each of the run itself: the shapes that its own page leads through.
   const Report& newton = found.reference().run->report;
   for (size_t k = last[1] + 1; k < last[2]; ++k)
-    EXPECT_TRUE(std::any_of(newton.shape_history.begin(), newton.shape_history.end(), [&](const RecordedShape& shape) {
-      return json.at("states").at(k).at("nodes") == nodes(shape.x);
-    })) << k;
+    EXPECT_TRUE(std::any_of(
+        newton.shape_history.begin(), newton.shape_history.end(),
+        [&](const RecordedShape& shape) { return json.at("states").at(k).at("nodes") == nodes(shape.x); }))
+        << k;
   EXPECT_EQ(json.at("states").at(last[1]).at("nodes"), nodes(found.methods[3].run->report.fields.x));
   EXPECT_EQ(json.at("states").at(last[2]).at("nodes"), nodes(newton.fields.x));
   const nlohmann::json& distance = json.at("fields").at(0);

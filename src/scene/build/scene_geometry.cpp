@@ -343,8 +343,7 @@ std::vector<int> selected_nodes(const NodeSelection& selection, const SceneGeome
 std::vector<int> kept_vertices(const SceneGeometry& geometry) {
   std::vector<int> kept(static_cast<size_t>(geometry.model.mesh.vertex_count()));
   for (int v = 0; v < geometry.finest->model.mesh.vertex_count(); ++v)
-    if (const int here = geometry.number[static_cast<size_t>(v)]; here >= 0)
-      kept[static_cast<size_t>(here)] = v;
+    if (const int k = geometry.number[static_cast<size_t>(v)]; k >= 0) kept[static_cast<size_t>(k)] = v;
   return kept;
 }
 
