@@ -146,6 +146,21 @@ TEST(Stability, OfATangentWithManySoftModesMissesNone) {
   }
 }
 
+// A bound of imaginary parts by the shift of the search alone would leave more values in the disc than are
+// asked for; that by a smaller shift leaves few.
+TEST(Stability, OfATangentWithHundredsOfSoftModesIsDecided) {
+  if (!has_smallest_modes()) GTEST_SKIP() << "built without Spectra";
+  const int size = 300;
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(size, size);
+  for (int k = 0; k < size; ++k) whole(k, k) = 0.0012 + 2e-6 * k;
+  // Symmetric part: -0.001 and 1, of which the coupling makes a positive pair.
+  whole.block<2, 2>(0, 0) = follower(-0.001, 1, 0.06);
+  const Tangent tangent(whole);
+  const StabilityReport report = tangent.report();
+  EXPECT_EQ(report.verdict, Stability::Stable);
+  EXPECT_NEAR(report.lowest.real(), tangent.lowest(), 1e-9);
+}
+
 // --- What costs nothing -----------------------------------------------------------------------------------
 
 TEST(FreeDirections, AreThoseThatNeitherResistNorCouple) {

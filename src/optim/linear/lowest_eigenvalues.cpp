@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <numeric>
@@ -53,13 +54,14 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
 #ifdef COAPT_HAS_SPECTRA
 namespace {
 
-constexpr double kShift = 10;           // times the magnitude of the lowest eigenvalue of the symmetric part
-constexpr int kPowerSteps = 20;         // towards the greatest imaginary part
-constexpr double kMargin = 1.25;        // on the imaginary part that they find
-constexpr double kConverged = 1e-8;     // relative residual of an eigenpair
-constexpr int kFirst = 20, kMost = 80;  // eigenvalues that are asked for
-constexpr int kSubspace = 60;           // vectors of the Krylov space, at least
-constexpr int kRestarts = 100;          // of Arnoldi's method
+constexpr double kShift = 10;  // times the magnitude of the lowest eigenvalue of the symmetric part
+constexpr std::array kBoundShifts = {2.0, 10.0};  // likewise, at which imaginary parts are bounded
+constexpr int kPowerSteps = 20;                   // towards the greatest imaginary part
+constexpr double kMargin = 1.25;                  // on the imaginary part that they find
+constexpr double kConverged = 1e-8;               // relative residual of an eigenpair
+constexpr int kFirst = 20, kMost = 160;           // eigenvalues that are asked for
+constexpr int kSubspace = 60;                     // vectors of the Krylov space, at least
+constexpr int kRestarts = 100;                    // of Arnoldi's method
 
 // K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
 SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
@@ -125,6 +127,24 @@ double greatest_ratio(Factorisation& factor, const SkewProduct& skew, Vector v) 
   return ratio;
 }
 
+// Of eigenvalues with a negative real part. Their vectors v, of length 1, have v^* K v < 0, so that s times
+// the greatest |v^* W v| / (v^* (K + s) v) is a bound for every s that makes K + s positive definite: the
+// least of some. Infinity where none of them does.
+double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
+                          double magnitude, const FactorisationFactory& factory) {
+  double least = kInfinity;
+  SparseMatrix shifted = lower;
+  for (const double multiple : kBoundShifts) {
+    const double shift = multiple * magnitude;
+    shifted.diagonal() = lower.diagonal().array() + shift;
+    const auto factor = factory();
+    factor->analyse(shifted);
+    if (factor->factorise(shifted))
+      least = std::min(least, kMargin * greatest_ratio(*factor, skew, start) * shift);
+  }
+  return least;
+}
+
 }  // namespace
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
@@ -132,13 +152,10 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   const double shift = kShift * std::abs(least_value);
   LowestEigenvalues found;
-  found.factorisations = 2;
-  SparseMatrix shifted = lower;
-  shifted.diagonal() = lower.diagonal().array() + shift;
-  const auto factor = factory();
-  factor->analyse(shifted);
-  if (!factor->factorise(shifted)) return found;
-  const double reach = std::hypot(1, kMargin * greatest_ratio(*factor, skew, start)) * shift;
+  found.factorisations = 1 + static_cast<int>(kBoundShifts.size());
+  const double reach =
+      std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factory));
+  if (!std::isfinite(reach)) return found;
   InverseTangent inverse(whole_tangent(lower, skew, start, shift));
   if (!inverse.is_made()) return found;
 
