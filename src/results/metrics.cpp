@@ -25,6 +25,9 @@ void measure_annulus(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.tenting_height_mm = closure.tenting_height_mm;
   metrics.tenting_volume_mm3 = closure.tenting_volume_mm3;
   metrics.prolapse_height_mm = closure.prolapse_height_mm;
+  if (closure.anterior_share)
+    metrics.healthy_closure = healthy_criteria({*closure.anterior_share, closure.coaptation_height_mm,
+                                                *metrics.regurgitant_area_mm2, model.applied_pressure});
   metrics.closure = std::move(closure);
 }
 

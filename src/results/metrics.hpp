@@ -4,6 +4,7 @@
 #include "mesh/distance/intersections.hpp"
 #include "results/closure.hpp"
 #include "results/fields.hpp"
+#include "results/healthy_closure.hpp"
 
 #include <optional>
 #include <string>
@@ -44,6 +45,7 @@ struct Metrics {
   double max_displacement_mm = 0;
   std::optional<Closure>
       closure;  // lines, outlines and leaflets behind the figures; empty without an annulus
+  std::vector<HealthyCriterion> healthy_closure;  // of a mitral valve; empty for any other scene
 };
 
 // Measures the state q. fields: those of the same state. judge: counts the intersections.
