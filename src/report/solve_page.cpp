@@ -64,6 +64,28 @@ PageTable metric_table(const Report& report) {
   return table;
 }
 
+PageTable criteria_table(const std::vector<HealthyCriterion>& criteria) {
+  PageTable table{.caption = "A healthy closure of a mitral valve",
+                  .columns = {{"figure", true},
+                              {"value"},
+                              {"unit", true},
+                              {"healthy", true},
+                              {"in range", true},
+                              {"meaning", true},
+                              {"source", true}}};
+  for (const HealthyCriterion& criterion : criteria) {
+    const bool is_met = criterion.is_met();
+    table.rows.push_back({{metric_in_words({criterion.name, criterion.unit, "", false, {}})},
+                          {page_number(criterion.value, 3)},
+                          {criterion.unit},
+                          {range_in_words(criterion)},
+                          {is_met ? "yes" : "no", is_met ? Tone::Good : Tone::Caution},
+                          {criterion.meaning},
+                          {criterion.source}});
+  }
+  return table;
+}
+
 PageTable leaflet_table(const std::vector<LeafletMetrics>& leaflets) {
   Table table{.columns = {text_column("figure")}};
   for (const MetricRow& row : leaflet_rows(leaflets.front())) table.rows.push_back({metric_title(row)});
@@ -116,6 +138,8 @@ PageTable distance_table(const ReferenceDistance& distance) {
 
 PageSection figures(const Report& report) {
   PageSection section{"Figures", {metric_table(report)}};
+  if (!report.metrics.healthy_closure.empty())
+    section.blocks.emplace_back(criteria_table(report.metrics.healthy_closure));
   if (report.metrics.closure && !report.metrics.closure->leaflets.empty())
     section.blocks.emplace_back(leaflet_table(report.metrics.closure->leaflets));
   if (report.metrics.closure && !report.metrics.closure->orifices.empty())

@@ -2,7 +2,8 @@
 
 #include "mesh/projected_area.hpp"
 #include "mesh/remesh/spanning_surface.hpp"
-#include "results/coaptation_height.hpp"
+#include "results/detail/anterior_share.hpp"
+#include "results/detail/coaptation_height.hpp"
 #include "results/reference/coaptation_line.hpp"
 
 #include <algorithm>
@@ -261,6 +262,8 @@ Closure closure_of(const Model& model, const Fields& fields) {
   measure_line(shape, closure);
   measure_tenting_height(shape, closure);
   measure_areas(shape, closure);
+  closure.anterior_share = anterior_share(
+      model.mesh, *annulus_of(model), in_frame(shape.annulus, shape.view.frame), shape.view, shape.closed);
   if (model.mesh.regions.empty()) closure.leaflets.clear();
   return closure;
 }

@@ -6,6 +6,7 @@
 #include "mesh/seams.hpp"
 #include "results/fields.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct Closure {
   double tenting_height_mm = 0;
   double tenting_volume_mm3 = 0;
   double prolapse_height_mm = 0;
+  // Of the antero-posterior diameter, 0 to 1 (results/detail/anterior_share.hpp); empty where it is no mitral
+  // valve.
+  std::optional<double> anterior_share;
   std::vector<LeafletMetrics> leaflets;  // by region; empty for a mesh without regions
 };
 

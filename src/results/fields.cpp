@@ -60,6 +60,27 @@ void add_stress(const Model& model, Fields& fields) {
   if (model.wants_first_piola) fields.first_piola_stress = std::move(first_piola);
 }
 
+void add_yield(const Model& model, Fields& fields) {
+  for (const MembranePatch& patch : model.membrane_patches) {
+    if (!patch.yield_ratio) continue;
+    if (fields.yield_ratio.size() == 0)
+      fields.yield_ratio = Vector::Constant(model.mesh.triangle_count(), kNaN);
+    for (size_t e = 0; e < patch.triangles.size(); ++e) {
+      const Eigen::Vector3i c = model.mesh.triangles.col(patch.triangles[e]);
+      CstVector x;
+      x << fields.x.col(c[0]), fields.x.col(c[1]), fields.x.col(c[2]);
+      fields.yield_ratio[patch.triangles[e]] = patch.yield_ratio(static_cast<int>(e), x, nullptr);
+    }
+  }
+  const auto yields = [](const Line& line) { return std::isfinite(line.yield_strain); };
+  if (std::none_of(model.lines.begin(), model.lines.end(), yields)) return;
+  fields.line_yield_ratio = Vector::Constant(std::ssize(model.lines), kNaN);
+  for (size_t k = 0; k < model.lines.size(); ++k)
+    if (const Line& line = model.lines[k]; yields(line))
+      fields.line_yield_ratio[static_cast<Eigen::Index>(k)] =
+          std::max(0.0, line_strain(line, fields.x).value_or(0)) / line.yield_strain;
+}
+
 // Springs have forces and no stress, so beside them no triangle is told to be slack.
 bool has_springs(const Model& model) {
   const auto& terms = model.objective->terms();
@@ -160,6 +181,7 @@ Fields compute_fields(const Model& model, const Points& x) {
   fields.displacement = x - model.X;
   add_strain_and_stress(model, fields);
   add_line_forces(model, fields);
+  add_yield(model, fields);
   if (looks_for_contact(model)) add_contact(model, fields);
   return fields;
 }

@@ -35,9 +35,12 @@ struct Fields {
                                    // found [mm]; empty outside of one
   Vector branch_spread;            // per node, Branches::spread_mm [mm]; empty where nothing was looked for
   std::vector<char> undetermined;  // per node, see undetermined_flags; empty before that is known
-  Vector line_force;               // tension of each line of the model [N]; negative for compression
-  Vector line_strain;              // of each line, see line_strain(); NaN where there is none
-  Vector line_stress;              // Cauchy, of each line, see line_stress() [MPa]; NaN where there is none
+  Vector yield_ratio;       // elongation of the fibres over that at which they yield, per triangle; NaN
+                            // where nothing yields, empty where nothing does at all
+  Vector line_yield_ratio;  // the same of each line
+  Vector line_force;        // tension of each line of the model [N]; negative for compression
+  Vector line_strain;       // of each line, see line_strain(); NaN where there is none
+  Vector line_stress;       // Cauchy, of each line, see line_stress() [MPa]; NaN where there is none
 };
 
 // Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that

@@ -25,6 +25,9 @@ void measure_annulus(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.tenting_height_mm = closure.tenting_height_mm;
   metrics.tenting_volume_mm3 = closure.tenting_volume_mm3;
   metrics.prolapse_height_mm = closure.prolapse_height_mm;
+  if (closure.anterior_share)
+    metrics.healthy_closure = healthy_criteria({*closure.anterior_share, closure.coaptation_height_mm,
+                                                *metrics.regurgitant_area_mm2, model.applied_pressure});
   metrics.closure = std::move(closure);
 }
 
@@ -74,6 +77,16 @@ void measure_lines(const Model& model, const Fields& fields, Metrics& metrics) {
   measure_line_strains(model, fields, metrics);
 }
 
+void measure_yield(const Vector& ratios, std::optional<double>& greatest, std::optional<long>& beyond) {
+  if (ratios.size() == 0) return;
+  greatest = ratios.maxCoeff<Eigen::PropagateNumbers>();
+  beyond = (ratios.array() > 1).count();
+}
+
+std::optional<double> counted(std::optional<long> value) {
+  return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
+}
+
 // Strain, stress and force of membrane and lines.
 std::vector<MetricRow> strength_rows(const Metrics& m) {
   return {
@@ -90,6 +103,12 @@ std::vector<MetricRow> strength_rows(const Metrics& m) {
        m.max_chord_strain},
       {"mean_chord_strain", "", "mean strain of the chords and cables longer than at rest", false,
        m.mean_chord_strain},
+      {"max_yield_ratio", "", "greatest elongation of a leaflet's fibres over that at which they yield",
+       false, m.max_yield_ratio},
+      {"max_chord_yield_ratio", "", "greatest strain of a chord over that at which its fibres yield", false,
+       m.max_chord_yield_ratio},
+      {"yielded_facets", "", "facets whose fibres are beyond their yield", true, counted(m.yielded_facets)},
+      {"yielded_chords", "", "chords whose fibres are beyond their yield", true, counted(m.yielded_chords)},
   };
 }
 
@@ -112,6 +131,8 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
   measure_lines(model, fields, metrics);
   measure_stress(fields, metrics);
   measure_regimes(model, fields, metrics);
+  measure_yield(fields.yield_ratio, metrics.max_yield_ratio, metrics.yielded_facets);
+  measure_yield(fields.line_yield_ratio, metrics.max_chord_yield_ratio, metrics.yielded_chords);
 
   if (is_finite) try {
       measure_annulus(model, fields, metrics);
@@ -132,14 +153,11 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
 }
 
 std::vector<MetricRow> metric_rows(const Metrics& m) {
-  const auto count = [](std::optional<long> value) {
-    return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
-  };
   std::vector<MetricRow> rows = {
       {"intersections", "",
        "pairs of facets without a common vertex, one or both of the mesh, that touch or pass through each "
        "other",
-       true, count(m.intersections)},
+       true, counted(m.intersections)},
       {"orifice_area_mm2", "mm2", "area of the annulus opening, seen along its normal, left uncovered", false,
        m.orifice_area_mm2},
       {"annulus_area_mm2", "mm2", "area of the annulus opening, seen along its normal", false,
@@ -181,7 +199,7 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
        static_cast<double>(m.contact_facets)},
       {"smallest_gap_mm", "mm", "smallest distance of a vertex from a facet beyond its neighbourhood", false,
        m.smallest_gap_mm},
-      {"slack_chords", "", "chords and cables without tension", true, count(m.slack_chords)},
+      {"slack_chords", "", "chords and cables without tension", true, counted(m.slack_chords)},
       {"max_displacement_mm", "mm", "greatest displacement of a node", false, m.max_displacement_mm},
   };
   rows.insert(rows.end(), strength.begin(), strength.end());

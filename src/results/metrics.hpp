@@ -4,6 +4,7 @@
 #include "mesh/distance/intersections.hpp"
 #include "results/closure.hpp"
 #include "results/fields.hpp"
+#include "results/healthy_closure.hpp"
 
 #include <optional>
 #include <string>
@@ -36,7 +37,10 @@ struct Metrics {
   std::optional<double> max_chord_stress_kpa;  // Cauchy, of those with a known cross-section
   std::optional<double> max_chord_strain;      // length over rest length, less 1
   std::optional<double> mean_chord_strain;     // of the lines longer than at rest
-  std::optional<double> force_balance;         // |sum of loads and reactions| / sum of magnitudes
+  std::optional<double> max_yield_ratio;       // of the leaflets' fibres: elongation over that at yield
+  std::optional<double> max_chord_yield_ratio;
+  std::optional<long> yielded_facets, yielded_chords;  // of which it is above 1
+  std::optional<double> force_balance;                 // |sum of loads and reactions| / sum of magnitudes
   std::optional<double> moment_balance;
   long contact_vertices = 0, contact_facets = 0;
   std::optional<double> smallest_gap_mm;
@@ -44,6 +48,7 @@ struct Metrics {
   double max_displacement_mm = 0;
   std::optional<Closure>
       closure;  // lines, outlines and leaflets behind the figures; empty without an annulus
+  std::vector<HealthyCriterion> healthy_closure;  // of a mitral valve; empty for any other scene
 };
 
 // Measures the state q. fields: those of the same state. judge: counts the intersections.

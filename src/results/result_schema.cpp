@@ -85,6 +85,19 @@ OrderedJson leaflets() {
   return list(object(properties, "one leaflet"), "the regions of the mesh, of a scene with an annulus");
 }
 
+OrderedJson healthy_closure() {
+  return list(object({{"name", text("of the figure")},
+                      {"unit", text("of value and range; empty: none")},
+                      {"value", number("of this result")},
+                      {"lowest", number("of the healthy range; null: no bound")},
+                      {"highest", number("of the healthy range; null: no bound")},
+                      {"met", flag("the value lies in the range")},
+                      {"meaning", text("one sentence")},
+                      {"source", text("paper and section of the range")}},
+                     "one criterion"),
+              "criteria of a healthy closure, of a mitral valve: regions anterior and posterior, an annulus");
+}
+
 OrderedJson metrics() {
   return object(properties_of(metric_rows({})),
                 "what was measured on the closed shape; null where not defined for the scene");
@@ -344,6 +357,7 @@ std::string result_schema() {
               {"metrics", metrics()},
               {"judge", text("who counted the intersections: cgal, or own exact predicates")},
               {"leaflets", leaflets(), Need::Optional},
+              {"healthy_closure", healthy_closure(), Need::Optional},
               {"distance_to_reference", reference_distance(), Need::Optional},
               {"accuracy", accuracy(statuses), Need::Optional},
               {"counters", counters()},

@@ -38,6 +38,7 @@ void add_line_arrays(const Fields& fields, std::vector<VtpArray>& arrays) {
   };
   add("line_strain", fields.line_strain);
   add("line_cauchy_stress_kpa", kKilopascals * fields.line_stress);
+  add("line_yield_ratio", fields.line_yield_ratio);
 }
 
 // Flags as a row of `count` numbers; 0 behind the last.
@@ -127,6 +128,9 @@ VtpSurface closed_surface(const Model& model, const Fields& fields) {
     surface.triangle_arrays.push_back({"principal_stress_2_mpa", fields.principal_stress.row(1), false});
     add_stresses(fields, surface.triangle_arrays);
   }
+  if (fields.yield_ratio.size() > 0)
+    surface.triangle_arrays.push_back(
+        {"yield_ratio", over_nodes(fields.yield_ratio, fields.yield_ratio.size()), false});
   if (model.fibres.cols() > 0) {
     surface.triangle_arrays.push_back(
         {"fibre", carried(model.fibres, model.mesh.triangles, model.X, fields.x), false});

@@ -3,6 +3,22 @@
 #include "core/number_text.hpp"
 
 namespace coapt {
+namespace {
+
+// "3 of 630 facets (12, 45, 300)"; empty where none is beyond its yield.
+std::string yielded(const Vector& ratios, const char* what) {
+  constexpr long kNamed = 8;
+  const long count = (ratios.array() > 1).count();
+  if (count == 0) return "";
+  std::string names;
+  long named = 0;
+  for (Eigen::Index k = 0; k < ratios.size() && named < kNamed; ++k)
+    if (ratios[k] > 1) names += (named++ > 0 ? ", " : "") + std::to_string(k);
+  return std::to_string(count) + " of " + std::to_string(ratios.size()) + " " + what + " (" + names +
+         (count > kNamed ? ", ...)" : ")");
+}
+
+}  // namespace
 
 std::vector<std::string> result_warnings(const Report& report) {
   std::vector<std::string> warnings = report.warnings;
@@ -13,6 +29,12 @@ std::vector<std::string> result_warnings(const Report& report) {
   if (report.branches && report.branches->equilibria.size() > 1)
     warnings.push_back("This shape is one of several equilibria: " + branches_message(*report.branches) +
                        ". Figures that differ between them are given with their range.");
+  const std::string facets = yielded(report.fields.yield_ratio, "facets"),
+                    chords = yielded(report.fields.line_yield_ratio, "chords");
+  if (!facets.empty() || !chords.empty())
+    warnings.push_back("Fibres beyond their yield: " + facets +
+                       (facets.empty() || chords.empty() ? "" : " and ") + chords +
+                       ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).");
   const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, report.branches);
   if (nodes.total() > 0)
     warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +

@@ -65,6 +65,23 @@ OrderedJson leaflets_json(const std::vector<LeafletMetrics>& leaflets) {
   return json;
 }
 
+OrderedJson criteria_json(const std::vector<HealthyCriterion>& criteria) {
+  const auto bound = [](const std::optional<double>& limit) {
+    return limit ? number_json(*limit) : OrderedJson(nullptr);
+  };
+  OrderedJson json = OrderedJson::array();
+  for (const HealthyCriterion& criterion : criteria)
+    json.push_back({{"name", criterion.name},
+                    {"unit", criterion.unit},
+                    {"value", number_json(criterion.value)},
+                    {"lowest", bound(criterion.lowest)},
+                    {"highest", bound(criterion.highest)},
+                    {"met", criterion.is_met()},
+                    {"meaning", criterion.meaning},
+                    {"source", criterion.source}});
+  return json;
+}
+
 OrderedJson counters_json(const Model& model, const Result& result) {
   std::map<TermKind, long> elements;
   for (const auto& term : model.objective->terms()) elements[kind_of(*term)] += term->counters().elements;
@@ -282,6 +299,8 @@ std::string result_json(const Model& model, const Report& report) {
       {"metrics", rows_json(metric_rows(report.metrics))},
       {"judge", report.metrics.intersection_checker}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
+  if (!report.metrics.healthy_closure.empty())
+    json["healthy_closure"] = criteria_json(report.metrics.healthy_closure);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);
   if (report.accuracy) json["accuracy"] = accuracy_json(*report.accuracy);
   json["counters"] = counters_json(model, result);

@@ -25,7 +25,8 @@ constexpr int kPatience = 100;          // iterations
 
 void check(const RegionTuningOptions& options) {
   std::vector<std::string> defects;
-  if (!(options.yield_strain > 0)) defects.emplace_back("--yield-strain: must be above 0");
+  if (options.yield_strain && !(*options.yield_strain > 0))
+    defects.emplace_back("--yield-strain: must be above 0");
   if (!(options.greatest_factor > 1)) defects.emplace_back("--greatest-factor: must be above 1");
   if (options.orifice_limit_mm2 && !(*options.orifice_limit_mm2 > 0))
     defects.emplace_back("--orifice: must be an area above 0");
@@ -33,17 +34,27 @@ void check(const RegionTuningOptions& options) {
 }
 
 bool is_good(const TuningState& state, const std::optional<double>& orifice_limit_mm2) {
-  return state.strained_chords == 0 &&
+  return state.strained_chords + state.strained_facets == 0 &&
          !(orifice_limit_mm2 && state.orifice_area_mm2 && *state.orifice_area_mm2 > *orifice_limit_mm2);
+}
+
+bool has_yield(const Model& model) {
+  return std::any_of(model.lines.begin(), model.lines.end(),
+                     [](const Line& line) { return std::isfinite(line.yield_strain); }) ||
+         std::any_of(model.membrane_patches.begin(), model.membrane_patches.end(),
+                     [](const MembranePatch& patch) { return patch.yield_ratio != nullptr; });
 }
 
 std::string refusal(const RegionTuning& found, const RegionTuningOptions& options) {
   return "no factors from " + number_text(1 / options.greatest_factor, 6) + " to " +
          number_text(options.greatest_factor, 6) +
-         " were found: " + std::to_string(found.after.strained_chords) + " chords stay above a strain of " +
-         number_text(options.yield_strain, 6) + ", the most at " +
-         fixed_text(found.after.max_chord_strain, 4) + ", with an orifice of " +
-         fixed_text(found.after.orifice_area_mm2.value_or(0), 2) + " mm2 (limit " +
+         " were found: " + std::to_string(found.after.strained_chords) + " chords " +
+         (options.yield_strain ? "stay above a strain of " + number_text(*options.yield_strain, 6) +
+                                     ", the most at " + fixed_text(found.after.max_chord_strain, 4)
+                               : "and " + std::to_string(found.after.strained_facets) +
+                                     " facets stay beyond their yield, the most at " +
+                                     fixed_text(found.after.max_yield_ratio, 3) + " times it") +
+         ", with an orifice of " + fixed_text(found.after.orifice_area_mm2.value_or(0), 2) + " mm2 (limit " +
          fixed_text(found.orifice_limit_mm2.value_or(0), 2) + ")";
 }
 
@@ -87,7 +98,8 @@ void finish(const TunedScene& tuned, const RegionTuningOptions& options, const S
     found.message = "the scene with the factors that were found is not solved: " + last.message;
   } else if (is_good(found.after, found.orifice_limit_mm2)) {
     found.is_reached = true;
-    found.message = "no chord exceeds its yield strain any more";
+    found.message = options.yield_strain ? "no chord exceeds its yield strain any more"
+                                         : "no chord and no facet exceeds its yield any more";
   } else {
     found.message = refusal(found, options);
   }
@@ -128,6 +140,9 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   if (options.orifice_limit_mm2 && annulus_of(own) == nullptr)
     throw InputError("--orifice: " + scene.file.string() +
                      ": has no node set \"annulus\", so that no orifice is measured; leave it out");
+  if (!options.yield_strain && !has_yield(own))
+    throw InputError("--yield-strain: missing, and no term of " + scene.file.string() +
+                     " has a `yield_strain`; give one of them");
   const TunedScene tuned(scene, std::move(geometry), options);
 
   RegionTuning found;

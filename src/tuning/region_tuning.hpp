@@ -1,5 +1,6 @@
-// Finds the stiffness of each region of the leaflets with which no chord is strained beyond its yield while
-// the valve closes, after the tuning of 14 regions in Toma et al. 2016.
+// Finds the stiffness of each region of the leaflets with which no chord, and where they have a yield of
+// their own no leaflet, is strained beyond its yield while the valve closes, after the tuning of 14 regions
+// in Toma et al. 2016.
 //
 // Unknown are the logarithms of a factor per region on all moduli of the membrane, and, where wanted, of one
 // per elastic cable term on the cross-sections. Minimised is the sum of squares of what exceeds the limits
@@ -18,8 +19,9 @@ namespace coapt {
 
 // How a valve stands with certain factors.
 struct TuningState {
-  double max_chord_strain = 0;  // length over rest length, less 1
-  int strained_chords = 0;      // beyond the yield strain
+  double max_chord_strain = 0;                   // length over rest length, less 1
+  double max_yield_ratio = 0;                    // of chords and facets: strain over that at yield
+  int strained_chords = 0, strained_facets = 0;  // beyond the yield strain
   std::optional<double> orifice_area_mm2;
 };
 
@@ -33,7 +35,9 @@ struct TunedFactor {
 struct RegionTuningOptions {
   int regions = 14;  // 0: the regions of the scene's mesh as they are
   int zones = 2;     // from annulus to free edge
-  double yield_strain = 0;
+  // Of every chord; empty: chords and leaflets each by the yield of their own fibres (`yield_strain` of
+  // terms).
+  std::optional<double> yield_strain;
   std::optional<double> orifice_limit_mm2;  // empty: 2 % of the annulus area
   bool tunes_chords = false;                // the cross-sections too
   double greatest_factor = 10;              // and its inverse is the least
@@ -45,8 +49,7 @@ struct RegionTuning {
   std::string scene_file;
   bool is_reached = false;
   std::string message;  // one sentence
-  double yield_strain = 0;
-  std::optional<double> orifice_limit_mm2;
+  std::optional<double> yield_strain, orifice_limit_mm2;
   TuningState before, after;
   std::vector<TunedFactor> regions, chords;
   std::vector<int> region_of_triangle;

@@ -19,13 +19,15 @@ Table factor_table(const RegionTuning& tuning) {
 void write_region_tuning(const std::filesystem::path& folder, const RegionTuning& tuning) {
   const auto state = [](const TuningState& s) -> OrderedJson {
     return {{"max_chord_strain", number_json(s.max_chord_strain)},
+            {"max_yield_ratio", number_json(s.max_yield_ratio)},
             {"strained_chords", s.strained_chords},
+            {"strained_facets", s.strained_facets},
             {"orifice_area_mm2", number_json(s.orifice_area_mm2)}};
   };
   OrderedJson json = {{"scene", tuning.scene_file},
                       {"reached", tuning.is_reached},
                       {"message", tuning.message},
-                      {"yield_strain", tuning.yield_strain},
+                      {"yield_strain", number_json(tuning.yield_strain)},
                       {"orifice_limit_mm2", number_json(tuning.orifice_limit_mm2)},
                       {"before", state(tuning.before)},
                       {"after", state(tuning.after)},

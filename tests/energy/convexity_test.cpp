@@ -46,6 +46,29 @@ TEST(ConvexInC, CrimpedFibresAreForEveryCrimp) {
     }
 }
 
+// Where its fibres yield, or their active stress has set in, sigma' < sigma/l: both are exact, neither
+// convex.
+TEST(ConvexInC, YieldingAndActiveFibresAreNotButPopulationsInSpaceAre) {
+  CrimpedFibreLaw law{0.01, CrimpedFibre(50, 5, 1, 1e-4), 0.3};
+  law.splay_out_of_plane = 0.3;
+  law.second_population = 0.5;
+  law.second_angle = 1;
+  double least = 1, active_least = 1, yielding_least = 1;
+  CrimpedFibreLaw active = law, yielding = law;
+  active.fibre = CrimpedFibre(0.01, 5, 1, 1e-4);  // which outweigh it otherwise
+  active.shear_modulus = 1e-3;
+  active.active_stress = 0.2;
+  yielding.fibre = law.fibre.yielding(0.02, 1);
+  for (const PlaneState& s : random_states(1.9)) {
+    least = std::min(least, least_share(law, s));
+    active_least = std::min(active_least, least_share(active, s));
+    yielding_least = std::min(yielding_least, least_share(yielding, s));
+  }
+  EXPECT_GT(least, -1e-12);
+  EXPECT_LT(active_least, -1e-6);
+  EXPECT_LT(yielding_least, -1e-6);
+}
+
 // Below the knees it is where (1 - nu r e_c)(1 - nu e_f/r) > nu^2 l_f l_c, r^2 = E_c/E_f, both factors being
 // positive.
 TEST(ConvexInC, OrthotropicIsWithinABoundAlone) {

@@ -92,6 +92,20 @@ TYPED_TEST(TissueLaw, AgreesWithAutomaticDifferentiationOfItsFormula) {
               "");
 }
 
+// Two populations that cross at any other angle than a right one couple stretch and shear.
+TEST(Tissue, ObliquePopulationsPassTheSuiteInEveryRegime) {
+  const auto law = [](double stress) { return laws::CrimpedPopulations::oblique(stress, 1.1); };
+  expect_passes_everywhere<CrimpedFibreLaw>("oblique populations", law);
+  const TriangleMesh mesh = patch();
+  oracle::CrimpedPopulations density = Answer<laws::CrimpedPopulations>::density();
+  density.angle = 1.1;
+  const oracle::Tissue<oracle::CrimpedPopulations> energy{mesh.triangles, mesh.vertices, kFibre,
+                                                          kTissueThickness, density};
+  for (const auto& f :
+       {deformation(1.3, 0.05, 1.2), deformation(1.1, 0.3, 1.05), deformation(0.9, 0.1, 0.95)})
+    EXPECT_EQ(compare_with_autodiff(patch_case<CrimpedFibreLaw>("oblique", law, f, false), energy, 1e-8), "");
+}
+
 // The definition: no shortening P >= 0 that wrinkles might hide leaves less energy; and the stress pulls.
 template <typename Law>
 void expect_least(const std::string& label, const Law& law) {

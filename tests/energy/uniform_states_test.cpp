@@ -160,6 +160,102 @@ TEST(CrimpedFibre, InAMatrixHasTheStiffnessOfTheMatrixBeforeItIsStraight) {
   }
 }
 
+TEST(CrimpedFibre, KeepsAShareOfItsStiffnessBeyondItsYield) {
+  const CrimpedFibre whole(8, 9, 1.6, 0.02), yielding = whole.yielding(0.1, 0.75);
+  EXPECT_TRUE(std::isinf(whole.yield_elongation()));
+  const double yield = yielding.yield_elongation();
+  EXPECT_NEAR(yield, whole.limit() * 1.1 - 1, 1e-14);
+  for (const double e : {0.01, 0.1, 0.9 * yield}) EXPECT_EQ(yielding.at(e).stress, whole.at(e).stress) << e;
+  const double far = yield + 0.05, slope = 8 / whole.limit();
+  EXPECT_NEAR(yielding.at(far).stiffness, 0.25 * slope, 1e-12);
+  EXPECT_NEAR(yielding.at(far).stress, whole.at(far).stress - 0.75 * slope * 0.05, 1e-12);
+  EXPECT_EQ(whole.yielding(0.1, 0).at(far).stress, whole.at(far).stress);  // told of, and no more
+}
+
+// K of a mean over directions, for a direction in the plane; what fibres out of the plane pull.
+TEST(CrimpedFibre, DispersionIsTheMeanOverDirectionsInSpace) {
+  for (const double angle : {0.0, 0.6, kQuarter})
+    for (const double out : {0.0, 0.3, 1.2}) {
+      const FibreDispersion k = fibre_dispersion(0.4, out, angle);
+      const Eigen::Matrix3d K = oracle::mean_of_directions(0.4, out, angle);
+      EXPECT_NEAR(k.k11, K(0, 0), 1e-12);
+      EXPECT_NEAR(k.k22, K(1, 1), 1e-12);
+      EXPECT_NEAR(k.k12, K(0, 1), 1e-12);
+      EXPECT_NEAR(k.k33, K(2, 2), 1e-12);
+    }
+  CrimpedFibreLaw flat = laws::Crimped::law(1), deep = flat;
+  deep.splay_out_of_plane = 0.5;
+  const Eigen::Matrix2d pulled = plane(1.2, 0, 1.2);  // thinner: the fibres through it grow shorter
+  EXPECT_LT(Single(deep, pulled).density(), 0.9 * Single(flat, pulled).density());
+}
+
+// Elongation over that at yield, of the greater of both populations, behind wrinkles too.
+TEST(CrimpedFibre, TellsHowNearItIsToItsYield) {
+  using Kernel = CstCrimpedFibre;
+  CrimpedFibreLaw law = laws::Crimped::law(1);
+  law.splay = 0;
+  law.fibre = law.fibre.yielding(0.1, 0);
+  const double yield = law.fibre.yield_elongation();
+  const auto ratio = [](const CrimpedFibreLaw& of, const Eigen::Matrix2d& F) {
+    const Single<CrimpedFibreLaw> s(of, F);
+    return Kernel::yield_ratio(s.rest, s.x, nullptr);
+  };
+  EXPECT_NEAR(ratio(law, plane(1 + yield, 0, 1)), 1, 1e-12);
+  EXPECT_NEAR(ratio(law, plane(1 + yield, 0, 0.3)), 1, 1e-9);
+  EXPECT_EQ(ratio(law, plane(0.9, 0, 1 + yield)), 0);
+  EXPECT_EQ(ratio(law, plane(0.9, 0, 0.9)), 0);
+  law.second_population = 0.1;
+  EXPECT_NEAR(ratio(law, plane(1, 0, 1 + 0.5 * yield)), 0.5, 1e-12);
+}
+
+TEST(CrimpedFibre, ItsNearnessToYieldHasExactDerivativesTautAndWrinkled) {
+  for (const auto& F : {plane(1.2, 0.1, 1.1), plane(1.3, 0.1, 0.6), plane(0.7, -0.1, 1.3)}) {
+    const CrimpedFibreLaw law = laws::CrimpedPopulations::oblique(1, 1.1);
+    const Single<CrimpedFibreLaw> s(law, F, 0.4);
+    CstVector g;
+    CstCrimpedFibre::yield_ratio(s.rest, s.x, &g);
+    EXPECT_GT(g.norm(), 0.1);
+    for (int k = 0; k < 9; ++k) {
+      constexpr double kStep = 1e-5;
+      const auto at = [&](double by) {
+        CstVector x = s.x;
+        x[k] += by * kStep;
+        return CstCrimpedFibre::yield_ratio(s.rest, x, nullptr);
+      };
+      EXPECT_NEAR(g[k], (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * kStep), 1e-7) << F << "\n" << k;
+    }
+  }
+}
+
+// A tissue that had shrunk by a tenth along its fibres when its shape was taken is at rest when it is that
+// much longer, and has then the energy of its greater volume.
+TEST(RestShape, IsTheReferenceShapeScaledAlongTheFibreAndAcross) {
+  const Points X = (Points(3, 3) << 0, 1.1, 0.3, 0, 0.1, 0.9, 0, 0, 0).finished();
+  const Vec3 fibre(std::cos(0.7), std::sin(0.7), 0);
+  const Eigen::Matrix2d Q = Eigen::Rotation2Dd(0.7).toRotationMatrix();
+  const CrimpedFibreLaw law = laws::Crimped::law(1);
+  const auto deformed = [&](const Eigen::Matrix2d& F) {
+    Points x = X;
+    x.topRows<2>() = F * X.topRows<2>();
+    return CstVector(Eigen::Map<const CstVector>(x.data()));
+  };
+  const auto grown = CstCrimpedFibre::rest(X.col(0), X.col(1), X.col(2), fibre, law, 0.4, true, {1.1, 0.95});
+  const auto plain = CstCrimpedFibre::rest(X.col(0), X.col(1), X.col(2), fibre, law, 0.4);
+  const Eigen::Matrix2d scale = Q * Eigen::Vector2d(1.1, 0.95).asDiagonal() * Q.transpose();
+  CstVector g;
+  EXPECT_NEAR(CstCrimpedFibre::evaluate(grown, deformed(scale), &g, nullptr), 0, 1e-15);
+  EXPECT_LT(g.norm(), 1e-14);
+  const Eigen::Matrix2d F = Q * plane(1.2, 0.1, 1.05) * Q.transpose();
+  EXPECT_NEAR(CstCrimpedFibre::evaluate(grown, deformed(F * scale), nullptr, nullptr) /
+                  CstCrimpedFibre::evaluate(plain, deformed(F), nullptr, nullptr),
+              1.1 * 0.95, 1e-12);
+  // With other corners in reference it keeps its scales.
+  const Corners from{X.col(0), X.col(1), X.col(2)}, to{2 * X.col(0), 2 * X.col(1), 2 * X.col(2)};
+  const auto twice = CstCrimpedFibre::reshaped(grown, from, to);
+  EXPECT_NEAR(twice.volume / grown.volume, 4, 1e-12);
+  EXPECT_NEAR(CstCrimpedFibre::evaluate(twice, 2 * deformed(scale), nullptr, nullptr), 0, 1e-14);
+}
+
 // Fibres in all directions alike are isotropic.
 TEST(CrimpedFibre, SplayedEvenlyIsIsotropic) {
   CrimpedFibreLaw even = laws::Crimped::law(1);

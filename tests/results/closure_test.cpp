@@ -1,7 +1,7 @@
 // Coaptation, orifice, tenting and prolapse of valves for which they are known.
 #include "mesh/mesh_topology.hpp"
 #include "mesh/shapes.hpp"
-#include "results/coaptation_height.hpp"
+#include "results/detail/coaptation_height.hpp"
 #include "results/metrics.hpp"
 #include "results/result_surfaces.hpp"
 #include "support/trough_valve.hpp"
@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace coapt {
 namespace {
@@ -128,6 +129,51 @@ TEST(Closure, WritesItsLineAndOutlinesWithOneValueForEachStretch) {
   EXPECT_TRUE((line.line_arrays[2].values.array() == 1).all());
   EXPECT_NEAR(line.line_arrays[3].values.mean(), 4, 0.1);
   EXPECT_EQ(orifice.lines.cols(), orifice.vertices.cols());
+}
+
+const HealthyCriterion& criterion(const Metrics& m, const std::string& name) {
+  for (const HealthyCriterion& each : m.healthy_closure)
+    if (each.name == name) return each;
+  throw std::runtime_error("no criterion " + name);
+}
+
+TEST(HealthyClosure, AsksForTwoThirdsOfTheDiameterUnderTheAnteriorLeaflet) {
+  Model model = trough_model({});
+  const Metrics half = measured(model, model.X);
+  EXPECT_NEAR(criterion(half, "anterior_share").value, 0.5, 0.02);
+  EXPECT_FALSE(criterion(half, "anterior_share").is_met());
+  EXPECT_NEAR(criterion(half, "coaptation_height_mm").value, half.coaptation_height_mm.value(), 1e-12);
+  EXPECT_TRUE(criterion(half, "coaptation_height_mm").is_met());
+  for (auto&& p : model.X.colwise())  // the posterior half is half as deep, the anterior one 2/3 of all
+    if (p[0] > 0.1) p[0] = 0.1 + 0.5 * (p[0] - 0.1);
+  model.mesh.vertices = model.X;
+  const Metrics healthy = measured(model, model.X);
+  EXPECT_NEAR(criterion(healthy, "anterior_share").value, 2.0 / 3, 0.02);
+  EXPECT_TRUE(criterion(healthy, "anterior_share").is_met());
+}
+
+TEST(HealthyClosure, EstimatesTheRegurgitantVolumeWhereThePressureIsKnown) {
+  Model model = trough_model({.gap = 1}, 0.3);
+  EXPECT_EQ(measured(model, model.X).healthy_closure.size(), 2u);
+  model.applied_pressure = 0.016;  // 5.5 m/s
+  const Metrics open = measured(model, model.X);
+  const HealthyCriterion& volume = criterion(open, "regurgitant_volume_ml");
+  EXPECT_NEAR(volume.value, open.regurgitant_area_mm2.value() * std::sqrt(2 * 16000 / 1060.0) * 0.3, 1e-9);
+  EXPECT_GT(volume.value, 20);
+  EXPECT_FALSE(volume.is_met());
+  EXPECT_EQ(range_in_words(volume), "at most 5 ml");
+  Model closed = trough_model({.gap = 0.2}, 0.3);
+  closed.applied_pressure = 0.016;
+  EXPECT_TRUE(criterion(measured(closed, closed.X), "regurgitant_volume_ml").is_met());
+}
+
+TEST(HealthyClosure, IsAskedOfMitralValvesAlone) {
+  Model model = trough_model({});
+  ASSERT_FALSE(measured(model, model.X).healthy_closure.empty());
+  model.mesh.region_names = {"anterior", "posterior", "septal"};
+  EXPECT_TRUE(measured(model, model.X).healthy_closure.empty());
+  model.mesh.region_names = {"left", "right"};
+  EXPECT_TRUE(measured(model, model.X).healthy_closure.empty());
 }
 
 // A disc of radius 10 bulged by a height; its rim is the annulus.

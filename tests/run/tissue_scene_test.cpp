@@ -3,10 +3,12 @@
 #include "core/error.hpp"
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable_law.hpp"
+#include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/cst_isotropic.hpp"
 #include "exchange/import.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
+#include "results/result_warnings.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
 #include "solve/solve_scene.hpp"
@@ -195,6 +197,46 @@ TEST_F(TissueScene, RefusesLawsThatMakeNoSense) {
   EXPECT_TRUE(refuses(sheet + R"({"type": "cable_bilinear", "edges": "boundary", "area": "1 mm^2",
       "young_pre": "1 MPa", "young_post": "2 MPa", "transition_strain": 0.001})",
                       "knee: is greater"));
+}
+
+TEST_F(TissueScene, TakesAllThatCrimpedFibresMayBe) {
+  const std::string fibres = R"({"type": "cst_crimped_fibre", "crimp_ratio": 9, "radius_ratio": 1.6,
+      "thickness": "0.5 mm", "splay": 0.3, "splay_out_of_plane": 0.2, "second_population": 0.4,
+      "second_angle": "60 deg", "active_stress": "30 kPa", "yield_strain": 0.05, "failure": 0.5,
+      "rest_scale_fibre": 1.1, "rest_scale_cross": 0.9})";
+  const std::string chords = R"(, {"type": "cable_crimped_fibre", "edges": "boundary", "area": "1 mm^2",
+      "fibre_young": "40 MPa", "crimp_ratio": 20, "radius_ratio": 1.6, "yield_strain": 0.02})";
+  const Model model = build(scene(fibres + chords));
+  const auto& rest = elements_of<CstCrimpedFibre>(model)[0];
+  EXPECT_EQ(rest.law.splay_out_of_plane, 0.2);
+  EXPECT_EQ(rest.law.second_population, 0.4);
+  EXPECT_NEAR(rest.law.second_angle, std::acos(0.5), 1e-12);
+  EXPECT_DOUBLE_EQ(rest.law.active_stress, 0.03);
+  EXPECT_NEAR(rest.law.fibre.yield_elongation(), rest.law.fibre.limit() * 1.05 - 1, 1e-12);
+  EXPECT_EQ(rest.rest_scale, Eigen::Vector2d(1.1, 0.9));
+  const double line_yield = elements_of<CableCrimpedFibre>(model)[0].law.yield_elongation();
+  EXPECT_EQ(model.lines[0].yield_strain, line_yield);
+  EXPECT_LT(line_yield, 0.1);
+  // Drawn out by a fifth the sheet is within its yield, and its edges are beyond theirs: named, not only
+  // counted.
+  Report report;
+  report.fields = compute_fields(model, 1.2 * model.X);
+  report.metrics = measure(model, model.q0, report.fields);
+  EXPECT_EQ(report.metrics.yielded_facets.value(), 0);
+  EXPECT_EQ(report.metrics.yielded_chords.value(), std::ssize(model.lines));
+  EXPECT_NEAR(report.metrics.max_chord_yield_ratio.value(), 0.2 / line_yield, 1e-9);
+  EXPECT_GT(report.metrics.max_yield_ratio.value(), 0.1);
+  const std::vector<std::string> warnings = result_warnings(report);
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& text) {
+    return text.find("beyond their yield: ") != std::string::npos &&
+           text.find("chords (0, 1, 2") != std::string::npos;
+  }));
+  EXPECT_TRUE(refuses(R"({"type": "cst_crimped_fibre", "crimp_ratio": 9, "radius_ratio": 1.6,
+      "thickness": "0.5 mm", "failure": 0.5})",
+                      "failure: says nothing without yield_strain"));
+  const Model plain = build(scene(R"({"type": "cst_crimped_fibre", "crimp_ratio": 9, "radius_ratio": 1.6,
+      "thickness": "0.5 mm"})"));
+  EXPECT_EQ(compute_fields(plain, plain.X).yield_ratio.size(), 0);
 }
 
 TEST_F(TissueScene, BuildsCablesOfEveryLaw) {

@@ -10,6 +10,7 @@
 #include "run/judged_scene.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
+#include "scene/terms/term_types.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/sanitized.hpp"
 #include "support/temporary_folder.hpp"
@@ -195,6 +196,13 @@ TEST(ValveModels, TomasFibresHaveTheNumbersOfThePaper) {
         EXPECT_EQ(spec.parameters.number("radius_ratio"), amplitude);
         EXPECT_EQ(spec.parameters.number("fibre_young"), 48);
         EXPECT_DOUBLE_EQ(spec.parameters.number("shear_modulus"), 0.01);
+        EXPECT_EQ(spec.parameters.number("yield_strain"), 0.04);
+        EXPECT_EQ(spec.parameters.number("failure"), 0);
+        if (is_membrane(spec)) {
+          EXPECT_GT(spec.parameters.number("second_population"), 0);
+          EXPECT_GT(spec.parameters.number("splay_out_of_plane"), 0);
+          EXPECT_EQ(spec.parameters.number("active_stress"), 0);
+        }
         ++checked;
       }
   EXPECT_EQ(checked, 4);

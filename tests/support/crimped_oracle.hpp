@@ -22,6 +22,23 @@ inline double mean_square_cosine(double deviation) {
   return sum / weights;
 }
 
+// Mean of a a^T over directions whose angles in the plane, about a mean at an angle to the first axis, and
+// out of it are normally distributed with these standard deviations [rad].
+inline Eigen::Matrix3d mean_of_directions(double in_plane, double out_of_plane, double angle) {
+  constexpr int kReach = 64;  // steps to either side, eight to a deviation
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  double weights = 0;
+  for (int i = -kReach; i <= kReach; ++i)
+    for (int j = -kReach; j <= kReach; ++j) {
+      const double u = i / 8.0, v = j / 8.0, weight = std::exp(-0.5 * (u * u + v * v));
+      const double t = angle + u * in_plane, p = v * out_of_plane;
+      const Eigen::Vector3d a(std::cos(t) * std::cos(p), std::sin(t) * std::cos(p), std::sin(p));
+      sum += weight * a * a.transpose();
+      weights += weight;
+    }
+  return sum / weights;
+}
+
 // Integral of f from a to b by 64 pieces of Gauss's five-point rule.
 template <typename Function>
 double gauss_integral(const Function& f, double a, double b) {
@@ -39,9 +56,11 @@ double gauss_integral(const Function& f, double a, double b) {
 }
 
 // A helix that is pulled straight. ratio: H0/R0; slenderness: R0/r0; window: half of the stretch over which
-// the stiffness rises evenly from that of the crimp at its limit to that of the straight fibre.
+// the stiffness rises evenly from that of the crimp at its limit to that of the straight fibre; from a strain
+// of the straight fibre on, its yield, it loses a share of that over the same window.
 struct CrimpedCurve {
   double young, ratio, slenderness, window;
+  double yield = 1e9, failure = 0;
   double R0 = 2.5, H0 = ratio * R0, r0 = R0 / slenderness;
   double L0 = std::sqrt(std::pow(2 * std::numbers::pi * R0, 2) + H0 * H0), limit = L0 / H0;
   double secant = young * H0 * H0 /
@@ -66,8 +85,20 @@ struct CrimpedCurve {
     return crimped(l).derivatives()[0];
   }
 
+  double yield_stretch() const { return limit * (1 + yield); }
+  template <typename T>
+  T lost(const T& l) const {
+    const T past = T(l - T(yield_stretch()));
+    if (number(past) <= -window) return T(0.0);
+    if (number(past) >= window) return times(failure * young / limit, past);
+    return times(failure * young / limit / (4 * window), squared(T(past + T(window))));
+  }
   template <typename T>
   T stress(const T& l) const {
+    return T(whole(l) - lost(l));
+  }
+  template <typename T>
+  T whole(const T& l) const {
     const double past = number(l) - limit;
     if (number(l) <= 1) return T(0.0);
     if (past >= window) return T(T(secant * (limit - 1) - young) + times(young / limit, l));
@@ -82,7 +113,9 @@ struct CrimpedCurve {
   T energy(const T& l) const {
     if constexpr (std::is_same_v<T, double>) {
       double sum = 0, from = 1;
-      for (const double to : {limit - window, limit, limit + window, std::max(l, limit + window)}) {
+      const double end = yield_stretch();
+      for (const double to : {limit - window, limit, limit + window, end - window, end, end + window,
+                              std::max(l, end + window)}) {
         if (from < std::min(to, l))
           sum += gauss_integral([this](double at) { return stress(at); }, from, std::min(to, l));
         from = to;

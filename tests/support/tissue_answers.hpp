@@ -134,6 +134,28 @@ struct Answer<laws::Crimped> {
   }
 };
 
+template <>
+struct Answer<laws::CrimpedPopulations> {
+  static oracle::CrimpedPopulations density() {
+    return {0.05, {8, 9, 1.6, 0.02, 0.06, 0.5}, 0.3, 0.25, 0.4, 0.5 * std::numbers::pi, 0.1};
+  }
+  static Eigen::Matrix2d nominal(const Eigen::Matrix2d& F) {
+    const oracle::CrimpedPopulations law = density();
+    Eigen::Matrix2d sum = 0.025 * answers::spread(F);
+    const auto add = [&](double angle, double share, double active) {
+      const Eigen::Matrix3d K = law.dispersion(angle);
+      const Eigen::Matrix2d in_plane = K.topLeftCorner<2, 2>();
+      const double l = std::sqrt((in_plane * F.transpose() * F).trace() + K(2, 2) * answers::thin(F));
+      const double pull = l > 1 ? active * -std::expm1(-(l - 1) / law.kReach) : 0;
+      sum += (share * law.fibre.stress(l) + pull) / l *
+             (F * in_plane - K(2, 2) * answers::thin(F) * answers::dual(F));
+    };
+    add(0, 1, law.active);
+    add(law.angle, law.share, 0);
+    return sum;
+  }
+};
+
 // The same where the fibre lies at an angle to the first axis.
 template <typename Entry>
 Eigen::Matrix2d nominal_stress(const Eigen::Matrix2d& F, double fibre_angle) {

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -142,6 +143,25 @@ struct Crimped {
   }
 };
 
+// All that Toma et al. 2016 ask of a leaflet: two populations that are dispersed in space, an active part,
+// and fibres that yield.
+struct CrimpedPopulations {
+  static constexpr const char* kName = "crimped_populations";
+  static constexpr bool kStiffens = false;
+  // The second population at an angle to the first; only across it do strips pulled along the fibre not
+  // shear.
+  static CrimpedFibreLaw oblique(double stress, double angle) {
+    CrimpedFibreLaw law{0.05 * stress, CrimpedFibre(8 * stress, 9, 1.6, 0.02).yielding(0.06, 0.5), 0.3};
+    law.splay_out_of_plane = 0.25;
+    law.second_population = 0.4;
+    law.second_angle = angle;
+    law.active_stress = 0.1 * stress;
+    return law;
+  }
+  static CrimpedFibreLaw law(double stress) { return oblique(stress, 0.5 * std::numbers::pi); }
+  static Knee knee() { return {}; }
+};
+
 // Chords. knee(): the elongation at which the slope changes at once where the window is zero.
 struct BilinearChord {
   static constexpr const char* kName = "bilinear";
@@ -190,6 +210,15 @@ struct CrimpedChordInMatrix {
   static std::optional<double> knee() { return law(1).fibre.limit() - 1; }
 };
 
+// With fibres that yield and keep two fifths of their stiffness.
+struct YieldingChord {
+  static constexpr const char* kName = "crimped_fibre_that_yields";
+  static CrimpedLine law(double stress) {
+    return {CrimpedFibre(20 * stress, 9, 1.6, 0.02).yielding(0.05, 0.6), 0.3 * stress};
+  }
+  static std::optional<double> knee() { return law(1).yield_elongation(); }
+};
+
 // The law with its knees sharp, or as it is where it has none.
 template <typename Entry>
 auto with_sharp_knees(double stress) {
@@ -201,11 +230,11 @@ auto with_sharp_knees(double stress) {
 
 }  // namespace laws
 
-using MembraneLaws =
-    testing::Types<laws::Bilinear, laws::NeoHookean, laws::SoftNeoHookean, laws::Exponential,
-                   laws::SoftExponential, laws::Orthotropic, laws::MayNewmanYin, laws::Crimped>;
+using MembraneLaws = testing::Types<laws::Bilinear, laws::NeoHookean, laws::SoftNeoHookean, laws::Exponential,
+                                    laws::SoftExponential, laws::Orthotropic, laws::MayNewmanYin,
+                                    laws::Crimped, laws::CrimpedPopulations>;
 using ChordLaws = testing::Types<laws::BilinearChord, laws::SteepChord, laws::OgdenChord, laws::ToeChord,
-                                 laws::CrimpedChord, laws::CrimpedChordInMatrix>;
+                                 laws::CrimpedChord, laws::CrimpedChordInMatrix, laws::YieldingChord>;
 
 struct LawNames {
   template <typename Entry>

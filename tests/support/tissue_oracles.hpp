@@ -228,4 +228,34 @@ struct Crimped {
   }
 };
 
+// Two populations of fibres dispersed in space, an active part of the first; the thickness follows from the
+// constant volume.
+struct CrimpedPopulations {
+  double mu;
+  CrimpedCurve fibre;
+  double splay, out_of_plane, share, angle, active;
+
+  Eigen::Matrix3d dispersion(double at) const { return mean_of_directions(splay, out_of_plane, at); }
+  template <typename T>
+  T stretch(const Eigen::Matrix3d& k, const PlaneMetric<T>& c) const {
+    using std::sqrt;
+    const T thin = T(T(1.0) / determinant(c)), plane = T(times(k(0, 0), c.ff) + times(k(1, 1), c.cc));
+    const T other = T(times(2 * k(0, 1), c.fc) + times(k(2, 2), thin)), square = T(plane + other);
+    return T(sqrt(square));
+  }
+  static constexpr double kReach = 0.02;  // elongation over which the active stress sets in
+  template <typename T>
+  T pulled(const T& l) const {
+    if (number(l) <= 1) return T(0.0);
+    const T e = T(l - T(1.0)), decayed = exponential(times(-1 / kReach, e));
+    return times(active, T(e + times(kReach, T(decayed - T(1.0)))));
+  }
+  template <typename T>
+  T operator()(const PlaneMetric<T>& c) const {
+    const T first = stretch(dispersion(0), c), second = stretch(dispersion(angle), c);
+    const T passive = T(fibre.energy(first) + times(share, fibre.energy(second)));
+    return T(times(0.5 * mu, distortion(c)) + T(passive + pulled(first)));
+  }
+};
+
 }  // namespace coapt::oracle

@@ -2,6 +2,7 @@
 // leaflets of tissue.
 #include "tuning/region_tuning.hpp"
 
+#include "core/error.hpp"
 #include "exchange/import.hpp"
 #include "scene/build/build.hpp"
 #include "solve/solve_scene.hpp"
@@ -134,6 +135,39 @@ TEST_F(RegionTuningTest, SparesTheChordsOfLeafletsOfTissueInContact) {
   expect_tuned(scene("barrier", R"({"type": "cst_exponential", "name": "leaflets", "c0": "0.1 MPa",
       "c1": "0.02 MPa", "c2": 4, "thickness": "0.65 mm"})"),
                0.08);
+}
+
+// Leaflets and chords of crimped fibres, each with a yield of its own.
+TEST_F(RegionTuningTest, SparesLeafletsAndChordsByTheirOwnYield) {
+  const Scene valve = scene("none", R"({"type": "cst_crimped_fibre", "name": "leaflets", "crimp_ratio": 8.3,
+      "radius_ratio": 1.75, "fibre_young": "2 MPa", "shear_modulus": "50 kPa", "splay": 0.5,
+      "second_population": 0.5, "thickness": "0.65 mm", "yield_strain": 0.03})");
+  EXPECT_THROW((void)tune_regions(scene("none"), scene_solvers(), options_, {}), InputError);
+  const RegionTuning found = tune_regions(valve, scene_solvers(), options_, {});
+  std::printf("%s: %.3f of the yield to %.3f, %d facets beyond it at first, %d solves, %.2f s\n",
+              found.message.c_str(), found.before.max_yield_ratio, found.after.max_yield_ratio,
+              found.before.strained_facets, found.solves, found.wall_s);
+  EXPECT_GT(found.before.strained_facets, 0);
+  ASSERT_TRUE(found.is_reached) << found.message;
+  EXPECT_EQ(found.after.strained_facets, 0);
+  EXPECT_LE(found.after.max_yield_ratio, 1);
+}
+
+TEST_F(RegionTuningTest, DerivativesOfTheExcessOfFacetsAreExact) {
+  const Scene valve = scene("none", R"({"type": "cst_crimped_fibre", "name": "leaflets", "crimp_ratio": 8.3,
+      "radius_ratio": 1.75, "splay": 0.5, "second_population": 0.5, "thickness": "0.65 mm", "yield_strain": 0.03})");
+  const Model model = build(valve, scene_geometry(valve));
+  const YieldExcess excess(model, std::nullopt, std::nullopt);
+  std::srand(3);
+  const Points x = 1.6 * model.X + 0.05 * Points::Random(3, model.X.cols()),
+               motion = Points::Random(3, model.X.cols());
+  const Vector derived = excess.derivatives(x, {motion}).col(0);
+  EXPECT_GT(derived.norm(), 1);
+  const auto at = [&](double by) { return excess.values(x + by * 1e-5 * motion); };
+  EXPECT_LT((derived - (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / 12e-5).norm(), 1e-6 * derived.norm());
+  const Vector weights = Vector::LinSpaced(derived.size(), 1, 2);
+  EXPECT_NEAR(excess.pull_back(x, weights).cwiseProduct(motion).sum(), weights.dot(derived),
+              1e-9 * derived.norm());
 }
 
 }  // namespace

@@ -92,7 +92,10 @@ TYPED_TEST(TissueStiffness, S4InflatesASheetHoweverStiffForItsLoad) {
     expect_honest(found, named(TypeParam::kName, "Eh/(pL)", ratio));
     EXPECT_EQ(found.result.status, Status::Converged) << ratio << ": " << found.result.message;
     const double height = found.x.row(2).maxCoeff();
-    EXPECT_GT(height, 0.5 * std::cbrt(scene.pressure)) << ratio;
+    // The active stress sets in over a strain of 2 %, which stiffens its sheet tenfold beyond the modulus at
+    // rest.
+    const double least = std::is_same_v<TypeParam, laws::CrimpedPopulations> ? 0.25 : 0.5;
+    EXPECT_GT(height, least * std::cbrt(scene.pressure)) << ratio;
     EXPECT_LT(height, 1) << ratio;
     if constexpr (requires { IsotropicName<Law>::kType; }) {
       if (ratio < 1e5) continue;

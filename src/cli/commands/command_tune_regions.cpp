@@ -17,12 +17,13 @@ namespace {
 struct TuneRegionsArguments : StudyArguments {
   std::string regions = "14";
   RegionTuningOptions tuning;
-  double orifice = 0;
+  double orifice = 0, yield_strain = 0;
 };
 
 void print_state(const char* label, const TuningState& state) {
   std::printf("  %-22s greatest chord strain %.4f, %d chords beyond yield", label, state.max_chord_strain,
               state.strained_chords);
+  if (state.strained_facets > 0) std::printf(", %d facets", state.strained_facets);
   if (state.orifice_area_mm2) std::printf(", orifice %.2f mm2", *state.orifice_area_mm2);
   std::printf("\n");
   std::fflush(stdout);
@@ -33,6 +34,7 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
   const Scene scene = load_scene(arguments.scene);
   RegionTuningOptions options = arguments.tuning;
   options.regions = arguments.regions == "mesh" ? 0 : std::stoi(arguments.regions);
+  if (arguments.yield_strain > 0) options.yield_strain = arguments.yield_strain;
   if (arguments.orifice > 0) options.orifice_limit_mm2 = arguments.orifice;
   options.report = [](int round, const TuningState& state) {
     end_progress();
@@ -69,8 +71,10 @@ void add_tune_regions_command(CLI::App& app, int& exit_code) {
       "tune-regions", "Stiffness of each leaflet region with which no chord exceeds its yield strain");
   add_study_arguments(*command, *arguments);
   RegionTuningOptions& tuning = arguments->tuning;
-  command->add_option("--yield-strain", tuning.yield_strain, "That no chord may exceed")
-      ->required()
+  command
+      ->add_option(
+          "--yield-strain", arguments->yield_strain,
+          "That no chord may exceed (default: chords and leaflets each by the yield_strain of their term)")
       ->check(positive_defect);
   command
       ->add_option("--regions", arguments->regions,

@@ -57,21 +57,25 @@ struct CstFibrous {
     double volume = 0;      // V
     bool relaxes = true;    // a tension field
     Law law;
+    // Lengths at rest along the fibre and across it over those of the reference shape; `shape` and `volume`
+    // are those at rest.
+    Eigen::Vector2d rest_scale = Eigen::Vector2d::Ones();
   };
 
-  // fibre: its projection onto the triangle's plane is the first axis. Pre: the rest triangle is not
-  // degenerate, thickness > 0.
+  // fibre: its projection onto the triangle's plane is the first axis. thickness: at rest. Pre: the reference
+  // triangle is not degenerate, thickness > 0, both scales > 0.
   static Rest rest(const Vec3& X0, const Vec3& X1, const Vec3& X2, const Vec3& fibre, const Law& law,
-                   double thickness, bool relaxes = true) {
+                   double thickness, bool relaxes = true,
+                   const Eigen::Vector2d& rest_scale = Eigen::Vector2d::Ones()) {
     const CstShape shape = cst_shape(X0, X1, X2, fibre);
-    return {shape.inverse, shape.area * thickness, relaxes, law};
+    return scaled({shape.inverse, shape.area * thickness, relaxes, law, rest_scale});
   }
 
   // --- For parameters ---------------------------------------------------------------------------------
   static const Eigen::Matrix2d& shape(const Rest& rest) { return rest.shape; }
   static Rest reshaped(Rest rest, const Corners&, const Corners& X) {
-    rest.volume *= reshape(rest.shape, X);
-    return rest;
+    rest.volume *= reshape(rest.shape, X);  // the area in reference over that at rest
+    return scaled(std::move(rest));
   }
   static void stiffen(Rest& rest, double factor, bool /*is_size*/) { rest.volume *= factor; }
   static bool relaxes(const Rest& rest) { return rest.relaxes; }
@@ -93,6 +97,26 @@ struct CstFibrous {
     return rest;
   }
 
+  // Elongation of the fibres over that at which they yield, of the law as it is stretched behind the
+  // wrinkles.
+  static bool yields(const Rest& rest) requires requires(Law law) { law.yields(); }
+  { return rest.law.yields(); }
+  // g: its gradient, null where it is not wanted.
+  static double yield_ratio(const Rest& rest, const CstVector& x, CstVector* g) requires requires(Law law) {
+    law.yields();
+  }
+  {
+    const CstFrame frame = cst_frame(rest.shape, x);
+    const CstStrain e = cst_strain(frame);
+    const Metric c = respond(rest, e).stretched;
+    const PlaneInvariant ratio = rest.law.yield_ratio(c.c11, c.c22, c.c12);
+    if (g == nullptr) return ratio.value;
+    const Eigen::Vector3d slope =
+        follow(rest.law, c, {c.c11 - 1 - 2 * e.e11, c.c22 - 1 - 2 * e.e22}) * ratio.first;
+    cst_gradient(frame, {slope[0], slope[1], slope[2]}, *g);
+    return ratio.value;
+  }
+
   static MembraneState state(const Rest& rest, const CstVector& x) {
     const CstStrain e = cst_strain(cst_frame(rest.shape, x));
     const Response at = respond(rest, e);
@@ -112,11 +136,6 @@ struct CstFibrous {
  private:
   static constexpr double kRoundOff = 1e-14;  // of the stiffness: stress below it counts as none
 
-  struct Response {
-    PlaneEnergy w;
-    MembraneRegime regime = MembraneRegime::Slack;
-  };
-
   // C, in the axes of the fibre.
   struct Metric {
     double c11, c22, c12;
@@ -125,7 +144,36 @@ struct CstFibrous {
     }
   };
 
+  struct Response {
+    PlaneEnergy w;
+    MembraneRegime regime = MembraneRegime::Slack;
+    Metric stretched{1, 1, 0};  // C + P
+  };
+
+  // Takes shape and volume from the reference to the rest shape.
+  static Rest scaled(Rest rest) {
+    rest.shape.col(0) /= rest.rest_scale[0];
+    rest.shape.col(1) /= rest.rest_scale[1];
+    rest.volume *= rest.rest_scale.prod();
+    return rest;
+  }
+
   static PlaneEnergy at(const Law& law, const Metric& c) { return law.evaluate(c.c11, c.c22, c.c12); }
+
+  // Transposed derivative of the strain of C + P by that of C. c: C + P; hidden: the diagonal of P = a a^T.
+  static Eigen::Matrix3d follow(const Law& law, const Metric& c, const Eigen::Vector2d& hidden) {
+    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+    if (!(hidden.maxCoeff() > 0)) return identity;
+    const PlaneEnergy w = at(law, c);
+    Eigen::Vector2d a = hidden.cwiseMax(0).cwiseSqrt();
+    // The sign of one entry: that for which no stress is left.
+    if (const Eigen::Vector2d other(a[0], -a[1]); traction(w, other).norm() < traction(w, a).norm())
+      a = other;
+    const Eigen::Matrix<double, 3, 2> by_a = widening(a);
+    const Eigen::Matrix2d h = stiffness(w, by_a);
+    return h.determinant() > 0 ? Eigen::Matrix3d(identity - w.tangent * by_a * h.inverse() * by_a.transpose())
+                               : identity;
+  }
 
   static Response respond(const Rest& rest, const CstStrain& e) {
     const Metric c{1 + 2 * e.e11, 1 + 2 * e.e22, 2 * e.e12};
@@ -140,9 +188,11 @@ struct CstFibrous {
       const bool is_taut =
           std::isfinite(least.value) && least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
       if (is_taut || !rest.relaxes)
-        return {w, is_taut      ? MembraneRegime::Taut
-                   : widest > 1 ? MembraneRegime::Wrinkled
-                                : MembraneRegime::Slack};
+        return {w,
+                is_taut      ? MembraneRegime::Taut
+                : widest > 1 ? MembraneRegime::Wrinkled
+                             : MembraneRegime::Slack,
+                c};
     }
     return widest > 1 ? wrinkled(rest.law, c) : Response{};
   }
@@ -215,7 +265,7 @@ struct CstFibrous {
     const Eigen::Matrix<double, 3, 2> m = w.tangent * widening(a);
     const Eigen::Matrix2d h = stiffness(w, widening(a));
     if (h.determinant() > 0) w.tangent -= m * h.inverse() * m.transpose();
-    return {w, MembraneRegime::Wrinkled};
+    return {w, MembraneRegime::Wrinkled, c.widened(a)};
   }
 
   static double evaluate(const Rest& rest, const CstVector& x, CstVector* g, CstMatrix* H, bool projects) {

@@ -32,6 +32,14 @@ CrimpedFibre::CrimpedFibre(double young, double crimp, double slenderness, doubl
   knee_ = {young / limit_ - at_limit_.stiffness, limit_ - 1, std::min(window, limit_ - 1)};
 }
 
+CrimpedFibre CrimpedFibre::yielding(double strain, double failure) const {
+  CrimpedFibre fibre = *this;
+  fibre.yield_elongation_ = limit_ * (1 + strain) - 1;
+  const double straight = knee_.modulus + at_limit_.stiffness;
+  fibre.yield_ = {-failure * straight, fibre.yield_elongation_, std::min(knee_.window, limit_ * strain)};
+  return fibre;
+}
+
 // Stress and slope; the energy is left out. With y = H^2 and q = R^2 = (L0^2 - y)/(2 pi)^2:
 // eta = H (q + y) / (L0 d),  d = y + (4 s y + 40/3 + 6 s q) q,  s = 1/r0^2.
 CurveValue CrimpedFibre::crimped(double elongation) const {
@@ -84,7 +92,11 @@ CurveValue CrimpedFibre::at(double elongation) const {
     value = {at_limit_.energy + at_limit_.stress * past + 0.5 * at_limit_.stiffness * past * past,
              at_limit_.stress + at_limit_.stiffness * past, at_limit_.stiffness};
   }
-  const CurveValue added = knee_.at(elongation);
+  CurveValue added = knee_.at(elongation);
+  if (yield_.modulus < 0) {
+    const CurveValue lost = yield_.at(elongation);
+    added = {added.energy + lost.energy, added.stress + lost.stress, added.stiffness + lost.stiffness};
+  }
   return {value.energy + added.energy, value.stress + added.stress, value.stiffness + added.stiffness};
 }
 

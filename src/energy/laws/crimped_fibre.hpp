@@ -11,11 +11,16 @@
 // that are not pulled carry none. Where the fibre is straight its stiffness rises over a window of stretch
 // around the limit, so that the energy is twice continuously differentiable (our own). Source: Freed &
 // Doehring 2005, J Biomech Eng 127:587.
+// A fibre may yield: from a strain y of the straight fibre on, l = limit (1 + y), it keeps the share 1 - f of
+// its stiffness, f its failure; the change is rounded as the limit is. It remembers nothing: unloaded it
+// follows the same curve. Toma et al. 2016 name yield strain and a parameter of failure and print neither
+// numbers nor their algorithm: the form is ours.
 #pragma once
 
 #include "energy/laws/bilinear_curve.hpp"
 
 #include <array>
+#include <limits>
 
 namespace coapt {
 
@@ -26,11 +31,16 @@ class CrimpedFibre {
   // at most limit - 1. Pre: all but window positive.
   CrimpedFibre(double young, double crimp, double slenderness, double window);
 
+  // The same fibre that yields. strain: y > 0; failure: f, 0 to 1.
+  CrimpedFibre yielding(double strain, double failure) const;
+
   // Energy per volume, nominal stress and its slope at elongation e = l - 1; zero for e <= 0.
   CurveValue at(double elongation) const;
 
   double limit() const { return limit_; }
   double secant_young() const { return secant_; }  // E_s
+  // limit (1 + y) - 1; infinite where it never yields.
+  double yield_elongation() const { return yield_elongation_; }
 
  private:
   CurveValue crimped(double elongation) const;
@@ -48,6 +58,8 @@ class CrimpedFibre {
   std::array<double, kPieces> energy_{};  // of the crimped branch at the pieces' ends
   CurveValue at_limit_;
   BilinearKnee knee_;
+  BilinearKnee yield_;  // of the stiffness that is lost, negative
+  double yield_elongation_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace coapt

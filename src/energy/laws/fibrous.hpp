@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace coapt {
 
@@ -56,6 +57,43 @@ inline PlaneInvariant stretch_of(double k11, double k22, double c11, double c22)
   const double l = std::sqrt(k11 * c11 + k22 * c22);
   const Eigen::Vector3d slope(k11 / l, k22 / l, 0);
   return {l, slope, -slope * slope.transpose() / l};
+}
+
+// Dispersion of fibres about a mean direction: K, the mean of a a^T over their directions a at rest, of trace
+// 1; its entries in the plane and normal to it.
+struct FibreDispersion {
+  double k11 = 1, k22 = 0, k12 = 0, k33 = 0;
+};
+
+// Of two independent, normally distributed angles of standard deviation s in the plane and n out of it [rad],
+// a = (cos t cos p, sin t cos p, sin p), about a mean direction at an angle to the first axis [rad]:
+//   along  (1 + exp(-2 s^2)) (1 + exp(-2 n^2))/4,   across  (1 - exp(-2 s^2)) (1 + exp(-2 n^2))/4,
+//   normal (1 - exp(-2 n^2))/2
+// Sources: Freed, Einstein & Vesely 2005 (splay invariant, with one parameter in the plane and further ones
+// in space), Toma et al. 2016, eq. 2.
+inline FibreDispersion fibre_dispersion(double in_plane, double out_of_plane, double angle) {
+  const double spread = std::exp(-2 * in_plane * in_plane), flat = std::exp(-2 * out_of_plane * out_of_plane);
+  const double along = 0.5 * (1 + spread) * (0.5 * (1 + flat)),
+               across = 0.5 * (1 - spread) * (0.5 * (1 + flat));
+  if (angle == 0) return {along, across, 0, 0.5 * (1 - flat)};
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {along * c * c + across * s * s, along * s * s + across * c * c, (along - across) * c * s,
+          0.5 * (1 - flat)};
+}
+
+// sqrt(K : C) of an incompressible membrane, whose C33 is 1/det C: the root mean square stretch of dispersed
+// fibres.
+inline PlaneInvariant stretch_of(const FibreDispersion& k, double c11, double c22, double c12) {
+  if (k.k12 == 0 && k.k33 == 0) return stretch_of(k.k11, k.k22, c11, c22);
+  const double thin = k.k33 > 0 ? 1 / (c11 * c22 - c12 * c12) : 0, normal = k.k33 * thin * thin;
+  const double l = std::sqrt(k.k11 * c11 + k.k22 * c22 + 2 * k.k12 * c12 + k.k33 * thin);
+  const Eigen::Vector3d slope(2 * c22, 2 * c11, -2 * c12);  // of det C
+  const Eigen::Vector3d first = (Eigen::Vector3d(k.k11, k.k22, k.k12) - 0.5 * normal * slope) / l;
+  Eigen::Matrix3d second = normal * thin * slope * slope.transpose() - first * first.transpose();
+  second(0, 1) -= 2 * normal;
+  second(1, 0) -= 2 * normal;
+  second(2, 2) += normal;
+  return {l, first, second / l};
 }
 
 // A bilinear curve along the fibre and one across it, with strains e = stretch - 1 in those directions:
@@ -135,25 +173,64 @@ struct MayNewmanYinLaw {
 };
 
 // Crimped fibres in an incompressible neo-Hookean matrix:
-//   W = mu/2 (I1 - 3) + w(l_f),   l_f^2 = K : C,   K = (1 + exp(-2 s^2))/2 along, (1 - exp(-2 s^2))/2 across
-// w of the crimped fibre (energy/laws/crimped_fibre.hpp); s the splay, the standard deviation of the fibres'
-// angles in the plane [rad]. Sources: Freed, Einstein & Vesely 2005 (splay), Toma et al. 2016.
+//   W = mu/2 (I1 - 3) + w(l_1) + r w(l_2) + a(l_1),   l_i^2 = K_i : C,   C33 = 1/det C
+// w of the crimped fibre (energy/laws/crimped_fibre.hpp); K_i the dispersion of each of two populations, the
+// second at an angle to the first and r times as strong. The active stress of fibres longer than at rest is
+// a' = T (1 - exp(-(l_1 - 1)/e_a)), zero at rest as that of every law here must be. Sources: Toma et al.
+// 2016, eq. 1 and 2 (two populations, active part, dispersion); Freed, Einstein & Vesely 2005 (dispersion).
+// The paper prints neither direction and share of the second population nor the rule of the active stress:
+// their form is ours.
 struct CrimpedFibreLaw {
   double shear_modulus = 0;  // mu [stress]
   CrimpedFibre fibre;
-  double splay = 0;
+  double splay = 0, splay_out_of_plane = 0;      // standard deviations of the fibres' angles [rad]
+  double second_population = 0;                  // r; 0: there is none
+  double second_angle = 0.5 * std::numbers::pi;  // from the first to the second, in the plane [rad]
+  double active_stress = 0;                      // T [stress]
+
+  static constexpr double kActivation = 0.02;  // e_a, elongation over which the active stress sets in
 
   PlaneEnergy evaluate(double c11, double c22, double c12) const {
-    const double spread = std::exp(-2 * splay * splay);
-    const PlaneInvariant i = first_invariant(c11, c22, c12),
-                         l = stretch_of(0.5 * (1 + spread), 0.5 * (1 - spread), c11, c22);
+    const PlaneInvariant i = first_invariant(c11, c22, c12), l = population(0, c11, c22, c12);
     PlaneEnergy sum;
     add_composed({0.5 * shear_modulus * i.value, 0.5 * shear_modulus, 0}, i, sum);
     add_composed(fibre.at(l.value - 1), l, sum);
+    if (active_stress > 0 && l.value > 1) add_composed(active(l.value - 1), l, sum);
+    if (second_population > 0) {
+      const PlaneInvariant other = population(second_angle, c11, c22, c12);
+      const CurveValue w = fibre.at(other.value - 1);
+      add_composed(
+          {second_population * w.energy, second_population * w.stress, second_population * w.stiffness},
+          other, sum);
+    }
     return sum;
   }
   double initial_young() const { return 3 * shear_modulus; }
   double initial_poisson() const { return 0.5; }
+
+  bool yields() const { return std::isfinite(fibre.yield_elongation()); }
+  // The greater of both populations' elongations over that at which their fibres yield, and its derivatives;
+  // zero where neither is longer than at rest.
+  PlaneInvariant yield_ratio(double c11, double c22, double c12) const {
+    PlaneInvariant most = population(0, c11, c22, c12);
+    if (second_population > 0)
+      if (const PlaneInvariant other = population(second_angle, c11, c22, c12); other.value > most.value)
+        most = other;
+    if (most.value <= 1) return {};
+    const double yield = fibre.yield_elongation();
+    return {(most.value - 1) / yield, most.first / yield, most.second / yield};
+  }
+
+ private:
+  PlaneInvariant population(double angle, double c11, double c22, double c12) const {
+    return stretch_of(fibre_dispersion(splay, splay_out_of_plane, angle), c11, c22, c12);
+  }
+  // Pre: elongation > 0.
+  CurveValue active(double elongation) const {
+    const double rest = std::exp(-elongation / kActivation);
+    return {active_stress * (elongation + kActivation * std::expm1(-elongation / kActivation)),
+            active_stress * (1 - rest), active_stress * rest / kActivation};
+  }
 };
 
 }  // namespace coapt

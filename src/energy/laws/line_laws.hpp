@@ -89,6 +89,9 @@ struct CrimpedLine {
   CrimpedFibre fibre;
   double shear_modulus = 0;  // mu [stress]
 
+  // At which its fibres yield; infinite where they never do.
+  double yield_elongation() const { return fibre.yield_elongation(); }
+
   CurveValue at(double e) const {
     const CurveValue fibres = fibre.at(e), matrix = OgdenLine{{shear_modulus}, {2}}.at(e);
     return {fibres.energy + matrix.energy, fibres.stress + matrix.stress,

@@ -19,16 +19,25 @@ struct Crimp {
 };
 constexpr Crimp kAnterior{14.5, 1.75}, kPosterior{7.0, 1.0}, kStrut{1.35, 5.0}, kMarginal{90.0, 5.0};
 
+// Of the parts that section 2.5 has without printing their numbers: ours.
+constexpr const char *kSplay = "0.5", *kSplayOutOfPlane = "0.2", *kSecondPopulation = "0.5",
+                     *kYieldStrain = "0.04";
+
 std::vector<std::pair<std::string, std::string>> crimp_keys(const Crimp& crimp) {
   return {{"fibre_young", kFibreYoung},
           {"crimp_ratio", exact_text(crimp.wavelength / crimp.amplitude)},
           {"radius_ratio", exact_text(crimp.amplitude)},
-          {"shear_modulus", "\"10 kPa\""}};
+          {"shear_modulus", "\"10 kPa\""},
+          {"yield_strain", kYieldStrain}};
 }
 
 Material leaflet_law(const Crimp& crimp, double thickness) {
   Material law{"cst_crimped_fibre", crimp_keys(crimp)};
-  law.keys.emplace_back("thickness", quoted(exact_text(thickness) + " mm"));
+  law.keys.insert(law.keys.end(), {{"splay", kSplay},
+                                   {"splay_out_of_plane", kSplayOutOfPlane},
+                                   {"second_population", kSecondPopulation},
+                                   {"second_angle", "\"90 deg\""},
+                                   {"thickness", quoted(exact_text(thickness) + " mm")}});
   return law;
 }
 
@@ -85,6 +94,8 @@ and modeling: experimental and computational methods*, Biomech Model Mechanobiol
 | fibre directions | known along free edge, annulus and chords, across at the trigones; between them Laplace's equation for the tensor of directions | section 2.6, eq. 3 |
 | held | annulus and papillary ends, where the open valve has them | section 2.7 |
 | pressure | 120 mmHg, of the closed scan | section 2.3 |
+| fibres of the leaflets | two populations, dispersed in space by the tensor K; their numbers are below | eq. 1 and 2 |
+| healthy closure | 2/3 of the diameter under the anterior leaflet, coaptation 3 to 5 mm, less than 5 ml back: `healthy_closure` in `result.json` | section 2.1 |
 
 ## Where it is not followed
 
@@ -92,10 +103,8 @@ and modeling: experimental and computational methods*, Biomech Model Mechanobiol
 |---|---|---|---|
 | load | a fluid of particles, pushed by pistons | pressure on the leaflets, at rest | Coapt has no fluid |
 | body | three layers of tetrahedra, chords as solids | surface and lines, with the plate's bending stiffness | |
-| fibre populations | two, eq. 1 | one | the paper prints no direction of the second |
-| dispersion | a Gaussian in space, tensor K, eq. 2 | in the plane of the surface (`splay`), set to 0 | its splay parameters are those of its reference Freed et al. 2005, not printed |
-| active fibre stress | a term of eq. 1 | none | no number is printed; closed and held |
-| yield and failure of fibres | Algorithm 1 of the appendix | none: the stress goes on | no number is printed |
+| active fibre stress | a term of eq. 1 | `active_stress` 0 | the paper's valves are excised: nothing in them is active |
+| failure of fibres | a fourth parameter of the appendix, left out where failure is not considered | `failure` 0: the stress goes on, results name what is beyond its yield | neither number nor algorithm is printed |
 | bulk modulus | 2.8e4 kPa, lowered for the time step | incompressible | the paper calls the true value a thousand times greater |
 
 ## What it leaves open, and what was chosen
@@ -105,11 +114,15 @@ and modeling: experimental and computational methods*, Biomech Model Mechanobiol
 | H0/r0 of chords between strut and marginal | 90 | "varied for most chordae": only the two ends are printed |
 | leaflets of other names, such as a septal one | the crimp of the posterior leaflet | the paper has a mitral valve |
 | thickness | $THICKNESS mm | the valve's; the paper has it from its scan |
-| tuning to the yield strain | none | `coapt tune-regions` does it (docs/studies.md); its 14 sets of numbers are not printed |
+| dispersion | `splay` 0.5 rad in the plane, `splay_out_of_plane` 0.2 rad | splay parameters are those of Freed et al. 2005, not printed; fibres lie nearly in the leaflet |
+| second population | across the first (`second_angle` 90 deg), half as strong (`second_population` 0.5) | neither direction nor share is printed; biaxial tests find leaflets stiffer along the fibre |
+| yield strain | 0.04 of the straight fibre, in leaflets and chords | not printed; tendon is damaged from some 4 % on (Wang 2006, J Biomech 39:1563) |
+| tuning to the yield strain | none | `coapt tune-regions` (no `--yield-strain`) does it; the paper's 14 sets of numbers are not printed |
+| rest shape | that of the mesh | a scan of an unfixed leaflet is 17.3 % smaller in area than the valve in water, one of a fixed leaflet 4.8 % greater (section 3.1): `rest_scale_fibre` and `rest_scale_cross` 1.0996 and 0.9768 take that back, alike in both directions as only areas are printed |
 | the valve itself | the mesh and chords of this folder | the paper's scans are not published |
 
-These numbers do not hold a valve: across fibres that are not dispersed only the matrix of 10 kPa carries, and the leaflets bulge far into the atrium.
-A `splay` of the leaflets above 0, such as 0.5, is the remedy nearest to the paper. A helix of H0/r0 = 1.35 and R0/r0 = 5 is straight at a stretch of 23:
+The printed numbers alone do not hold a valve: across one population that is not dispersed only the matrix of 10 kPa carries, and the leaflets bulge far
+into the atrium. A helix of H0/r0 = 1.35 and R0/r0 = 5 is straight at a stretch of 23:
 as printed, strut chords carry nothing but their matrix. See docs/papers/toma-2016.md.
 )";
 

@@ -9,6 +9,7 @@
 #include "registration/wanted_registration.hpp"
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,11 +20,12 @@ namespace coapt {
 
 // One cable or tether of the scene, for reports; indexed as in its term.
 struct Line {
-  int a = 0, b = 0;        // nodes
-  double rest_length = 0;  // [mm]; 0 for a constant-force cable
-  double area = 0;         // cross-section [mm2]; 0: not known
-  std::string term;        // name of the term that it belongs to
-  int element = 0;         // its element in that term
+  int a = 0, b = 0;                                               // nodes
+  double rest_length = 0;                                         // [mm]; 0 for a constant-force cable
+  double area = 0;                                                // cross-section [mm2]; 0: not known
+  std::string term;                                               // name of the term that it belongs to
+  int element = 0;                                                // its element in that term
+  double yield_strain = std::numeric_limits<double>::infinity();  // length over rest length, less 1
 };
 
 // Plane-stress membrane properties of one triangle; of a nonlinear law those at small strain.
@@ -39,6 +41,9 @@ struct MembranePatch {
   std::vector<int> triangles;  // element e of the term covers triangles[e]
   std::function<MembraneState(int element, const CstVector& corners)> state;
   std::string term = {};  // its name
+  // Elongation of the element's fibres over that at which they yield, at least 0, and its gradient unless
+  // that is null; none where nothing yields.
+  std::function<double(int element, const CstVector& corners, CstVector* gradient)> yield_ratio = {};
 };
 
 // Nodes are numbered: mesh vertices first, then the points of each network (papillary, then junctions), then

@@ -89,6 +89,8 @@ TermPointer build_cable_law(const TermSpec& spec, BuildContext& context, const L
       continue;
     }
     note_line(spec, line, length, area, static_cast<int>(rest.size()), context.model);
+    if constexpr (requires { law.yield_elongation(); })
+      context.model.lines.back().yield_strain = law.yield_elongation();
     nodes.insert(nodes.end(), {line.a, line.b});
     rest.push_back(CableLaw<Law>::rest(length, area, p.number("smoothing"), law));
   }
@@ -149,10 +151,10 @@ TermPointer build_cable_toe(const TermSpec& spec, BuildContext& context) {
 
 TermPointer build_cable_crimped_fibre(const TermSpec& spec, BuildContext& context) {
   const Parameters& p = spec.parameters;
-  return build_cable_law(spec, context,
-                         CrimpedLine{CrimpedFibre(p.number("fibre_young"), p.number("crimp_ratio"),
-                                                  p.number("radius_ratio"), p.number("knee")),
-                                     p.number("shear_modulus")});
+  CrimpedFibre fibre(p.number("fibre_young"), p.number("crimp_ratio"), p.number("radius_ratio"),
+                     p.number("knee"));
+  if (p.has("yield_strain")) fibre = fibre.yielding(p.number("yield_strain"), p.number("failure"));
+  return build_cable_law(spec, context, CrimpedLine{fibre, p.number("shear_modulus")});
 }
 
 TermPointer build_tether(const TermSpec& spec, BuildContext& context) {

@@ -52,6 +52,30 @@ KeySpec region_key() {
           .doc = "Region of the mesh, or a list of them, that the term covers; default: all triangles."};
 }
 
+KeySpec yield_strain_key() {
+  return {.name = "yield_strain",
+          .min = 0,
+          .excludes_min = true,
+          .doc =
+              "Strain of the straight fibres, stretch over that at which they are straight, less 1, at which "
+              "they yield; results name what is beyond. Without it they never do."};
+}
+
+KeySpec failure_key() {
+  return {
+      .name = "failure",
+      .fallback = "0",
+      .min = 0,
+      .max = 1,
+      .doc = "Share of their stiffness that the fibres lose where they yield; 0: none, yield is only told."};
+}
+
+std::vector<std::string> check_yield(const Parameters& p) {
+  if (p.number("failure") == 0 || p.has("yield_strain") || p.has("triangle_values") || p.has("vertex_values"))
+    return {};
+  return {"failure: says nothing without yield_strain; give the strain from which on it counts"};
+}
+
 std::vector<int> region_triangles(const Parameters& parameters, const TriangleMesh& mesh) {
   std::vector<bool> is_wanted(mesh.region_names.size(), false);
   const bool takes_all = !parameters.has("region");

@@ -152,6 +152,11 @@ std::vector<TermType> contact_term_types();   // contact_facet, contact_barrier
 KeySpec region_key();
 std::vector<int> region_triangles(const Parameters& parameters, const TriangleMesh& mesh);
 
+// For the entries of crimped fibres: the keys `yield_strain` and `failure`, and the rule between them.
+KeySpec yield_strain_key();
+KeySpec failure_key();
+std::vector<std::string> check_yield(const Parameters& parameters);
+
 // The triangles of the model that a membrane term covers: its patch, if it is one of an intervention, else
 // its regions without the patches of others. Throws InputError where none is left.
 std::vector<int> membrane_triangles(const TermSpec& spec, const BuildContext& context);

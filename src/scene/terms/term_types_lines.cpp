@@ -237,13 +237,20 @@ TermType cable_crimped_fibre_type() {
                      .fallback = "\"0 kPa\"",
                      .min = 0,
                      .doc = "Shear modulus of the matrix around the fibres; Toma et al. 2016: 10 kPa."},
+                    yield_strain_key(),
+                    failure_key(),
                     knee_key(),
                     area_key(),
                     area_scale_key(),
                     smoothing_key()},
                    line_keys()),
                .groups = {{{"network", "edges"}, true}}},
-      .check = check_area,
+      .check =
+          [](const Parameters& p) {
+            Defects defects = check_area(p);
+            for (const std::string& more : check_yield(p)) defects.push_back(more);
+            return defects;
+          },
       .build = build_cable_crimped_fibre,
       .kind = TermKind::Line,
       .xpbd = XpbdConstraint::Tethers};

@@ -47,9 +47,17 @@ OrthotropicLaw orthotropic_law(const At& at) {
 }
 MayNewmanYinLaw may_newman_yin_law(const At& at) { return {at("c0"), at("c1"), at("c2")}; }
 CrimpedFibreLaw crimped_fibre_law(const At& at) {
-  return {at("shear_modulus"),
-          CrimpedFibre(at("fibre_young"), at("crimp_ratio"), at("radius_ratio"), at("smoothing")),
-          at("splay")};
+  CrimpedFibreLaw law;
+  law.shear_modulus = at("shear_modulus");
+  law.fibre = CrimpedFibre(at("fibre_young"), at("crimp_ratio"), at("radius_ratio"), at("smoothing"));
+  if (const double strain = at("yield_strain", 0); strain > 0)
+    law.fibre = law.fibre.yielding(strain, at("failure"));
+  law.splay = at("splay");
+  law.splay_out_of_plane = at("splay_out_of_plane");
+  law.second_population = at("second_population");
+  law.second_angle = at("second_angle");
+  law.active_stress = at("active_stress");
+  return law;
 }
 
 template <typename Law>
@@ -77,7 +85,9 @@ TermPointer build_fibrous(const TermSpec& spec, BuildContext& context, Law (*law
       },
       [&](const MembraneElement& e) {
         return CstFibrous<Law>::rest(e.X0, e.X1, e.X2, fibres.col(e.triangle), law_of({e.values, e.triangle}),
-                                     e.properties.thickness, is_relaxed);
+                                     e.properties.thickness, is_relaxed,
+                                     {e.values.number("rest_scale_fibre", e.triangle),
+                                      e.values.number("rest_scale_cross", e.triangle)});
       });
 }
 
@@ -130,6 +140,19 @@ std::vector<KeySpec> tissue_keys(std::vector<KeySpec> keys) {
   keys.push_back(triangle_values_key());
   keys.push_back(vertex_values_key());
   return keys;
+}
+
+// Of laws with a fibre.
+std::vector<KeySpec> fibrous_keys(std::vector<KeySpec> keys) {
+  const auto scale = [](const char* name, const char* doc) {
+    return positive(name, kDimensionless, doc, "1");
+  };
+  keys.push_back(
+      scale("rest_scale_fibre",
+            "Lengths of the stress-free tissue along the fibre over those of the mesh: above 1 where "
+            "the tissue had shrunk when its shape was taken."));
+  keys.push_back(scale("rest_scale_cross", "The same across the fibre."));
+  return tissue_keys(std::move(keys));
 }
 
 constexpr const char* kKneeWindow =
@@ -185,11 +208,54 @@ std::vector<TermType> isotropic_types() {
        .febio = febio_exponential}};
 }
 
+TermType crimped_fibre_type() {
+  return {
+      .name = "cst_crimped_fibre",
+      .summary =
+          "Crimped collagen fibres with splay in a soft matrix (Freed & Doehring 2005, Freed et al. "
+          "2005, Toma et al. 2016).",
+      .spec = {.keys = fibrous_keys(
+                   {positive("shear_modulus", kPressure, "Shear modulus of the matrix.", "\"10 kPa\""),
+                    positive("fibre_young", kPressure, "Modulus of the straight fibres.", "\"48 MPa\""),
+                    positive("crimp_ratio", kDimensionless,
+                             "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner the "
+                             "fibres are straight."),
+                    positive("radius_ratio", kDimensionless, "Amplitude over radius of the fibre, R0/r0."),
+                    {.name = "splay",
+                     .fallback = "0",
+                     .min = 0,
+                     .doc = "Standard deviation of the fibres' angles in the plane [rad]."},
+                    {.name = "splay_out_of_plane",
+                     .fallback = "0",
+                     .min = 0,
+                     .doc = "Standard deviation of the fibres' angles out of the plane [rad]."},
+                    {.name = "second_population",
+                     .fallback = "0",
+                     .min = 0,
+                     .doc = "Stress of a second population over that of the first; 0: there is none."},
+                    {.name = "second_angle",
+                     .dimension = kAngle,
+                     .fallback = "\"90 deg\"",
+                     .doc = "From the first population to the second, counterclockwise from the front."},
+                    {.name = "active_stress",
+                     .dimension = kPressure,
+                     .fallback = "\"0 kPa\"",
+                     .min = 0,
+                     .doc = "Active stress of the first population where it is longer than at rest."},
+                    yield_strain_key(),
+                    failure_key(),
+                    smoothing_key(
+                        "Stretch on either side of the straight fibre over which its stiffness sets "
+                        "in; 0: at once.")})},
+      .check = check_yield,
+      .build = fibrous<&crimped_fibre_law>};
+}
+
 std::vector<TermType> fibrous_types() {
   return {
       {.name = "cst_orthotropic",
        .summary = "Membrane with one bilinear curve along the fibre and one across it (Hammer et al. 2011).",
-       .spec = {.keys = tissue_keys(
+       .spec = {.keys = fibrous_keys(
                     {positive("fibre_young_pre", kPressure, "Modulus along the fibre below its knee."),
                      positive("fibre_young_post", kPressure, "Slope along the fibre beyond its knee."),
                      positive("fibre_transition", kDimensionless, "Engineering strain of the fibre's knee."),
@@ -212,7 +278,7 @@ std::vector<TermType> fibrous_types() {
       {.name = "cst_may_newman_yin",
        .summary = "Mitral tissue: c0 (exp(c1 (I1 - 3)^2 + c2 (l_f - 1)^4) - 1), incompressible (May-Newman & "
                   "Yin 1998).",
-       .spec = {.keys = tissue_keys(
+       .spec = {.keys = fibrous_keys(
                     {positive("c0", kPressure, "Scale of the energy.", "\"0.399 kPa\""),
                      {.name = "c1",
                       .fallback = "4.325",
@@ -221,25 +287,7 @@ std::vector<TermType> fibrous_types() {
                      {.name = "c2", .fallback = "1446.5", .min = 0, .doc = "Exponent of the fibre part."}})},
        .check = {},
        .build = fibrous<&may_newman_yin_law>},
-      {.name = "cst_crimped_fibre",
-       .summary = "Crimped collagen fibres with splay in a soft matrix (Freed & Doehring 2005, Freed et al. "
-                  "2005, Toma et al. 2016).",
-       .spec = {.keys = tissue_keys(
-                    {positive("shear_modulus", kPressure, "Shear modulus of the matrix.", "\"10 kPa\""),
-                     positive("fibre_young", kPressure, "Modulus of the straight fibres.", "\"48 MPa\""),
-                     positive("crimp_ratio", kDimensionless,
-                              "Wavelength over amplitude of the crimp, H0/R0: the greater, the sooner the "
-                              "fibres are straight."),
-                     positive("radius_ratio", kDimensionless, "Amplitude over radius of the fibre, R0/r0."),
-                     {.name = "splay",
-                      .fallback = "0",
-                      .min = 0,
-                      .doc = "Standard deviation of the fibres' angles in the plane [rad]."},
-                     smoothing_key(
-                         "Stretch on either side of the straight fibre over which its stiffness sets "
-                         "in; 0: at once.")})},
-       .check = {},
-       .build = fibrous<&crimped_fibre_law>}};
+      crimped_fibre_type()};
 }
 
 }  // namespace

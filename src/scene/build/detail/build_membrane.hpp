@@ -6,6 +6,8 @@
 #include "energy/kernels/cst.hpp"
 #include "scene/build/detail/element_values.hpp"
 
+#include <algorithm>
+
 namespace coapt {
 
 // All that a kernel needs of one triangle.
@@ -47,6 +49,13 @@ TermPointer build_membrane(const TermSpec& spec, BuildContext& context, const Pr
                                               return Kernel::state(elements[static_cast<size_t>(e)], x);
                                             },
                                             spec.name});
+  if constexpr (requires { Kernel::yields(term->rest()[0]); })
+    if (std::any_of(term->rest().begin(), term->rest().end(),
+                    [](const auto& e) { return Kernel::yields(e); }))
+      context.model.membrane_patches.back().yield_ratio =
+          [&elements = term->rest()](int e, const CstVector& x, CstVector* gradient) {
+            return Kernel::yield_ratio(elements[static_cast<size_t>(e)], x, gradient);
+          };
   return term;
 }
 

@@ -1,4 +1,4 @@
-#include "results/coaptation_height.hpp"
+#include "results/detail/coaptation_height.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,48 @@
+#include "results/healthy_closure.hpp"
+
+#include "core/number_text.hpp"
+
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kBloodDensity = 1060;   // [kg/m3]
+constexpr double kSystole = 0.3;         // [s], at some 70 beats a minute
+constexpr double kShareTolerance = 0.1;  // of the diameter: 2/3 is read by eye off an ultrasound image
+constexpr double kPascals = 1e6;         // of a MPa
+constexpr const char* kSource = "Toma et al. 2016, section 2.1";
+
+}  // namespace
+
+double regurgitant_volume_ml(double orifice_mm2, double pressure_mpa) {
+  return orifice_mm2 * std::sqrt(2 * kPascals * pressure_mpa / kBloodDensity) * kSystole;  // mm2 m = ml
+}
+
+std::vector<HealthyCriterion> healthy_criteria(const ClosureFigures& figures) {
+  std::vector<HealthyCriterion> criteria = {
+      {"anterior_share", "", figures.anterior_share, 2.0 / 3 - kShareTolerance, 2.0 / 3 + kShareTolerance,
+       "share of the antero-posterior diameter over which the anterior leaflet is seen; healthy: about 2/3",
+       kSource},
+      {"coaptation_height_mm", "mm", figures.coaptation_height_mm, 3, 5,
+       "extent of contact below and across the coaptation line: 90th percentile along it", kSource}};
+  if (figures.pressure_mpa > 0)
+    criteria.push_back({"regurgitant_volume_ml", "ml",
+                        regurgitant_volume_ml(figures.regurgitant_area_mm2, figures.pressure_mpa),
+                        std::nullopt, 5,
+                        "upper estimate for one systole: regurgitant area times the velocity of Bernoulli's "
+                        "equation times 0.3 s",
+                        kSource});
+  return criteria;
+}
+
+std::string range_in_words(const HealthyCriterion& criterion) {
+  const auto text = [](double number) { return number_text(number, 2); };
+  const std::string unit = criterion.unit.empty() ? "" : " " + criterion.unit;
+  if (criterion.lowest && criterion.highest)
+    return text(*criterion.lowest) + " to " + text(*criterion.highest) + unit;
+  if (criterion.highest) return "at most " + text(*criterion.highest) + unit;
+  return criterion.lowest ? "at least " + text(*criterion.lowest) + unit : "any";
+}
+
+}  // namespace coapt
