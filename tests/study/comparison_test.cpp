@@ -348,6 +348,7 @@ TEST_F(ComparisonTest, TellsItInJson) {
   EXPECT_EQ(idle.at("distance_to_reference_method").at("same_vertex").at("max_mm").get<double>(),
             found.methods[1].gap->same_vertex.max);
   EXPECT_EQ(json.at("methods").at(2).at("verdict"), "failed");
+  EXPECT_EQ(newton.at("shares_with_newton"), "all");
   EXPECT_FALSE(json.at("methods").at(2).contains("residual"));
 }
 

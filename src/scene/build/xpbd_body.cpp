@@ -185,6 +185,10 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
   return body;
 }
 
+bool xpbd_takes_the_loads(const Scene& scene) {
+  return !scene.solver.xpbd || scene.solver.xpbd->forces == XpbdForces::Scene;
+}
+
 bool xpbd_moves_the_scene_itself(const Scene& scene) {
   const XpbdOptions options = scene.solver.xpbd ? *scene.solver.xpbd : XpbdOptions{};
   return options.stiffness == XpbdStiffness::Material && options.forces == XpbdForces::Scene &&
