@@ -8,8 +8,8 @@ chords from tips that nobody saw (`coapt chords --unseen-tips`, section 3.5), cl
 until it rests; and N steps with 20 sweeps, for their time. A time is of one core: wall time of sweeps and collision
 detection, times the share of it that the process had a core. The generator has no pathological valves: rows B are its
 normal ones, drawn with other dimensions.
-repairs: the valve of A1 closed, and opened (diastole), without a repair and with a ring, chords and tips changed. Clips are
-links, for which `xpbd` has no constraint.
+repairs: the valve of A1 closed, and opened (diastole), without a repair, with a ring, with chords and tips changed, and with
+one to three clips (section 3.8), 5 mm wide and 9 mm deep.
 Prints a Markdown table; bench/tables.py --record keeps it.
 """
 import argparse
@@ -56,7 +56,10 @@ REPAIRS = {
     "ring, 30 mm": [{"type": "ring", "size": "30 mm"}],
     "primary chords 10 % shorter": [{"type": "chord_length", "materials": "primary", "factor": 0.9}],
     "primary chords 20 % longer": [{"type": "chord_length", "materials": "primary", "factor": 1.2}],
-    "tips 4 mm down": [{"type": "papillary", "by": [0, 0, -4]}]}
+    "tips 4 mm down": [{"type": "papillary", "by": [0, 0, -4]}],
+    "one clip": [{"type": "clip", "at": [0.5]}],
+    "two clips": [{"type": "clip", "at": [0.4, 0.6]}],
+    "three clips": [{"type": "clip", "at": [0.3, 0.5, 0.7]}]}
 
 
 def called(coapt: str, *arguments: object) -> None:

@@ -93,11 +93,11 @@ TermSpec springs_of(const TermSpec& membrane, const Scene& scene, std::optional<
 Scene mass_spring_scene(const Scene& scene) {
   Scene springs = scene;
   springs.terms.clear();
-  springs.solver.type = "dynamic";
+  springs.solver.type = "mass-spring";
   std::optional<SceneGeometry> geometry;  // read when a law asks for it
   std::vector<std::string> defects;
   for (const TermSpec& term : scene.terms) {
-    if (is_bending(term)) continue;
+    if (is_bending(term) && !has_springs_alone(scene)) continue;
     try {
       springs.terms.push_back(is_membrane(term) ? springs_of(term, scene, geometry) : term);
     } catch (const InputError& error) {
@@ -111,8 +111,7 @@ Scene mass_spring_scene(const Scene& scene) {
 }
 
 bool has_springs_alone(const Scene& scene) {
-  return std::none_of(scene.terms.begin(), scene.terms.end(),
-                      [](const TermSpec& term) { return is_membrane(term) || is_bending(term); });
+  return std::none_of(scene.terms.begin(), scene.terms.end(), is_membrane);
 }
 
 }  // namespace coapt

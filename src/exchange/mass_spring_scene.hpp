@@ -9,13 +9,13 @@ namespace coapt {
 // of Van Gelder (1998); bending is left out; all else stays. Bilinear and orthotropic membranes (Hammer et
 // al. 2008, 2011) keep their curves, those of other laws the modulus that they have at small strain. Springs
 // have no Poisson's ratio of their own (1/3 on equilateral triangles). They go slack where the membrane
-// wrinkles and resist where it resists. The solver becomes `dynamic`, the rest of its settings stay. Throws
-// InputError with all that springs cannot be: neither membrane nor springs in the scene, a prestress, a
-// nonlinear law whose numbers differ from triangle to triangle, a window at the knees that does. Reads the
+// wrinkles and resist where it resists. The solver becomes `mass-spring`, the rest of its settings stay.
+// Throws InputError with all that springs cannot be: neither membrane nor springs in the scene, a prestress,
+// a nonlinear law whose numbers differ from triangle to triangle, a window at the knees that does. Reads the
 // scene's files only for a nonlinear law.
 Scene mass_spring_scene(const Scene& scene);
 
-// Whether a scene is one already: nothing in it but the solver would change.
+// Whether no membrane is in the scene, so that nothing in it but the solver would change.
 bool has_springs_alone(const Scene& scene);
 
 }  // namespace coapt

@@ -110,7 +110,7 @@ class DampedPath {
     if (!factor_) factor_ = problem_.stability.factorisation();
     if (pattern_version_ != objective.pattern_version()) factor_->analyse(hessian_);
     pattern_version_ = objective.pattern_version();
-    monitor_.count_factorisation();
+    monitor_.count_certificate(1);
     result_.unstable_steps = std::max(result_.unstable_steps, 0);
     if (factor_->inertia(hessian_).negative > 0) ++result_.unstable_steps;
   }

@@ -49,11 +49,16 @@ class Monitor {
   void limit_iterations(int count) { most_iterations_ = iterations_ + count; }
   bool has_reached_limit() const { return iterations_ >= most_iterations_; }
   void lift_limit() { most_iterations_ = std::numeric_limits<int>::max(); }
+  void count_certificate(int factorisations) {
+    factorisations_ += factorisations;
+    of_certificates_ += factorisations;
+  }
   int outer_iteration() const { return outer_iteration_; }
   int iterations() const { return iterations_; }
   bool is_cancelled() const { return cancelled_; }
   double seconds() const { return wall_seconds() - start_; }
   long factorisations() const { return factorisations_; }
+  long factorised_steps() const { return factorisations_ - of_certificates_; }
   std::vector<Iteration> take_trace() { return std::move(trace_); }
 
  private:
@@ -70,7 +75,7 @@ class Monitor {
   int last_gain_ = 0, last_residual_gain_ = 0;                  // iterations of the last improvements
   bool cancelled_ = false;
   EquilibriumWatch* watch_ = nullptr;
-  long factorisations_ = 0;
+  long factorisations_ = 0, of_certificates_ = 0;
   Vector last_;
   double extent_ = 0, first_extent_ = 0;  // of the unknowns [length]
   std::vector<Iteration> trace_;

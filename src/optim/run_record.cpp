@@ -1,6 +1,7 @@
 #include "optim/run_record.hpp"
 
 #include "core/number_text.hpp"
+#include "optim/dynamic/dynamic.hpp"
 #include "optim/monitor.hpp"
 
 #include <memory>
@@ -15,7 +16,7 @@ bool cuts_short(Status status) { return status == Status::Cancelled || status ==
 
 // Whether what it finds is an equilibrium only by where its velocities take it.
 bool depends_on_velocities(const std::string& name, const SolverOptions& options) {
-  return name == "xpbd" || (name == "dynamic" && options.dynamic.collisions != Collisions::None);
+  return name == "xpbd" || (is_dynamic(name) && options.dynamic.collisions != Collisions::None);
 }
 
 }  // namespace
@@ -30,7 +31,9 @@ class RecordedSolver final : public Solver {
 
   std::string_view name() const override { return solver_->name(); }
   bool follows_path() const override { return solver_->follows_path(); }
+  bool raises_stress_limits() const override { return solver_->raises_stress_limits(); }
   bool honours_step_limits() const override { return solver_->honours_step_limits(); }
+  bool minimises_objective() const override { return solver_->minimises_objective(); }
   bool is_at_rest() const override { return retraced_ ? retraced_->is_at_rest : solver_->is_at_rest(); }
 
   std::string remark() const override {

@@ -80,7 +80,7 @@ void conclude(const Outcome& outcome, const Solver& solver, const Problem& probl
     PhaseTimer timer(monitor.phases(), "certificate");
     result.certificate =
         certify(objective, result.q, stop.tolerance, problem.stability, result.status == Status::Converged);
-    for (int k = 0; k < result.certificate.stability.factorisations; ++k) monitor.count_factorisation();
+    monitor.count_certificate(result.certificate.stability.factorisations);
   }
   // The potential around the final state, so that the energy depends on that state alone and not on the
   // way that a solver took to it.
@@ -341,6 +341,7 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
                         objective.counts().gradient - counts_before.gradient,
                         objective.counts().hessian - counts_before.hessian};
   result.factorisations = monitor.factorisations();
+  result.factorised_steps = monitor.factorised_steps();
   result.trace = monitor.take_trace();
   result.phase_s = monitor.phases().seconds();
   result.wall_s = monitor.seconds();
@@ -352,6 +353,8 @@ SolverTable built_in_solvers() {
   return {{"lbfgs", [](const SolverOptions& options) { return make_lbfgs(options); }},
           {"bfgs", [](const SolverOptions&) { return make_bfgs(); }},
           {"dynamic", [](const SolverOptions& options) { return make_dynamic(options); }},
+          {"dynamic-explicit", [](const SolverOptions& options) { return make_dynamic_explicit(options); }},
+          {"mass-spring", [](const SolverOptions& options) { return make_mass_spring(options); }},
           {"newton", [](const SolverOptions& options) { return make_newton(options); }}};
 }
 

@@ -77,8 +77,8 @@ class Solver {
   // limit steps.
   virtual bool honours_step_limits() const { return true; }
 
-  // Whether minimize() goes by the energy of the objective alone. A method with laws of its own is led along
-  // no damped path.
+  // Whether minimize() goes by the energy of the objective alone. A method with laws or with a motion of its
+  // own is led along no damped path.
   virtual bool minimises_objective() const { return true; }
 
   // Asked before the first minimize(): whether the method carries the prescribed nodes along this path itself
@@ -142,6 +142,7 @@ struct Result {
   int unstable_steps = -1;
   EvaluationCounts evaluations;
   long factorisations = 0;
+  long factorised_steps = 0;  // of these, those of the method itself and not of certificates
   std::vector<TermReport> terms;
   Certificate certificate;                   // where the problem asked for it
   std::vector<BranchChange> branch_changes;  // from the third step of a path on; a path of fewer has none
@@ -180,13 +181,16 @@ struct SolverOptions : MethodOptions {
       {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them
   std::function<std::shared_ptr<const XpbdBody>()> xpbd_body = {};  // constraints; asked for by xpbd alone
+
+  // Names of terms of membranes that are no springs, as `"leaflets" (cst_stvk)`; asked for by mass-spring.
+  std::function<std::vector<std::string>()> membranes = {};
 };
 
 using SolverFactory = std::function<std::unique_ptr<Solver>(const SolverOptions&)>;
 using SolverTable = std::map<std::string, SolverFactory>;
 
-// The solvers of this room: "newton", "lbfgs", "bfgs", "dynamic". Others add themselves (add_xpbd_solver,
-// add_ceres_solver, ...).
+// The solvers of this room: "newton", "lbfgs", "bfgs", "dynamic", "dynamic-explicit", "mass-spring". Others
+// add themselves (add_xpbd_solver, add_ceres_solver, ...).
 SolverTable built_in_solvers();
 
 }  // namespace coapt

@@ -55,7 +55,7 @@ void withdraw_penetrated(Report& report) {
   report.result.message =
       "not converged: " + std::to_string(pairs) +
       (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") +
-      " through each other, which the collisions of `dynamic` were to keep apart; at rest " +
+      " through each other, which `solver.dynamics.collisions` were to keep apart; at rest " +
       "with a residual of " + number_text(report.result.residual, 3);
 }
 

@@ -1,6 +1,7 @@
 #include "run/run.hpp"
 
 #include "formats/whole_file.hpp"
+#include "optim/dynamic/dynamic.hpp"
 #include "optim/stability/smallest_modes.hpp"
 #include "report/shape_view.hpp"
 #include "report/solve_page.hpp"
@@ -49,7 +50,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   report.scene_title = scene_title(scene);
   report.solver = setup.solver;
   report.tolerance = setup.stop.tolerance;
-  report.has_collisions = setup.solver == "dynamic" && scene.solver.dynamic.collisions != Collisions::None;
+  report.has_collisions = is_dynamic(setup.solver) && scene.solver.dynamic.collisions != Collisions::None;
   report.has_page = notes.has_page;
   report.has_frames = notes.has_frames;
   report.accuracy = notes.accuracy;

@@ -5,6 +5,7 @@
 #include "scene/build/build.hpp"
 #include "scene/build/masses.hpp"
 #include "scene/build/xpbd_body.hpp"
+#include "scene/terms/term_types.hpp"
 #include "xpbd/solver_xpbd.hpp"
 
 #include <algorithm>
@@ -43,6 +44,12 @@ SolverOptions solver_options(const SolverSpec& spec, const std::vector<TermSpec>
   options.surface = [&model] { return TriangleMesh{model.X, model.mesh.triangles, {}, {}}; };
   options.masses = [&model, density = spec.density] { return lumped_masses(model, density); };
   options.xpbd_body = [&model, terms] { return xpbd_body(model, terms); };
+  options.membranes = [terms] {
+    std::vector<std::string> names;
+    for (const TermSpec& term : terms)
+      if (is_membrane(term)) names.push_back("\"" + term.name + "\" (" + term.type + ")");
+    return names;
+  };
   return options;
 }
 

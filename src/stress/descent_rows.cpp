@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/random_source.hpp"
 #include "formats/whole_file.hpp"
+#include "optim/dynamic/dynamic.hpp"
 #include "results/results.hpp"
 #include "stress/energy_checker.hpp"
 #include "stress/scenes/built_in.hpp"
@@ -97,7 +98,7 @@ std::string other_potential(const StressRun& own, const Scene& scene) {
   Objective& objective = *own.model.objective;
   if (objective.has_circulatory_force()) return "a pressure on a free edge has no potential";
   if (objective.step_limiting_term() != nullptr) return "the barrier may be stiffened on the way";
-  if (scene.solver.type == "dynamic" || scene.solver.type == "xpbd") return "masses in motion overshoot";
+  if (is_dynamic(scene.solver.type) || scene.solver.type == "xpbd") return "masses in motion overshoot";
   const bool has_kinks = objective.round_kinks(0);
   return scene.solver.type == "newton" && has_kinks ? "newton rounds the kinks of lines on its way" : "";
 }

@@ -25,7 +25,7 @@ double extent_of(const Model& model) {
 // Solves, measures and writes as `run` does for any scene.
 RunReport run_method(const Scene& scene, const std::string& method, const SolverTable& solvers,
                      RunOptions options, const BranchSearch& branches) {
-  options.solver = solver_of(method);
+  options.solver = method;
   options.folder /= method;
   std::error_code ignored;
   // Where this one fails, that of an earlier comparison would be taken for its own.
@@ -128,6 +128,7 @@ Comparison compare_methods(const Scene& given, const SolverTable& solvers, const
     } catch (const std::exception& error) {
       method.message = error.what();
     }
+    method.shares = shared_with_newton(method, scene);
     if (options.report) options.report(method);
     found.is_cancelled = method.run && method.run->report.result.status == Status::Cancelled;
     if (found.is_cancelled) break;

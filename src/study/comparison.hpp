@@ -19,7 +19,7 @@ namespace coapt {
 // What a method works on.
 enum class MethodModel {
   Scene,       // the energy of the scene
-  Springs,     // that with springs in place of its membranes, see mass_spring_scene
+  Springs,     // that with springs in place of its membranes ("mass-spring"), see mass_spring_scene
   Constraints  // constraints on positions ("xpbd"), unless they are the energy itself
 };
 std::string_view method_model_name(MethodModel model);  // "scene", "springs", "constraints"
@@ -67,6 +67,7 @@ struct ComparedMethod {
   std::optional<double> energy_above = {};
   Verdict verdict = Verdict::Failed;
   std::string message = {};  // one sentence: the verdict with its figures, or why the method failed
+  std::string shares = {};   // with newton, as "energy + contact + factorisation"; all stop by the residual
 };
 
 struct Comparison {
@@ -90,7 +91,7 @@ struct ComparisonOptions {
   std::function<void(const ComparedMethod&)> report;  // called after each method; may be empty
 };
 
-// The names of the table, and "mass-spring" where it has "dynamic".
+// The names of the table.
 std::vector<std::string> known_methods(const SolverTable& solvers);
 
 // Every method from the scene's own start, the reference first, each into a folder of its name within that of

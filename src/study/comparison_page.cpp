@@ -23,7 +23,7 @@ std::optional<double> mean_gap(const ComparedMethod& method) {
 }
 
 PageTable distance_table(const Comparison& comparison) {
-  std::vector<std::string> columns = {"method", "status", "verdict"};
+  std::vector<std::string> columns = {"method", "status", "verdict", "shares_with_newton"};
   columns.insert(columns.end(), {"mean_to_reference_mm", "p95_to_reference_mm", "max_to_reference_mm",
                                  "same_vertex_mean_mm", "same_vertex_max_mm"});
   const bool has_closed = !comparison.closed_surface.empty();
@@ -37,7 +37,9 @@ PageTable distance_table(const Comparison& comparison) {
   }
   table.note =
       "In both directions: mean of the means, greater 95th percentile, greater maximum. Same vertex: of each "
-      "vertex from itself. " +
+      "vertex from itself. Shared with newton: the energy (or the loads alone), the contact, steps by "
+      "factorised "
+      "Hessians; the verdict of all is by the residual. " +
       (has_closed ? "Closed: to the given surface " + comparison.closed_surface + ". " : "") +
       "One equilibrium: no vertex farther than " + page_number(kSameShape * comparison.extent_mm, 3) +
       " mm from itself.";

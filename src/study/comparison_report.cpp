@@ -64,7 +64,8 @@ OrderedJson method_json(const ComparedMethod& method) {
   OrderedJson json = {{"name", method.name},
                       {"model", std::string(method_model_name(method.model))},
                       {"verdict", std::string(verdict_name(method.verdict))},
-                      {"message", method.message}};
+                      {"message", method.message},
+                      {"shares_with_newton", method.shares}};
   json["distance_to_reference_method"] = method.gap ? gap_json(*method.gap) : OrderedJson(nullptr);
   json["refined"] = method.refined ? refined_json(*method.refined) : OrderedJson(nullptr);
   json["energy_above_reference_mj"] = number_json(method.energy_above);
@@ -130,9 +131,10 @@ Table comparison_table(std::span<const ComparedMethod> methods) {
     return along(&ComparedMethod::run, &RunReport::report, &Report::reference, distance_of, figure);
   };
   return table_of<ComparedMethod>(
-      methods, {{text_column("method", "", 12), &ComparedMethod::name},
+      methods, {{text_column("method", "", 16), &ComparedMethod::name},
                 {text_column("model"), along(&ComparedMethod::model, method_model_name)},
                 {text_column("verdict"), along(&ComparedMethod::verdict, verdict_name)},
+                {text_column("shares_with_newton", "shares with newton"), &ComparedMethod::shares},
                 {text_column("status", "", 16), result(&Result::status, status_name)},
                 {{"residual", "", "", 3}, result(&Result::residual)},
                 {{"energy_mj", "energy", "mJ", 8, -1, 12}, result(&Result::energy)},

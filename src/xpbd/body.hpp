@@ -39,13 +39,21 @@ struct XpbdFilm {
   double tension = 0;  // sigma [force/length]
 };
 
+// What a tether stands for, where that makes a difference to the paper's model or to contact.
+enum class TetherKind {
+  Chord,  // cable, chord or tether
+  Edge,   // of the membrane: the paper's stiffness of edges is meant
+  Link    // holds two nodes of leaflets together, whose features then do not meet
+};
+
 // A chord, cable or tether of any law.
 struct XpbdTether {
   int a = 0, b = 0;
   double length = 0;         // at which it begins to pull [length]
   double stiffness = 0;      // of a straight law; ignored where there is a law [force/length]
   bool only_tension = true;  // slack below its length
-  bool is_edge = false;      // of the membrane: the paper's stiffness of edges is meant
+  TetherKind kind = TetherKind::Chord;
+  bool is_clip = false;  // a link without a length of its own, which the paper gives zero (section 3.8)
   std::function<AxialLaw(double distance)> law;  // force and stiffness at a distance; empty: straight
 };
 

@@ -46,10 +46,12 @@ XpbdContact::XpbdContact(const XpbdBody& body, const ContactOptions& options)
                    ? kLongestOfVertices * options.thickness
                    : std::min(kLongestOverThickness * options.thickness,
                               kLongestOverEdge * mean_edge_length(body.rest, body.triangles))) {
-  for (const Edge& edge : edges(surface_.triangles())) {
-    neighbours_[static_cast<size_t>(edge.a)].push_back(edge.b);
-    neighbours_[static_cast<size_t>(edge.b)].push_back(edge.a);
-  }
+  const auto join = [&](int a, int b) {
+    neighbours_[static_cast<size_t>(a)].push_back(b);
+    neighbours_[static_cast<size_t>(b)].push_back(a);
+  };
+  for (const Edge& edge : edges(surface_.triangles())) join(edge.a, edge.b);
+  for (const auto& [a, b] : options.held_together) join(a, b);
   for (std::vector<int>& own : neighbours_) std::sort(own.begin(), own.end());
   find_joined_triangles();
 }

@@ -2,8 +2,8 @@
 // edges, on the side on which they were when the step began.
 //   C = +-d - h >= 0,   d the distance of the two features, - once they have passed through each other
 // Features of one sheet that are near each other at rest keep half their distance at rest, where that is
-// less; those that are joined by an edge do not meet. Edges are our addition, which options may leave out:
-// vertices alone let coarse sheets cross between their nodes.
+// less; those that are joined by an edge, or held together, do not meet. Edges are our addition, which
+// options may leave out: vertices alone let coarse sheets cross between their nodes.
 #pragma once
 
 #include "energy/contact/contact_surface.hpp"
@@ -33,6 +33,8 @@ struct ContactOptions {
   double thickness = 0;  // h [length]
   XpbdContactFeatures features = XpbdContactFeatures::VerticesAndEdges;
   double alpha = 0, stiffness = 1;  // of each constraint
+  // Pairs of nodes held nearer than h, as by a clip, which the paper calls an additional edge (section 3.8).
+  std::vector<std::array<int, 2>> held_together = {};
 };
 
 class XpbdContact {
@@ -60,7 +62,7 @@ class XpbdContact {
   void find_joined_triangles();
 
   ContactSurface surface_;
-  std::vector<std::vector<int>> neighbours_;  // of each node by an edge, ascending
+  std::vector<std::vector<int>> neighbours_;  // of each node: by an edge, or held together; ascending
   std::vector<std::vector<int>> joined_;  // of each triangle those of which it meets no feature, ascending
   ContactOptions options_;
   double longest_;

@@ -16,8 +16,9 @@ struct Hardness {
 
   double alpha(double stiffness) const { return is_paper ? paper.compliance : 1 / stiffness; }
   double alpha(const XpbdTether& tether) const {
-    return is_paper && !tether.is_edge ? paper.tether_compliance : alpha(tether.stiffness);
+    return is_paper && tether.kind != TetherKind::Edge ? paper.tether_compliance : alpha(tether.stiffness);
   }
+  double length(const XpbdTether& tether) const { return is_paper && tether.is_clip ? 0 : tether.length; }
   double share(double of_paper) const { return is_paper ? of_paper : 1; }
 };
 
@@ -78,14 +79,25 @@ std::vector<BendingConstraint> bending_constraints(const XpbdBody& body, const H
 
 std::vector<StretchConstraint> tether_constraints(const XpbdBody& body, const Hardness& hardness) {
   std::vector<StretchConstraint> all;
-  for (const XpbdTether& t : body.tethers)
-    // A length of zero is that of a clip (section 3.8), or of a constant tension, which the paper has not.
+  for (const XpbdTether& t : body.tethers) {
+    const bool is_edge = t.kind == TetherKind::Edge;
+    // What has a law and no length is a constant tension, which the paper has not.
     if ((hardness.is_paper && t.length > 0) || (!t.law && t.stiffness > 0))
       all.push_back({{t.a, t.b},
-                     t.length,
+                     hardness.length(t),
                      hardness.alpha(t),
-                     hardness.share(t.is_edge ? hardness.paper.stretch : hardness.paper.tether),
-                     pulls(t.only_tension && !(hardness.is_paper && t.is_edge))});
+                     hardness.share(is_edge ? hardness.paper.stretch : hardness.paper.tether),
+                     pulls(t.only_tension && !(hardness.is_paper && is_edge))});
+  }
+  return all;
+}
+
+// What contact must not push apart again.
+std::vector<std::array<int, 2>> held_together(const XpbdBody& body, const Hardness& hardness,
+                                              double thickness) {
+  std::vector<std::array<int, 2>> all;
+  for (const XpbdTether& t : body.tethers)
+    if (t.kind == TetherKind::Link && hardness.length(t) < thickness) all.push_back({t.a, t.b});
   return all;
 }
 
@@ -123,7 +135,8 @@ XpbdSystem::XpbdSystem(const XpbdBody& body, const Points& x,
   if (body.has_contact)
     contact_.emplace(body, ContactOptions{options.thickness, options.features,
                                           hardness.is_paper ? hardness.paper.contact_compliance : 0,
-                                          hardness.share(hardness.paper.contact)});
+                                          hardness.share(hardness.paper.contact),
+                                          held_together(body, hardness, options.thickness)});
 }
 
 void XpbdSystem::step(const Points& force, const Points& prescribed) {

@@ -9,8 +9,8 @@ GIVEN_UP = ("cut into four", "triangle into four", "held dead", "in one pass", "
             "rounds did not settle", "sweeps settle", "judge of intersections", "nonlinear kin", "groundwork")
 # Identifiers and words of comments that were renamed.
 GIVEN_UP_IN_CODE = ("settle", "Settling", "begin_round", "solve_rounds", "judge_stability", "groundwork", "hold_dead", "Stressed",
-                    "HostedRun", "MadeNumber", "sealed_json", "Scenery", "keeps_way", "goes_the_way", "is_on_the_way", "IntersectionChecker",
-                    "HeldDead", "remeasure_reference", "carried_along", "cut_in_four", "write_sealed", "lost_row", "ViewWay", "given_ground")
+                    "HostedRun", "MadeNumber", "sealed_json", "Scenery", "keeps_way", "goes_the_way", "is_on_the_way", "IntersectionJudge",
+                    "HeldDead", "renew_reference", "carried_along", "cut_in_four", "write_sealed", "lost_row", "ViewWay", "given_ground")
 
 
 def sources() -> list[pathlib.Path]:

@@ -56,11 +56,20 @@ TEST_F(MassSpringTest, KeepsAllButMembranesBendingAndSolver) {
   for (const char* other : {"poisson", "prestress", "residual_stiffness", "knee"}) EXPECT_FALSE(p.has(other));
   EXPECT_EQ(after.terms[1].type, "surface_tension");
   EXPECT_EQ(after.terms[2].type, "load_pressure");
-  EXPECT_EQ(after.solver.type, "dynamic");
+  EXPECT_EQ(after.solver.type, "mass-spring");
   EXPECT_EQ(before.solver.type, "newton");
   EXPECT_EQ(after.boundary.size(), before.boundary.size());
   EXPECT_TRUE(has_springs_alone(after));
   EXPECT_FALSE(has_springs_alone(before));
+}
+
+// Bending goes with the membrane that springs take the place of; beside springs it is the user's.
+TEST_F(MassSpringTest, LeavesASceneOfSpringsAsItIs) {
+  const Scene before = scene(std::string(R"({ "type": "spring", "young": "2 MPa", "thickness": "0.3 mm" },
+    { "type": "bending", "stiffness": "1 mJ" }, )") +
+                             kPressure);
+  EXPECT_TRUE(has_springs_alone(before));
+  EXPECT_EQ(mass_spring_scene(before).terms.size(), 3U);
 }
 
 TEST_F(MassSpringTest, ResistWhereTheMembraneDoes) {

@@ -245,6 +245,24 @@ TEST(TimeIntegrators, DragSlowsAMassByAFactorEInItsTime) {
   }
 }
 
+// Hammer et al. 2008, eq. 5: -b v with one b, the mean mass over the relaxation time, so that light masses
+// are slowed down faster.
+TEST(SemiImplicitEuler, HasADragThatIsTheSameForAllMasses) {
+  const Points X = (Points(3, 2) << 0, 1, 0, 0, 0, 0).finished();
+  Masses body(X, FixedMask::Constant(3, 2, false),
+              terms_of(cable_term(Segments(Eigen::Vector2i(0, 1)), 1, Vector::Constant(1, 9.0))),
+              (Vector(2) << 1, 3).finished());
+  DynamicOptions options = kUndamped;
+  options.relaxation_time = 0.5;
+  options.drag = Drag::Equal;
+  const auto integrator = body.integrator(TimeIntegration::SemiImplicitEuler, options);
+  Motion at = body.start(body.objective.unknowns(X), Vector::Constant(6, 1.0));
+  for (int k = 0; k < 1000; ++k) ASSERT_TRUE(integrator->step(2.5e-4, at));
+  const double b = 2 / options.relaxation_time, t = 0.25;
+  EXPECT_NEAR(at.v[0], std::exp(-b * t / 1), 5e-4);
+  EXPECT_NEAR(at.v[3], std::exp(-b * t / 3), 5e-4);
+}
+
 TEST(SemiImplicitEuler, KnowsItsLongestStableStep) {
   // Twice the limit explodes, the step that it proposes does not; for one spring the bound is exact.
   Bob bob;

@@ -91,6 +91,25 @@ TEST(RunRecord, KeepsAllWhenItIsCancelledWhileItRetraces) {
   EXPECT_EQ(third.record().iterations, first.record().iterations) << "nothing was left to do";
 }
 
+// A method is led along the way that it takes when nobody records it.
+TEST(RunRecord, LeavesTheMethodWhatItIs) {
+  class Own final : public Solver {
+   public:
+    std::string_view name() const override { return "own"; }
+    bool raises_stress_limits() const override { return true; }
+    bool honours_step_limits() const override { return false; }
+    bool minimises_objective() const override { return false; }
+    Status minimize(Objective&, Vector&, Monitor&) override { return Status::Stalled; }
+  };
+  RunRecorder recorder({}, 0, {});
+  const SolverTable table =
+      recorder.recorded(SolverTable{{"own", [](const SolverOptions&) { return std::make_unique<Own>(); }}});
+  const auto recorded = table.at("own")({});
+  EXPECT_TRUE(recorded->raises_stress_limits());
+  EXPECT_FALSE(recorded->honours_step_limits());
+  EXPECT_FALSE(recorded->minimises_objective());
+}
+
 TEST(RunRecord, DropsWhatDoesNotFit) {
   RunRecord foreign;
   foreign.ends.push_back({Points::Random(3, 5), Status::Converged, true, ""});

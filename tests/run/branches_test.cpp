@@ -169,10 +169,10 @@ TEST(Headline, CallsNothingConvergedThatCollisionsLetThrough) {
   report.metrics.intersections = 151;
   withdraw_penetrated(report);
   EXPECT_EQ(report.result.status, Status::Stalled);
-  EXPECT_EQ(
-      headline(report).text,
-      "not converged: 151 pairs of facets pass through each other, which the collisions of `dynamic` were to "
-      "keep apart; at rest with a residual of 2e-09");
+  EXPECT_EQ(headline(report).text,
+            "not converged: 151 pairs of facets pass through each other, which `solver.dynamics.collisions` "
+            "were to "
+            "keep apart; at rest with a residual of 2e-09");
 }
 
 TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {

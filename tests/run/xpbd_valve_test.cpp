@@ -5,8 +5,11 @@
 #include "run/judged_scene.hpp"
 #include "run/run.hpp"
 #include "scene/build/build.hpp"
+#include "scene/build/scene_geometry.hpp"
+#include "scene/file/scene_text.hpp"
 #include "solve/solve_scene.hpp"
 #include "support/temporary_folder.hpp"
+#include "valve/generators/leaflet_chords.hpp"
 #include "valve/generators/mitral.hpp"
 #include "xpbd/options.hpp"
 
@@ -191,6 +194,68 @@ TEST_F(XpbdValve, KeepsTheAreaOfLeafletsByThePapersNumbers) {
   EXPECT_NE(closed.outcome.result.message.find("at rest after"), std::string::npos);
   EXPECT_LT(closed.metrics.orifice_area_mm2.value(), 33);
   EXPECT_LT(std::abs(closed.metrics.leaflet_area_change_mm2), 4);
+}
+
+// --- Clips ------------------------------------------------------------------------------------------------
+
+// The paper's model of a valve with chords by its rule (section 3.5).
+void write_paper_valve(const TemporaryFolder& folder) {
+  Valve valve = mitral_valve({.triangles = 630});
+  valve.chords = {};
+  LeafletChordOptions chords;
+  chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
+  chords.lengths = ChordLengths::Sum;
+  valve.chords = leaflet_chords(valve, chords);
+  ImportOptions import;
+  apply_valve_model("walczak-2019", valve, import);
+  write_valve_scene(valve, folder.path(), import);
+}
+
+struct Clipped {
+  Closure closure;
+  double orifice_mm2 = 0, open_pair_mm = 0, pair_mm = 0;  // the farthest pair, at first and in the end
+  std::string message;
+};
+
+Clipped solved_with_clips(const TemporaryFolder& folder, const std::string& at, const XpbdOptions& options) {
+  const auto file = folder.path() / "scene.json";
+  Scene scene = parse_scene(
+      with_interventions(scene_text(file), {R"([{"type": "clip", "at": )" + at + "}]"}, file.string()), file);
+  scene.solver.xpbd = std::make_shared<const XpbdOptions>(options);
+  const JudgedScene judged = solve_judged(scene);
+  Clipped found{judged.metrics.closure.value(), judged.metrics.orifice_area_mm2.value(), 0, 0,
+                judged.outcome.result.message};
+  const Points x = judged.positions();
+  const SceneGeometry geometry = scene_geometry(scene);
+  for (const auto& [a, b] : geometry.links.at("clip")) {
+    found.open_pair_mm = std::max(found.open_pair_mm, (judged.model.X.col(a) - judged.model.X.col(b)).norm());
+    found.pair_mm = std::max(found.pair_mm, (x.col(a) - x.col(b)).norm());
+  }
+  std::printf("clip at %s: orifice %.1f mm2, %zu outlines, pairs %.3f -> %.4f mm; %s\n", at.c_str(),
+              found.orifice_mm2, found.closure.orifices.size(), found.open_pair_mm, found.pair_mm,
+              found.message.c_str());
+  return found;
+}
+
+// Walczak et al. 2019, section 3.8: distance constraints without compliance and of zero length. The open
+// valve with a clip has two orifices (its figure 8), and a compliance lets the clip open.
+TEST(XpbdClips, CloseAValveAndDivideItsOrifice) {
+  const TemporaryFolder folder;
+  write_paper_valve(folder);
+  XpbdOptions options = walczak_2019();
+  const Clipped closed = solved_with_clips(folder, "[0.5]", options);
+  EXPECT_GT(closed.open_pair_mm, 5);
+  EXPECT_LT(closed.pair_mm, 0.2 * options.thickness);  // 3 sweeps and contact leave that of 20 mm
+  options.phase = HeartPhase::Diastole;
+  const Clipped opened = solved_with_clips(folder, "[0.5]", options),
+                with_two = solved_with_clips(folder, "[0.4, 0.6]", options);
+  EXPECT_LT(closed.orifice_mm2, 0.15 * opened.orifice_mm2);
+  EXPECT_EQ(opened.closure.orifices.size(), 2U);
+  EXPECT_LT(opened.pair_mm, 0.2 * options.thickness);
+  EXPECT_LT(with_two.orifice_mm2, 0.8 * opened.orifice_mm2);
+  options.paper.tether_compliance = 1e-3;
+  const Clipped soft = solved_with_clips(folder, "[0.5]", options);
+  EXPECT_GT(soft.pair_mm, 5 * opened.pair_mm);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "scene/file/schema.hpp"
 
+#include "exchange/reference_page.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/terms/term_types.hpp"
 

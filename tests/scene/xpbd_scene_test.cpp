@@ -1,6 +1,7 @@
 // xpbd on scenes: the constraints that terms become, and its options.
 #include "core/error.hpp"
 #include "energy/connected_parts.hpp"
+#include "energy/term_access.hpp"
 #include "formats/mesh_io.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/xpbd_body.hpp"
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
@@ -128,6 +130,40 @@ TEST_F(XpbdBodyTest, TakesLinesHingesFilmsAndContactFromTheirTerms) {
     const double force = tether.law ? tether.law(l).force : tether.stiffness * (l - tether.length);
     EXPECT_NEAR(force / greatest, 1, 1e-9) << name;
   }
+}
+
+// A link resists both ways. What has no length of its own is a clip, whatever the contact made of it.
+TEST_F(XpbdBodyTest, TakesLinksForClipsWhereTheyHaveNoLength) {
+  const std::string contact = R"(, {"type": "contact_facet", "range": "0.3 mm", "strength": "1 N/mm^3"})",
+                    link = R"({"type": "link", "nodes": [0], "to": [3], "stiffness": "7 N/mm")";
+  struct Case {
+    std::string terms;
+    double length;
+    bool is_clip;
+  };
+  for (const Case& given : {Case{link + "}", 0, true}, Case{link + "}" + contact, 0.3, true},
+                            Case{link + R"(, "length": 0})" + contact, 0, false},
+                            Case{link + R"(, "length": "1 mm"})" + contact, 1, false},
+                            Case{link + R"(, "keeps_distance": true})", 2 * std::sqrt(3), false}}) {
+    build_with(given.terms);
+    ASSERT_EQ(body_->tethers.size(), 1U);
+    const XpbdTether& tether = body_->tethers[0];
+    EXPECT_EQ(tether.kind, TetherKind::Link);
+    EXPECT_FALSE(tether.only_tension);
+    EXPECT_FALSE(tether.law);
+    EXPECT_EQ(tether.stiffness, 7);
+    EXPECT_NEAR(tether.length, given.length, 1e-6) << given.terms;
+    EXPECT_EQ(tether.is_clip, given.is_clip) << given.terms;
+    const auto& terms = model_.objective->terms();
+    const EnergyTerm& term =
+        **std::find_if(terms.begin(), terms.end(), [](const auto& each) { return each->name() == "link"; });
+    const Points x = 1.1 * model_.X;
+    const double l = (x.col(0) - x.col(3)).norm(), force = nodal_forces(term, x).col(0).norm();
+    ASSERT_GT(force, 1);
+    EXPECT_NEAR(tether.stiffness * (l - tether.length), force, 1e-9);
+    EXPECT_NEAR(access_of(term)->line_law(0)(l).force, force, 1e-9);
+  }
+  EXPECT_TRUE(model_.lines.empty());  // of chord figures and views
 }
 
 // Springs note moduli of the triangles that they stand for: no membrane besides.

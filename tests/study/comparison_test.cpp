@@ -348,6 +348,7 @@ TEST_F(ComparisonTest, TellsItInJson) {
   EXPECT_EQ(idle.at("distance_to_reference_method").at("same_vertex").at("max_mm").get<double>(),
             found.methods[1].gap->same_vertex.max);
   EXPECT_EQ(json.at("methods").at(2).at("verdict"), "failed");
+  EXPECT_EQ(newton.at("shares_with_newton"), "all");
   EXPECT_FALSE(json.at("methods").at(2).contains("residual"));
 }
 
@@ -435,10 +436,9 @@ TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   // Iterates of newton, each of the run itself: the shapes that its own page leads through.
   const Report& newton = found.reference().run->report;
   for (size_t k = last[1] + 1; k < last[2]; ++k)
-    EXPECT_TRUE(std::any_of(
-        newton.shape_history.begin(), newton.shape_history.end(),
-        [&](const RecordedShape& shape) { return json.at("states").at(k).at("nodes") == nodes(shape.x); }))
-        << k;
+    EXPECT_TRUE(std::ranges::any_of(newton.shape_history, [&](const RecordedShape& shape) {
+      return json.at("states").at(k).at("nodes") == nodes(shape.x);
+    })) << k;
   EXPECT_EQ(json.at("states").at(last[1]).at("nodes"), nodes(found.methods[3].run->report.fields.x));
   EXPECT_EQ(json.at("states").at(last[2]).at("nodes"), nodes(newton.fields.x));
   const nlohmann::json& distance = json.at("fields").at(0);

@@ -134,7 +134,7 @@ TEST(Xpbd, HasCordsOfThePaperWithoutCompliance) {
   rest << 0, 0, 0, 0, 0, -10;
   for (const bool is_edge : {false, true}) {
     XpbdBody body = chain_body(rest, 10, 1);
-    body.tethers[0].is_edge = is_edge;
+    body.tethers[0].kind = is_edge ? TetherKind::Edge : TetherKind::Chord;
     XpbdOptions options = walczak_2019();
     options.paper.stretch = 1;
     options.damping = 0.05;
@@ -143,6 +143,67 @@ TEST(Xpbd, HasCordsOfThePaperWithoutCompliance) {
     force(2, 1) = -250;
     for (int step = 0; step < 3000; ++step) system.step(force);
     EXPECT_NEAR(-10 - system.positions()(2, 1), is_edge ? 1e-5 * 250 : 0, 1e-9) << is_edge;
+  }
+}
+
+// A weight on a clip opens it by its compliance times the weight: 1/k by the material, alpha of cords by the
+// paper, which closes clips without a length of their own (Walczak et al. 2019, section 3.8) and no others.
+TEST(Xpbd, AClipOpensByItsCompliance) {
+  Points rest(3, 2);
+  rest << 0, 0, 0, 0, 0, -3.5;
+  const double weight = 250, stiffness = 100, length = 3;
+  const auto gap = [&](const XpbdOptions& options, bool is_clip) {
+    XpbdBody body = chain_body(rest, length, stiffness);
+    body.tethers[0].kind = TetherKind::Link;
+    body.tethers[0].only_tension = false;
+    body.tethers[0].is_clip = is_clip;
+    XpbdSystem system(body, rest, fixed_nodes(2, {0}), Vector::Ones(2), options);
+    Points force = Points::Zero(3, 2);
+    force(2, 1) = -weight;
+    for (int step = 0; step < 3000; ++step) system.step(force);
+    return -system.positions()(2, 1);
+  };
+  XpbdOptions paper = walczak_2019();
+  paper.damping = 0.05;
+  EXPECT_NEAR(gap(with_step(0.005), true), length + weight / stiffness, 1e-6);
+  EXPECT_NEAR(gap(paper, false), length, 1e-6);
+  for (const double compliance : {0.0, 1e-4, 1e-3}) {
+    paper.paper.tether_compliance = compliance;
+    EXPECT_NEAR(gap(paper, true), compliance * weight, 1e-6) << compliance;
+  }
+}
+
+// Contact keeps h from vertices that no clip holds nearer.
+TEST(Xpbd, ContactDoesNotOpenAClip) {
+  const TriangleMesh plate = grid_mesh(2, 2, 6, 6),
+                     mesh = joined(plate, moved(grid_mesh(3, 3, 4, 4), Vec3(1, 1, 2)));
+  const int held = plate.vertex_count(), count = mesh.vertex_count(), middle = 4;
+  std::vector<int> fixed(held);
+  for (int k = 0; k < held; ++k) fixed[k] = k;
+  XpbdBody body = sheet_body(mesh, 1, 1, 0.01);
+  body.has_contact = true;
+  XpbdTether clip;
+  clip.a = middle;
+  clip.b = held;
+  for (int k = held; k < count; ++k)
+    if ((mesh.vertices.col(k) - mesh.vertices.col(middle)).norm() <
+        (mesh.vertices.col(clip.b) - mesh.vertices.col(middle)).norm())
+      clip.b = k;
+  clip.stiffness = 1;
+  body.tethers.push_back(clip);
+  for (const auto kind : {TetherKind::Chord, TetherKind::Link}) {
+    body.tethers[0].kind = kind;
+    XpbdOptions options = walczak_2019();
+    options.damping = 0.1;
+    body.tethers[0].is_clip = true;
+    XpbdSystem system(body, mesh.vertices, fixed_nodes(count, fixed), Vector::Ones(count), options);
+    for (int step = 0; step < 2000; ++step) system.step(Points::Zero(3, count));
+    const double gap = (system.positions().col(clip.a) - system.positions().col(clip.b)).norm();
+    EXPECT_GT(system.contact()->active_count(), 0U);
+    if (kind == TetherKind::Link)
+      EXPECT_LT(gap, 1e-3);
+    else
+      EXPECT_GT(gap, 0.9 * options.thickness);
   }
 }
 

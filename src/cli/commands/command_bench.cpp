@@ -108,7 +108,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", arguments->folder,
                       "Folder of the files (default: the scene's result folder)");
   command->add_option("--methods", arguments->methods,
-                      "Names of solvers, and mass-spring, with commas between them (default: "
+                      "Names of solvers with commas between them; mass-spring puts springs in the place of "
+                      "membranes (default: "
                       "newton,lbfgs,dynamic)");
   command->add_option("--tolerances", arguments->tolerances,
                       "On the residual, with commas between them (default: 1e-2,1e-4,1e-6,1e-8)");

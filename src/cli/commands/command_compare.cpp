@@ -23,20 +23,23 @@ struct CompareArguments : StudyArguments {
 // Of those that are usually compared what this build has.
 std::vector<std::string> usual_methods(const std::vector<std::string>& known) {
   std::vector<std::string> methods;
-  for (const char* name : {"newton", "lbfgs", "dynamic", "mass-spring", "xpbd"})
+  for (const char* name : {"newton", "lbfgs", "dynamic", "dynamic-explicit", "mass-spring", "xpbd"})
     if (std::find(known.begin(), known.end(), name) != known.end()) methods.emplace_back(name);
   return methods;
 }
 
+// Figures that fit beside each other on a terminal; compare.csv has all. The message says what became of it.
 void print_method(const ComparedMethod& method, bool has_closed, RowPrinter& print) {
-  std::vector<std::string> columns = {"method", "status"};
-  columns.insert(columns.end(), {"mean_to_reference_mm", "p95_to_reference_mm", "max_to_reference_mm",
-                                 "same_vertex_max_mm"});
-  if (has_closed) columns.insert(columns.end(), {"mean_to_closed_mm", "p95_to_closed_mm"});
-  columns.insert(columns.end(), {"orifice_area_mm2", "leaflet_area_change_mm2", "coaptation_area_mm2",
-                                 "intersections", "residual", "energy_mj", "iterations", "cpu_s", "wall_s"});
+  std::vector<std::string> columns = {"method", "mean_to_reference_mm", "max_to_reference_mm"};
+  if (has_closed) columns.emplace_back("mean_to_closed_mm");
+  columns.insert(columns.end(), {"orifice_area_mm2", "intersections", "residual", "energy_mj"});
+  if (!has_closed) columns.emplace_back("iterations");
+  columns.emplace_back("cpu_s");
   print(chosen(comparison_table({&method, 1}), columns));
-  std::printf("      %s%s\n", method.run ? "" : "failed: ", method.message.c_str());
+  std::fputs(
+      wrapped((method.run ? "" : "failed: ") + method.message + "; shares with newton: " + method.shares, 6)
+          .c_str(),
+      stdout);
   std::fflush(stdout);
 }
 
@@ -64,8 +67,8 @@ void compare(const CompareArguments& arguments, int& exit_code) {
     std::fputs(comparison_json(found).c_str(), stdout);
   else
     std::printf(
-        "distances in mm to %s; written to %s (compare.json, compare.csv, report.html and a folder "
-        "for each method)\n",
+        "distances in mm to %s, of surfaces\n"
+        "written: %s: compare.json, compare.csv, report.html and a folder for each method\n",
         found.reference().name.c_str(), found.folder.string().c_str());
   exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
@@ -78,9 +81,8 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       "compare", "One scene by several methods: distances between the results, figures, run times");
   add_run_arguments(*command, *arguments);
   command->add_option("--methods", arguments->methods,
-                      "Names of solvers, and mass-spring (springs for membranes, by dynamics), with commas "
-                      "between them (default: newton,lbfgs,dynamic,mass-spring,xpbd as far as this build "
-                      "has them)");
+                      "Names of solvers with commas between them; mass-spring puts springs in the place of "
+                      "membranes (default: newton,lbfgs,dynamic,dynamic-explicit,mass-spring,xpbd)");
   command->add_option("--reference", arguments->reference,
                       "That of the methods which the others are compared with (default: newton, else the "
                       "first)");

@@ -26,6 +26,19 @@ struct Link {
     double length = 0;     // L
   };
 
+  // For solvers that want more than forces: it pulls when longer than its length and pushes when shorter.
+  static LineTraits line(const Rest& rest) {
+    return {.length = rest.length,
+            .is_one_law = true,
+            .resists = true,
+            .is_straight = true,
+            .stiffness = rest.stiffness};
+  }
+  static AxialLaw axial(const Rest& rest, double l) {
+    const double excess = l - rest.length;
+    return {0.5 * rest.stiffness * excess * excess, rest.stiffness * excess, rest.stiffness};
+  }
+
   static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
                          Eigen::Matrix<double, 6, 6>* H) {
     return evaluate_with(rest, x, g, H, -kInfinity);

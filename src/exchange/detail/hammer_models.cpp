@@ -110,7 +110,7 @@ models* (2011).
 | what | the paper | here | why |
 |---|---|---|---|
 | self-contact | a penalty force that balances the force which brings two triangles together, without friction (section 2) | `contact_barrier` | a balanced force keeps facets apart only while nothing else moves them; `"collisions": "balanced"` in `solver.dynamics` is that rule between vertices and facets |
-| motion | semi-implicit, with steps of adaptive size | `newton` along a damped path, to the same equilibrium | `--solver dynamic` moves in time; `"integration": "semi_implicit_euler"` in `solver.dynamics` is theirs |
+| motion | semi-implicit, with steps of adaptive size | `newton` along a damped path, to the same equilibrium | `--solver mass-spring` is theirs, with annulus and pressure together |
 | papillary points | held while the annulus moves | they go where the valve's data say, together with the annulus | a valve without closed papillary points holds them |
 
 ## What it leaves open, and what was chosen

@@ -28,6 +28,7 @@ Mitral Valve in a Decision Support System* (2019).
 | method | extended position-based dynamics; explicit forces, then constraints, without damping | eq. 8 to 10 |
 | leaflets | stretching, shearing and bending of edges, and areas: squared area less the squared area at rest, share 1 | eq. 11 to 14, table 1 |
 | chords and contact | constraints without compliance | eq. 15, section 3.3 |
+| clips (`interventions`) | the same, of zero length | section 3.8 |
 | forces | of a flow field along the normals, and of the heart | eq. 16 to 19, table 1 |
 | numbers | all of table 1, as defaults of `model: walczak-2019` | table 1 |
 

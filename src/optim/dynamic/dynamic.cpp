@@ -14,6 +14,8 @@ double kinetic_energy(const Motion& at, const Vector& mass) { return 0.5 * at.v.
 
 namespace {
 
+constexpr const char *kDynamic = "dynamic", *kExplicit = "dynamic-explicit", *kMassSpring = "mass-spring";
+
 constexpr double kShorter = 0.25;    // after a step that failed
 constexpr double kShortest = 1e-12;  // of the first step
 constexpr double kMostApproach =
@@ -69,15 +71,19 @@ class CollisionHandling {
 
 class SolverDynamic final : public Solver {
  public:
-  explicit SolverDynamic(const SolverOptions& options)
-      : options_(options.dynamic), factorisation_(options.factorisation), masses_(options.masses()) {
+  SolverDynamic(const char* name, const SolverOptions& options)
+      : name_(name),
+        options_(options.dynamic),
+        factorisation_(options.factorisation),
+        masses_(options.masses()) {
     if (!(masses_.array() > 0).all() || !masses_.allFinite())
-      throw InputError("solver \"dynamic\": every node needs a mass above 0");
+      throw InputError("solver \"" + std::string(name_) + "\": every node needs a mass above 0");
     if (options_.collisions != Collisions::None) surface_ = options.surface();
   }
 
-  std::string_view name() const override { return "dynamic"; }
+  std::string_view name() const override { return name_; }
   bool follows_path() const override { return true; }
+  bool minimises_objective() const override { return name_ == kDynamic; }
   bool is_at_rest() const override { return is_at_rest_; }
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
@@ -152,6 +158,7 @@ class SolverDynamic final : public Solver {
   // The most that two nodes can have come closer in the last step.
   double approach(const Motion& at) const { return 2 * fastest(at.q - last_.q); }
 
+  std::string_view name_;
   DynamicOptions options_;
   FactorisationFactory factorisation_;
   Vector masses_;                        // of each node
@@ -160,16 +167,44 @@ class SolverDynamic final : public Solver {
   bool is_at_rest_ = true;
 };
 
-}  // namespace
-
-std::unique_ptr<Solver> make_dynamic(const SolverOptions& options) {
-  if (!options.masses) throw InputError("solver \"dynamic\" needs the masses of the nodes");
+std::unique_ptr<Solver> make(const char* name, const SolverOptions& options) {
+  const std::string who = "solver \"" + std::string(name) + "\"";
+  if (!options.masses) throw InputError(who + " needs the masses of the nodes");
   const DynamicOptions& dynamic = options.dynamic;
   if (!(dynamic.time_step > 0 && dynamic.longest_step > 0 && dynamic.relaxation_time >= 0))
-    throw InputError("solver \"dynamic\": time steps must be above 0, the relaxation time at least 0");
+    throw InputError(who + ": time steps must be above 0, the relaxation time at least 0");
   if (dynamic.collisions != Collisions::None && !(options.surface && dynamic.collision_distance > 0))
-    throw InputError("solver \"dynamic\": collisions need a surface and a distance above 0");
-  return std::make_unique<SolverDynamic>(options);
+    throw InputError(who + ": collisions need a surface and a distance above 0");
+  return std::make_unique<SolverDynamic>(name, options);
+}
+
+}  // namespace
+
+std::unique_ptr<Solver> make_dynamic(const SolverOptions& options) { return make(kDynamic, options); }
+
+std::unique_ptr<Solver> make_dynamic_explicit(const SolverOptions& options) {
+  SolverOptions own = options;
+  own.dynamic.integration = TimeIntegration::SemiImplicitEuler;
+  return make(kExplicit, own);
+}
+
+std::unique_ptr<Solver> make_mass_spring(const SolverOptions& options) {
+  std::vector<std::string> defects;
+  for (const std::string& membrane : options.membranes ? options.membranes() : std::vector<std::string>())
+    defects.push_back(
+        "solver \"mass-spring\" moves masses on springs, and term " + membrane +
+        " is none; take term type \"spring\" (as --model hammer-2008 and hammer-2011 do), `coapt "
+        "compare --methods mass-spring`, which puts springs in its place, or solver "
+        "\"dynamic-explicit\"");
+  if (!defects.empty()) throw InputError(defects);
+  SolverOptions own = options;
+  own.dynamic.integration = TimeIntegration::SemiImplicitEuler;
+  own.dynamic.drag = Drag::Equal;
+  return make(kMassSpring, own);
+}
+
+bool is_dynamic(std::string_view solver) {
+  return solver == kDynamic || solver == kExplicit || solver == kMassSpring;
 }
 
 }  // namespace coapt

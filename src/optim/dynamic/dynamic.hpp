@@ -14,4 +14,16 @@ namespace coapt {
 // Throws InputError for a mass that is not positive, or an option without meaning.
 std::unique_ptr<Solver> make_dynamic(const SolverOptions& options);
 
+// The same by semi-implicit Euler, whatever integration the options name: no linear system is solved. Led
+// along no damped path, as the motion has a way of its own.
+std::unique_ptr<Solver> make_dynamic_explicit(const SolverOptions& options);
+
+// And with a drag that is the same for all nodes: the mass-spring model of Hammer et al. (2008, eq. 2 and 5;
+// 2011, section 2: semi-implicit, with adaptive steps). Throws InputError also where a membrane is no springs
+// (SolverOptions::membranes).
+std::unique_ptr<Solver> make_mass_spring(const SolverOptions& options);
+
+// Whether the solver of this name moves masses as DynamicOptions say.
+bool is_dynamic(std::string_view solver);
+
 }  // namespace coapt

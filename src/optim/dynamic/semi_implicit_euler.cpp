@@ -18,11 +18,15 @@ class SemiImplicitEuler final : public TimeIntegrator {
       : context_(context),
         adapts_(options.adapts_steps),
         safety_(options.has_kinetic_damping ? kSafetyFromRest : kSafety),
-        drag_(options.relaxation_time > 0 ? 1 / options.relaxation_time : 0) {}
+        drag_(Vector::Constant(context.mass.size(),
+                               options.relaxation_time > 0 ? 1 / options.relaxation_time : 0)) {
+    if (options.drag == Drag::Equal && drag_.size() > 0)
+      drag_.array() *= context.mass.mean() / context.mass.array();
+  }
 
   bool step(double h, Motion& at) override {
-    next_.v =
-        (at.v.array() - h * (at.g - context_.applied).array() / context_.mass.array()) / (1 + h * drag_);
+    next_.v = (at.v.array() - h * (at.g - context_.applied).array() / context_.mass.array()) /
+              (1 + h * drag_.array());
     // What is in the way takes the velocity of all: contact is inelastic.
     next_.v *= context_.monitor.step_limit(at.q, next_.v, h) / h;
     next_.q = at.q + h * next_.v;
@@ -49,6 +53,7 @@ class SemiImplicitEuler final : public TimeIntegrator {
  private:
   // The eigenvalues of M^-1 H are at most its largest sum of magnitudes in a row.
   double longest_stable_step(const Motion& at) {
+    if (at.q.size() == 0) return kInfinity;  // nothing is free
     context_.monitor.hessian(at.q, work_, hessian_, Projection::PositiveSemidefinite);
     work_.setZero(at.q.size());
     for (int column = 0; column < hessian_.outerSize(); ++column)
@@ -64,7 +69,7 @@ class SemiImplicitEuler final : public TimeIntegrator {
   TimeIntegratorContext context_;
   bool adapts_;
   double safety_;
-  double drag_;  // [1/time]
+  Vector drag_;  // of each unknown [1/time]
   int age_ = 0;
   double stable_step_ = kInfinity;
   Motion next_;

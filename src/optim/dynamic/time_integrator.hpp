@@ -51,8 +51,9 @@ std::unique_ptr<TimeIntegrator> make_backward_differences(const TimeIntegratorCo
                                                           const DynamicOptions& options,
                                                           const FactorisationFactory& factorisation);
 
-// v += h a(q, v), then q += h v. Symplectic without drag. Stable up to 2 over the highest angular frequency,
-// of which next_step() keeps a bound (Gershgorin's, of the projected Hessian).
+// v += h a(q, v), then q += h v (Hammer et al. 2011: semi-implicit, with adaptive steps). Symplectic without
+// drag. Stable up to 2 over the highest angular frequency, of which next_step() keeps a bound (Gershgorin's,
+// of the projected Hessian).
 std::unique_ptr<TimeIntegrator> make_semi_implicit_euler(const TimeIntegratorContext& context,
                                                          const DynamicOptions& options);
 

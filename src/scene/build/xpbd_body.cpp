@@ -18,7 +18,23 @@ constexpr double kPushes = 0.01;            // of its modulus: stress there that
 
 // --- Lines ------------------------------------------------------------------------------------------------
 
-void add_tethers(const EnergyTerm& term, const TermAccess& access, XpbdBody& body) {
+TetherKind tether_kind(TermKind kind) {
+  return kind == TermKind::Spring ? TetherKind::Edge
+         : kind == TermKind::Link ? TetherKind::Link
+                                  : TetherKind::Chord;
+}
+
+// A link to which the scene gives no length.
+bool is_clip(const EnergyTerm& term, TermKind kind, const std::vector<TermSpec>& specs) {
+  if (kind != TermKind::Link) return false;
+  const auto spec =
+      std::find_if(specs.begin(), specs.end(), [&](const TermSpec& s) { return s.name == term.name(); });
+  return spec != specs.end() && !spec->parameters.has("length") && !spec->parameters.flag("keeps_distance");
+}
+
+void add_tethers(const EnergyTerm& term, const TermAccess& access, const std::vector<TermSpec>& specs,
+                 XpbdBody& body) {
+  const bool clips = is_clip(term, access.kind(), specs);
   const int* nodes = term.stencils().nodes.data();
   for (int e = 0; e < term.stencils().count(); ++e, nodes += 2) {
     const LineTraits line = access.line(e);
@@ -27,7 +43,8 @@ void add_tethers(const EnergyTerm& term, const TermAccess& access, XpbdBody& bod
                             .length = line.length,
                             .stiffness = line.stiffness,
                             .only_tension = !line.resists,
-                            .is_edge = access.kind() == TermKind::Spring,
+                            .kind = tether_kind(access.kind()),
+                            .is_clip = clips,
                             .law = line.is_straight ? nullptr : access.line_law(e)});
   }
 }
@@ -62,10 +79,10 @@ XpbdConstraint constraint_of(const EnergyTerm& term) {
 }
 
 // Of membranes all together: see add_membrane(). False: there is no constraint for the term.
-bool add_constraints(const EnergyTerm& term, XpbdBody& body) {
+bool add_constraints(const EnergyTerm& term, const std::vector<TermSpec>& specs, XpbdBody& body) {
   const TermAccess* access = access_of(term);
   const XpbdConstraint constraint = constraint_of(term);
-  if (constraint == XpbdConstraint::Tethers) add_tethers(term, *access, body);
+  if (constraint == XpbdConstraint::Tethers) add_tethers(term, *access, specs, body);
   if (constraint == XpbdConstraint::Films) add_films(term, *access, body);
   if (constraint == XpbdConstraint::Hinges) add_hinges(term, *access, body);
   if (constraint == XpbdConstraint::Energy) add_triangles(term, *access, body);
@@ -152,7 +169,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
   std::vector<std::string> defects;
   for (const auto& term : model.objective->terms()) {
     if (term->role() == TermRole::Contact) body->has_contact = true;
-    if (term->role() == TermRole::Internal && !add_constraints(*term, *body))
+    if (term->role() == TermRole::Internal && !add_constraints(*term, terms, *body))
       defects.push_back("solver \"xpbd\" has no constraint for term \"" + term->name() + "\" (" +
                         std::string(term->type()) + "); leave it out or take another solver");
   }
@@ -166,6 +183,10 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
                             static_cast<int>(model.mesh.triangles.cols() + model.obstacles.cols())))
         body->excluded.push_back(pair);
   return body;
+}
+
+bool xpbd_takes_the_loads(const Scene& scene) {
+  return !scene.solver.xpbd || scene.solver.xpbd->forces == XpbdForces::Scene;
 }
 
 bool xpbd_moves_the_scene_itself(const Scene& scene) {

@@ -31,4 +31,7 @@ std::shared_ptr<const XpbdBody> xpbd_body(const Model& model, const std::vector<
 // leave stiffness and forces as they are.
 bool xpbd_moves_the_scene_itself(const Scene& scene);
 
+// Whether the loads of the scene drive it, and not those of the paper.
+bool xpbd_takes_the_loads(const Scene& scene);
+
 }  // namespace coapt

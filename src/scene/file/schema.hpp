@@ -74,7 +74,4 @@ const std::vector<KeySpec>& common_intervention_keys();
 // JSON Schema (draft 2020-12) of the scene file, as text.
 std::string json_schema();
 
-// Reference page of the scene file, in Markdown.
-std::string reference_page();
-
 }  // namespace coapt

@@ -15,7 +15,8 @@ KeySpec dynamics_key() {
                      .kind = KeyKind::Choice,
                      .fallback = "\"backward_differences\"",
                      .choices = {"backward_differences", "semi_implicit_euler"},
-                     .doc = "Backward differences of second order, implicit, or semi-implicit Euler."},
+                     .doc = "Of dynamic: backward differences of second order, implicit, or semi-implicit "
+                            "Euler, which dynamic-explicit and mass-spring always take."},
                     {.name = "time_step",
                      .dimension = kTime,
                      .fallback = "\"0.1 ms\"",
@@ -36,7 +37,8 @@ KeySpec dynamics_key() {
                      .dimension = kTime,
                      .fallback = "\"1 ms\"",
                      .min = 0,
-                     .doc = "In which viscous drag alone slows every mass down by a factor e; 0: no drag."},
+                     .doc = "In which viscous drag alone slows every mass down by a factor e, with "
+                            "mass-spring the mean mass; 0: no drag."},
                     {.name = "kinetic_damping",
                      .kind = KeyKind::Flag,
                      .fallback = "false",
@@ -60,7 +62,9 @@ KeySpec dynamics_key() {
                      .fallback = "\"cholesky\"",
                      .choices = {"cholesky", "conjugate_gradients"},
                      .doc = "How backward differences solve for a step."}}},
-      .doc = "How the dynamic solver follows the motion of masses until it comes to rest."};
+      .doc =
+          "How dynamic, dynamic-explicit and mass-spring follow the motion of masses until it comes to "
+          "rest."};
 }
 
 KeySpec paper_key() {
@@ -221,8 +225,10 @@ std::vector<KeySpec> method_keys() {
   return {{.name = "type",
            .kind = KeyKind::Choice,
            .fallback = "\"newton\"",
-           .choices = {"newton", "lbfgs", "bfgs", "dynamic", "xpbd", "ceres", "nlopt"},
-           .doc = "The method; ceres and nlopt need a build that has them."},
+           .choices = {"newton", "lbfgs", "bfgs", "dynamic", "dynamic-explicit", "mass-spring", "xpbd",
+                       "ceres", "nlopt"},
+           .doc = "The method; ceres and nlopt need a build that has them, mass-spring a scene whose "
+                  "membranes are springs."},
           {.name = "tolerance",
            .fallback = "1e-6",
            .min = 0,

@@ -78,7 +78,8 @@ std::vector<TermType> link_term_types() {
                  return defects;
                },
            .build = build_link,
-           .kind = TermKind::Link}};
+           .kind = TermKind::Link,
+           .xpbd = XpbdConstraint::Tethers}};
 }
 
 }  // namespace coapt

@@ -14,7 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMassSpring = "mass-spring";
-constexpr const char* kMassSpringSolver = "dynamic";
 constexpr const char* kConstraintSolver = "xpbd";
 
 // Each method once, and known.
@@ -45,8 +44,6 @@ void check_closed(const Scene& scene, const fs::path& closed, std::vector<std::s
 std::vector<std::string> known_methods(const SolverTable& solvers) {
   std::vector<std::string> known;
   for (const auto& [name, factory] : solvers) known.push_back(name);
-  if (solvers.contains(kMassSpringSolver) && find_term_type("spring") != nullptr)
-    known.emplace_back(kMassSpring);
   return known;
 }
 
@@ -74,12 +71,26 @@ MethodModel model_of(const std::string& method, const Scene& scene) {
   return has_constraints ? MethodModel::Constraints : MethodModel::Scene;
 }
 
-std::string solver_of(const std::string& method) {
-  return method == kMassSpring ? kMassSpringSolver : method;
+Scene scene_of(const std::string& method, const Scene& scene) {
+  return model_of(method, scene) == MethodModel::Springs ? mass_spring_scene(scene) : scene;
 }
 
-Scene scene_of(const std::string& method, const Scene& scene) {
-  return method == kMassSpring ? mass_spring_scene(scene) : scene;
+std::string shared_with_newton(const ComparedMethod& method, const Scene& scene) {
+  if (method.name == kRefiningSolver) return "all";
+  std::vector<std::string> parts;
+  const bool has_constraints = method.model == MethodModel::Constraints;
+  if (method.model == MethodModel::Scene)
+    parts.emplace_back("energy");
+  else if (!has_constraints || xpbd_takes_the_loads(scene))
+    parts.emplace_back("loads");
+  if (!has_constraints && std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
+        return kind_of(term) == TermKind::Contact;
+      }))
+    parts.emplace_back("contact");
+  if (method.run && method.run->report.result.factorised_steps > 0) parts.emplace_back("factorisation");
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : " + ") + part;
+  return text.empty() ? "nothing" : text;
 }
 
 Scene with_closed_surface(Scene scene, const fs::path& closed) {

@@ -29,10 +29,14 @@ void check_methods(const Scene& scene, const SolverTable& solvers, const MethodC
 std::vector<std::string> reference_first(std::vector<std::string> methods, const std::string& reference);
 
 MethodModel model_of(const std::string& method, const Scene& scene);
-std::string solver_of(const std::string& method);  // its name in the table
 
 // The scene that the method solves. Throws InputError where springs cannot take the place of its membranes.
 Scene scene_of(const std::string& method, const Scene& scene);
+
+// What a method that has run, or failed, has in common with newton, as "energy + contact + factorisation":
+// the energy that it minimises (else the loads, or "nothing"), the contact terms, and steps by factorised
+// Hessians.
+std::string shared_with_newton(const ComparedMethod& method, const Scene& scene);
 
 // The scene with another closed surface to be compared with, in the unit of its mesh; empty: its own.
 Scene with_closed_surface(Scene scene, const std::filesystem::path& closed);

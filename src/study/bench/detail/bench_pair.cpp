@@ -66,7 +66,7 @@ Equilibrium missing_equilibrium(const Benchmark& found, const Result& result, Po
 }
 
 std::string refining_solver(const BenchCourse& course, const std::string& method) {
-  return course.solvers.contains(kRefiningSolver) ? kRefiningSolver : solver_of(method);
+  return course.solvers.contains(kRefiningSolver) ? kRefiningSolver : method;
 }
 
 // Where newton, or where the build has none the method, goes on to from a shape; from a saddle it stays
@@ -112,8 +112,8 @@ std::vector<Points> run_tolerances(const BenchCourse& course, const Scene& scene
                                    Benchmark& found) {
   std::vector<Points> shapes;
   for (const double tolerance : found.tolerances) {
-    const SolveSetup setup = solve_setup(
-        scene, course.solvers, run_options(course, solver_of(found.methods[method].name), tolerance));
+    const SolveSetup setup =
+        solve_setup(scene, course.solvers, run_options(course, found.methods[method].name, tolerance));
     TimedRun timed = timed_run(scene, geometry, setup, course.options.repeats);
     found.is_cancelled = timed.result.status == Status::Cancelled;
     if (found.is_cancelled) break;

@@ -29,7 +29,7 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeom
                                       const TriangleMesh* finer, Benchmark& found) {
   const std::string& method = found.methods.front().name;
   RunOptions options = course.run;
-  options.solver = solver_of(method);
+  options.solver = method;
   options.tolerance = tightest_reached(found);
   options.writes_page = true;
   RunReport once;

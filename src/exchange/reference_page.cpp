@@ -1,3 +1,5 @@
+#include "exchange/reference_page.hpp"
+
 #include "scene/file/schema.hpp"
 #include "scene/interventions/intervention.hpp"
 #include "scene/terms/term_types.hpp"
