@@ -68,7 +68,15 @@ OrderedJson state_json(const ViewState& state) {
 OrderedJson view_json(const ShapeView& view) {
   OrderedJson states = OrderedJson::array(), sequences = OrderedJson::array(), fields = OrderedJson::array(),
               line_values = OrderedJson::array();
-  for (const ViewState& state : view.states) states.push_back(state_json(state));
+  for (const ViewState& state : view.states) {
+    OrderedJson json = state_json(state);
+    // Nodes that an earlier state has, as the start of every method does, are named by its number.
+    const auto same = std::find_if(states.begin(), states.end(), [&json](const OrderedJson& earlier) {
+      return earlier.at("nodes") == json.at("nodes");
+    });
+    if (same != states.end()) json["nodes"] = same - states.begin();
+    states.push_back(std::move(json));
+  }
   for (const ViewSequence& sequence : view.sequences)
     sequences.push_back({{"label", sequence.label}, {"states", sequence.state_count}});
   for (const ViewField& field : view.fields) fields.push_back(field_json(field));

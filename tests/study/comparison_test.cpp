@@ -11,6 +11,7 @@
 #include "solve/solve_scene.hpp"
 #include "study/comparison_report.hpp"
 #include "study/detail/method_verdict.hpp"
+#include "study/shape_data.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/xpbd_bodies.hpp"
 #include "valve/generators/mitral.hpp"
@@ -381,44 +382,12 @@ TEST_F(ComparisonTest, TellsItOnAPageThatNeedsNothingElse) {
     EXPECT_NE(page.find(word), std::string::npos) << word;
 }
 
-// What the 3-D view of the page is given.
-nlohmann::json shape_data(const std::string& page) {
-  const std::string opening = "id=\"shape-data\">";
-  const size_t from = page.find(opening) + opening.size(), to = page.find("</script>", from);
-  const std::string data = page.substr(from, to - from);
-  EXPECT_EQ(data.find('<'), std::string::npos) << "it could end the script";
-  return nlohmann::json::parse(data);
-}
-
-std::string floats(const Eigen::MatrixXd& numbers) {
-  const Eigen::MatrixXf singles = numbers.cast<float>();
-  return base64(std::span<const float>(singles.data(), static_cast<size_t>(singles.size())));
-}
-
-// As the view has them, which adds the way between two origins: here nothing, but -0 becomes 0.
-std::string nodes(const Points& x) { return floats(x.array() + 0.0); }
-
-// The numbers of the states that each way ends with.
-std::vector<size_t> ends(const nlohmann::json& shapes) {
-  std::vector<size_t> all;
-  size_t count = 0;
-  for (const nlohmann::json& way : shapes.at("sequences"))
-    all.push_back((count += way.at("states").get<size_t>()) - 1);
-  return all;
-}
-
-std::vector<std::string> way_labels(const nlohmann::json& shapes) {
-  std::vector<std::string> all;
-  for (const nlohmann::json& way : shapes.at("sequences")) all.push_back(way.at("label"));
-  return all;
-}
-
-TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
+TEST_F(ComparisonTest, ShowsTheHistoryOfEveryMethodOnOneScale) {
   if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
   const Comparison found = compare(disc_scene(), {"newton", "idle", "broken", "lbfgs"});
   const nlohmann::json json = shape_data(comparison_page(found));
-  EXPECT_EQ(way_labels(json), (std::vector<std::string>{"idle: not converged", "lbfgs: same equilibrium",
-                                                        "newton: reference"}));
+  EXPECT_EQ(sequence_labels(json), (std::vector<std::string>{"idle: not converged", "lbfgs: same equilibrium",
+                                                             "newton: reference"}));
   const std::vector<size_t> last = ends(json);
   ASSERT_EQ(last.back() + 1, json.at("states").size());
   EXPECT_EQ(last[0], 1U);  // it stays where it begins
@@ -429,7 +398,7 @@ TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   EXPECT_EQ(json.at("triangles").get<std::string>().size(),
             static_cast<size_t>((4 * model.mesh.triangles.size() + 2) / 3 * 4));
   for (const size_t start : {size_t{0}, last[0] + 1, last[1] + 1}) {
-    EXPECT_EQ(json.at("states").at(start).at("nodes"), nodes(model.X));
+    EXPECT_EQ(nodes_of(json, start), nodes(model.X));
     EXPECT_EQ(json.at("states").at(start).at("label"), "start, as given");
     EXPECT_EQ(json.at("states").at(start).at("carried"), true);
   }
@@ -437,10 +406,10 @@ TEST_F(ComparisonTest, ShowsTheWayOfEveryMethodOnOneScale) {
   const Report& newton = found.reference().run->report;
   for (size_t k = last[1] + 1; k < last[2]; ++k)
     EXPECT_TRUE(std::ranges::any_of(newton.shape_history, [&](const RecordedShape& shape) {
-      return json.at("states").at(k).at("nodes") == nodes(shape.x);
+      return nodes_of(json, k) == nodes(shape.x);
     })) << k;
-  EXPECT_EQ(json.at("states").at(last[1]).at("nodes"), nodes(found.methods[3].run->report.fields.x));
-  EXPECT_EQ(json.at("states").at(last[2]).at("nodes"), nodes(newton.fields.x));
+  EXPECT_EQ(nodes_of(json, last[1]), nodes(found.methods[3].run->report.fields.x));
+  EXPECT_EQ(nodes_of(json, last[2]), nodes(newton.fields.x));
   const nlohmann::json& distance = json.at("fields").at(0);
   EXPECT_EQ(distance.at("title"), "Distance to the reference method");
   ASSERT_EQ(distance.at("values").size(), json.at("states").size());
@@ -462,7 +431,7 @@ TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfEachMethod) {
       compare(load_scene(folder_.write("standing.json", text.dump())), {"newton", "idle"});
   const std::string page = comparison_page(found);
   const nlohmann::json json = shape_data(page);
-  EXPECT_EQ(way_labels(json), (std::vector<std::string>{"idle: not converged", "newton: reference"}));
+  EXPECT_EQ(sequence_labels(json), (std::vector<std::string>{"idle: not converged", "newton: reference"}));
   const std::vector<size_t> last = ends(json);
   const Model& model = found.reference().run->model;
   EXPECT_EQ(json.at("states").at(0).at("nodes"), nodes(model.X));

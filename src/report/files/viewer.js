@@ -14,7 +14,7 @@ function readData() {
     for (const state of data.states.slice(first, first += way.states)) state.way = way;
   }
   for (const state of data.states) {
-    state.nodes = floats(state.nodes);
+    state.nodes = typeof state.nodes === "number" ? data.states[state.nodes].nodes : floats(state.nodes);
     for (const outline of state.outlines) outline.points = floats(outline.points);
   }
   for (const field of [...data.fields, ...data.line_values]) field.values = unpacked(field.values);
