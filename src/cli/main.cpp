@@ -1,4 +1,5 @@
 // The command `coapt`: arguments in, exit code out.
+#include "cli/argument_errors.hpp"
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
@@ -8,6 +9,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -45,12 +47,14 @@ int run_command(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error, 4 converged "
       "(result written) but its stability is in doubt.");
+  const std::vector<std::string> arguments = with_help_option({argv + 1, argv + argc});
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& wanted) {  // help or version
+    app.parse(std::vector<std::string>(arguments.rbegin(),
+                                       arguments.rend()));  // from the last on, as CLI11 wants them
+  } catch (const CLI::Success& wanted) {                    // help or version
     return app.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "coapt: error: " << error.what() << "\nRun `coapt --help` for the commands and options.\n";
+    std::cerr << "coapt: error: " << argument_error(app, error, arguments) << "\n";
     return kBadInput;
   }
   return exit_code;

@@ -2,6 +2,7 @@
 
 #include "core/number_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace coapt {
@@ -34,6 +35,14 @@ std::vector<HealthyCriterion> healthy_criteria(const ClosureFigures& figures) {
                         "equation times 0.3 s",
                         kSource});
   return criteria;
+}
+
+std::string figure_in_words(const HealthyCriterion& criterion) {
+  std::string words = criterion.name;
+  const std::string unit = "_" + criterion.unit;
+  if (!criterion.unit.empty() && words.ends_with(unit)) words.resize(words.size() - unit.size());
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words + " " + number_text(criterion.value, 2) + (criterion.unit.empty() ? "" : " " + criterion.unit);
 }
 
 std::string range_in_words(const HealthyCriterion& criterion) {

@@ -36,6 +36,9 @@ double regurgitant_volume_ml(double orifice_mm2, double pressure_mpa);
 // In the order of the source; without the volume where the pressure is not known.
 std::vector<HealthyCriterion> healthy_criteria(const ClosureFigures& figures);
 
+// The figure in words: "coaptation height 4.9 mm".
+std::string figure_in_words(const HealthyCriterion& criterion);
+
 // A range in words: "3 to 5 mm", "at most 5 ml".
 std::string range_in_words(const HealthyCriterion& criterion);
 

@@ -20,6 +20,14 @@ std::string yielded(const Vector& ratios, const char* what) {
 
 }  // namespace
 
+std::string yield_warning(const Fields& fields) {
+  const std::string facets = yielded(fields.yield_ratio, "facets"),
+                    chords = yielded(fields.line_yield_ratio, "chords");
+  if (facets.empty() && chords.empty()) return "";
+  return "Fibres beyond their yield: " + facets + (facets.empty() || chords.empty() ? "" : " and ") + chords +
+         ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).";
+}
+
 std::vector<std::string> result_warnings(const Report& report) {
   std::vector<std::string> warnings = report.warnings;
   const Certificate& certificate = report.result.certificate;
@@ -29,12 +37,6 @@ std::vector<std::string> result_warnings(const Report& report) {
   if (report.branches && report.branches->equilibria.size() > 1)
     warnings.push_back("This shape is one of several equilibria: " + branches_message(*report.branches) +
                        ". Figures that differ between them are given with their range.");
-  const std::string facets = yielded(report.fields.yield_ratio, "facets"),
-                    chords = yielded(report.fields.line_yield_ratio, "chords");
-  if (!facets.empty() || !chords.empty())
-    warnings.push_back("Fibres beyond their yield: " + facets +
-                       (facets.empty() || chords.empty() ? "" : " and ") + chords +
-                       ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).");
   const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, report.branches);
   if (nodes.total() > 0)
     warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +

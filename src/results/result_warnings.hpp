@@ -12,6 +12,9 @@ namespace coapt {
 // near by; how many nodes have no determined place.
 std::vector<std::string> result_warnings(const Report& report);
 
+// Which facets and chords have fibres beyond their yield, one sentence; empty where none has.
+std::string yield_warning(const Fields& fields);
+
 // Of an equilibrium: whether it is not stable or that could not be decided.
 bool is_in_doubt(const Report& report);
 

@@ -81,6 +81,8 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");
+  if (const std::string warning = yield_warning(report.fields); !warning.empty())
+    report.warnings.push_back(warning);
   withdraw_penetrated(report);
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())
@@ -100,7 +102,7 @@ void write_run(const std::filesystem::path& folder, const Model& model, const Re
 
 std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options) {
   if (!options.writes) return {};
-  const std::filesystem::path folder = options.folder.empty() ? result_folder(scene) : options.folder;
+  std::filesystem::path folder = options.folder.empty() ? result_folder(scene) : options.folder;
   prepare_result_folder(folder);
   remove_frames(folder);
   return folder;

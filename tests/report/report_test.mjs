@@ -156,7 +156,7 @@ async function assertFitsEveryScreen(page, title, least) {
 
 // Each way leads from the start through iterates, each another shape, to a result.
 async function assertWays(page, title) {
-  const choice = page.getByLabel("Way of"), label = page.locator("#state-label");
+  const choice = page.getByLabel("Path of"), label = page.locator("#state-label");
   const ways = await choice.locator("option").allTextContents();
   assert.equal(await page.locator("#ways").isVisible(), ways.length > 1);
   assert.equal(ways.length, title.startsWith("Comparison") ? 2 : 1);

@@ -1,4 +1,5 @@
 // Coaptation, orifice, tenting and prolapse of valves for which they are known.
+#include "core/number_text.hpp"
 #include "mesh/mesh_topology.hpp"
 #include "mesh/shapes.hpp"
 #include "results/detail/coaptation_height.hpp"
@@ -162,6 +163,7 @@ TEST(HealthyClosure, EstimatesTheRegurgitantVolumeWhereThePressureIsKnown) {
   EXPECT_GT(volume.value, 20);
   EXPECT_FALSE(volume.is_met());
   EXPECT_EQ(range_in_words(volume), "at most 5 ml");
+  EXPECT_EQ(figure_in_words(volume), "regurgitant volume " + number_text(volume.value, 2) + " ml");
   Model closed = trough_model({.gap = 0.2}, 0.3);
   closed.applied_pressure = 0.016;
   EXPECT_TRUE(criterion(measured(closed, closed.X), "regurgitant_volume_ml").is_met());

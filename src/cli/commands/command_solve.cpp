@@ -120,6 +120,16 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
   print("greatest displacement", m.max_displacement_mm, "mm", "%.4g", "max_displacement_mm");
 }
 
+// Of a mitral valve: figures with their healthy range, and those that are out of it.
+void print_healthy(const std::vector<HealthyCriterion>& criteria) {
+  const char* label = "healthy closure";
+  for (const HealthyCriterion& criterion : criteria) {
+    std::printf("  %-22s %s (%s)%s\n", label, figure_in_words(criterion).c_str(),
+                range_in_words(criterion).c_str(), criterion.is_met() ? "" : ": not healthy");
+    label = "";
+  }
+}
+
 // What figures do not hold for, before they are read.
 void print_undetermined(const Report& report) {
   const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
@@ -149,6 +159,7 @@ void print_summary(const RunReport& run) {
               result.iterations, result.evaluations.gradient, result.wall_s);
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
   print_metrics(run.model, m, branches);
+  print_healthy(m.healthy_closure);
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_checker.c_str());
   if (report.reference) print_reference(*report.reference);
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());

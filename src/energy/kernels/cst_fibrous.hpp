@@ -162,8 +162,7 @@ struct CstFibrous {
 
   // Transposed derivative of the strain of C + P by that of C. c: C + P; hidden: the diagonal of P = a a^T.
   static Eigen::Matrix3d follow(const Law& law, const Metric& c, const Eigen::Vector2d& hidden) {
-    const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-    if (!(hidden.maxCoeff() > 0)) return identity;
+    if (!(hidden.maxCoeff() > 0)) return Eigen::Matrix3d::Identity();
     const PlaneEnergy w = at(law, c);
     Eigen::Vector2d a = hidden.cwiseMax(0).cwiseSqrt();
     // The sign of one entry: that for which no stress is left.
@@ -171,8 +170,9 @@ struct CstFibrous {
       a = other;
     const Eigen::Matrix<double, 3, 2> by_a = widening(a);
     const Eigen::Matrix2d h = stiffness(w, by_a);
-    return h.determinant() > 0 ? Eigen::Matrix3d(identity - w.tangent * by_a * h.inverse() * by_a.transpose())
-                               : identity;
+    return h.determinant() > 0 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity() -
+                                                 w.tangent * by_a * h.inverse() * by_a.transpose())
+                               : Eigen::Matrix3d::Identity();
   }
 
   static Response respond(const Rest& rest, const CstStrain& e) {
