@@ -50,7 +50,7 @@ struct DerivativeReport {
 DerivativeReport check_derivatives(Objective& objective, const Vector& q, const Eigen::MatrixXd& directions,
                                    const DerivativeOptions& options = {});
 
-// One term alone at positions x; its candidates and counters are renewed on the way. directions:
+// One term alone at positions x; its candidates and counters are updated meanwhile. directions:
 // 3 node_count x direction_count [length].
 DerivativeReport check_derivatives(EnergyTerm& term, const Points& x, const Eigen::MatrixXd& directions,
                                    const DerivativeOptions& options = {});

@@ -4,7 +4,7 @@
 // The area of a film does not change when its nodes slide within it. That of a mesh of it does, by the error
 // of discretisation, and is often least where triangles have no area at all: on most meshes the full gradient
 // of a mesh's area vanishes nowhere near the film. What is left is the same energy on a linear subspace, with
-// one answer near each film, whatever the way there (compare "normal motion" in Brakke 1992, The Surface
+// one answer near each film, whatever the path there (compare "normal motion" in Brakke 1992, The Surface
 // Evolver).
 #pragma once
 

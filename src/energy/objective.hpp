@@ -140,7 +140,7 @@ class Objective {
   // The first term that limits steps (EnergyTerm::step_limit), or null.
   const EnergyTerm* step_limiting_term() const;
 
-  // The greatest s <= most for which the way from q to q + s direction is admissible to all terms; the same
+  // The greatest s <= most for which the path from q to q + s direction is admissible to all terms; the same
   // for nodes, prescribed ones included, from x to x + s d. Pre: q and x are admissible.
   double step_limit(const Vector& q, const Vector& direction, double most);
   double step_limit(const Points& x, const Points& d, double most);
@@ -158,7 +158,7 @@ class Objective {
   //   Held dead: the remainder keeps its value at q, and evaluations belong to a true potential. Terms
   //   may choose that potential anew.
   //   Path work: the gradient is the exact out-of-balance force, and the energy counts the work of the
-  //   remainder along the way from q (Simpson's rule, exact for pressure along a straight step), so that it
+  //   remainder along the path from q (Simpson's rule, exact for pressure along a straight step), so that it
   //   falls along any step that the force drives. It is a merit for a line search from q, not a function of
   //   the position alone. The Hessian is the symmetric part of the exact tangent.
   void lag_circulatory_force(const Vector& q);

@@ -13,7 +13,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kDetour = 2;  // way along the mesh over the straight distance, above which parts are far
+constexpr double kDetour = 2;  // path along the mesh over the straight distance, above which parts are far
 
 // Whether two triangles are within a distance of each other along the edges of the mesh.
 class MeshPaths {

@@ -23,7 +23,7 @@ struct SeamRules {
 };
 
 // The triangles on top of neighbouring nodes are compared (for a node in a slit, those on its rim).
-// They belong to a seam when the way between them along the mesh is more than four times the straight
+// They belong to a seam when the path between them along the mesh is more than four times the straight
 // distance and two mean edges. The lines between such nodes are linked, freed of spurs and short pieces, and
 // smoothed by a moving average, their ends held; they lie at the height of the closed view. x, triangles: the
 // surface of the view. O(nodes) plus the places that are compared.

@@ -1,4 +1,4 @@
-// The way to the full problem: prescribed motion, continuation, and renewal of loads without a potential.
+// The path to the full problem: prescribed motion, continuation, and updates of loads without a potential.
 #pragma once
 
 #include "optim/monitor.hpp"

@@ -1,4 +1,4 @@
-// The way from the start to the full problem as a damped quasi-static motion, which defines the equilibrium
+// The path from the start to the full problem as a damped quasi-static motion, which defines the equilibrium
 // that it comes to.
 #pragma once
 

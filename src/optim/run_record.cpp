@@ -74,7 +74,7 @@ class RecordedSolver final : public Solver {
  private:
   std::string own_remark() const { return retraced_ ? retraced_->remark : solver_->remark(); }
 
-  // Accepts a state of the way. Returns why the run is cut short there, if it is.
+  // Accepts a state of the history. Returns why the run is cut short there, if it is.
   std::optional<Status> visit(const Vector& q, Monitor& monitor) {
     Vector g;
     const double energy = monitor.gradient(q, g);

@@ -83,7 +83,7 @@ void conclude(const Outcome& outcome, const Solver& solver, const Problem& probl
     monitor.count_certificate(result.certificate.stability.factorisations);
   }
   // The potential around the final state, so that the energy depends on that state alone and not on the
-  // way that a solver took to it.
+  // path that a solver took to it.
   if (objective.has_circulatory_force()) objective.lag_circulatory_force(result.q);
   result.terms = objective.breakdown(result.q);
   result.energy = 0;
@@ -136,7 +136,7 @@ Status turn_and_minimize(Solver& solver, Objective& objective, Vector& q, Monito
   return status;
 }
 
-// Whether no easier problem is on the way to the full one.
+// Whether no easier problem precedes the full one.
 bool is_at_once(const Problem& problem) {
   const Continuation& way = problem.continuation;
   return !problem.motion.positions && way.load_steps <= 1 && way.stiffness_steps <= 1 &&
@@ -160,7 +160,7 @@ std::optional<Vector> span_again(Solver& solver, const Problem& problem, const S
   return film;
 }
 
-// Where the run stands after a way that led nowhere.
+// Where the run stands after a path that led nowhere.
 void stand_again(const StopRule& stop, Monitor& monitor, Result& result) {
   Vector g;  // noise is measured where the run stands again
   monitor.begin_outer_iteration(monitor.outer_iteration() + 1, stop.tolerance);

@@ -86,7 +86,7 @@ class Solver {
   virtual bool takes_motion(const MotionPath& /*motion*/) { return false; }
 
   // Whether the last minimize() ended without motion. What passes through an equilibrium at speed has no
-  // residual there and is on its way to another state.
+  // residual there and is moving to another state.
   virtual bool is_at_rest() const { return true; }
 
   // What there is to say of how the last minimize() ended, for the message of the result; may be empty.
@@ -119,7 +119,7 @@ struct Problem {
 };
 
 // A step of a path, of loads, stiffnesses or prescribed motion, that ended on another branch of equilibria
-// than the one it came by: the branch has a limit point on the way, and the shape snapped through.
+// than the one it came by: the branch has a limit point before, and the shape snapped through.
 struct BranchChange {
   int step = 0;         // that left the branch, from 1
   int before = 0;       // a step before it, where both branches have an equilibrium

@@ -19,7 +19,7 @@ struct ViewOutline {
 struct ViewState {
   std::string label;        // "iterate 12, residual 3e-4"
   Points x;                 // 3 x node_count, relative to the view's origin [mm]
-  bool is_history = false;  // no result: coloured by the values that its way ends with
+  bool is_history = false;  // no result: coloured by the values that its sequence ends with
   std::vector<ViewOutline> outlines = {};
   std::string orifice_text = {};  // what its orifice outline is called, with its area
 };

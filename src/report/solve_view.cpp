@@ -104,7 +104,7 @@ std::string label(const Result& result) {
 }
 
 // The input's x axis to the right, or where one looks along it, its y axis: the same valve stands the same
-// way in every page.
+// history in every page.
 ViewFrame upright(ViewFrame frame) {
   const Vec3 axis = std::abs(frame.up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   frame.e1 = (axis - axis.dot(frame.up) * frame.up).normalized();

@@ -19,7 +19,7 @@ ShapeView bare_view(const Model& model, const Fields& fields);
 // regimes, leaflets; those that the scene has.
 std::vector<ViewField> view_fields(const Model& model, const Fields& fields);
 
-// From the start by the recorded iterates to the result, with its outlines and its coaptation line. `way`
+// From the start by the recorded iterates to the result, with its outlines and its coaptation line. `history`
 // holds positions relative to the model's origin, as report.shape_history.
 std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history);
 

@@ -1,4 +1,5 @@
-// The way to a result as an animation, for ParaView: shapes in the folder `frames`, listed by `frames.pvd`.
+// The history of a result as an animation, for ParaView: shapes in the folder `frames`, listed by
+// `frames.pvd`.
 #pragma once
 
 #include "optim/solver.hpp"

@@ -16,10 +16,10 @@ struct NeighbourCheck {
   int unstable_steps = 0;     // Result::unstable_steps; 0 of a solve at once
 };
 
-// Of a solve at once from the iterates that newton needed: a long way is one over kinks, snaps and turns, and
-// where it ends, small changes decide. Along a damped path, by any method, from the steps at the full problem
-// that are unstable without dampers: there the ways of neighbours part. A suspicion, no proof either way;
-// docs/decisions/010-branches.md and 019-damped-path.md have the hit rates.
+// Of a solve at once from the iterates that newton needed: a long path is one over kinks, snaps and turns,
+// and where it ends, small changes decide. Along a damped path, by any method, from the steps at the full
+// problem that are unstable without dampers: there the ways of neighbours part. A suspicion, no proof either
+// way; docs/decisions/010-branches.md and 019-damped-path.md have the hit rates.
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels);
 

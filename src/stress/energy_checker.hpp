@@ -1,4 +1,4 @@
-// Whether the energy fell all the way. Private to this room.
+// Whether the energy fell at every iterate. Private to this room.
 #pragma once
 
 #include "optim/solver.hpp"

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBarredSeconds = 2;  // for a run that creeps up to where it cannot go on
 
-// The greatest way of a node that no support carries along [mm].
+// The greatest distance of a node that no support carries along [mm].
 double distance_moved(const StressRun& solved, const Points& x, const Points& rest) {
   const FixedMask& fixed = solved.model.objective->fixed();
   double farthest = 0;
@@ -36,7 +36,7 @@ StressOutcome with_fault(StressSubject& subject, Fault fault, double part, const
   if (part > 1) return same_shape_as_own(subject, solved, solved.x);
   const double tolerance = tolerance_of(own_scene(subject));
   if (auto wrong = untruth(solved, tolerance)) return *wrong;
-  // The way there is barred: a state beyond, or one that is called converged and is none, would be a lie.
+  // The path there is barred: a state beyond, or one that is called converged and is none, would be a lie.
   StressOutcome outcome =
       measured(solved, distance_moved(solved, solved.x, rest) / farthest, part, "ended where the term fails");
   if (solved.result.status == Status::Converged &&

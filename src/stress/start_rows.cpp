@@ -1,4 +1,4 @@
-// S8, S9, S10, S22: nothing to do, other starts, no supports, and the way there and back.
+// S8, S9, S10, S22: nothing to do, other starts, no supports, and the path there and back.
 #include "core/number_text.hpp"
 #include "stress/subject.hpp"
 

@@ -99,7 +99,7 @@ PageList warnings(const Comparison& comparison) {
   return list;
 }
 
-// The way of every method to its shape, that of the reference last: it is shown first. None where nothing was
+// The history of every method, that of the reference last: it is shown first. None where nothing was
 // solved.
 std::optional<ShapeView> shapes(const Comparison& comparison) {
   std::vector<ComparedShape> all;

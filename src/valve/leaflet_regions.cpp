@@ -14,7 +14,7 @@
 namespace coapt {
 namespace {
 
-// Length of the shortest way along edges from the nearest of some vertices, infinite where there is none
+// Length of the shortest path along edges from the nearest of some vertices, infinite where there is none
 // [length].
 std::vector<double> path_lengths_from(const std::vector<int>& sources, const TriangleMesh& mesh) {
   const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());

@@ -21,8 +21,8 @@ enum class XpbdForces {
   Paper   // flow field and pressure of Walczak et al., see heart_forces.hpp
 };
 
-// The sign of the forces: + closes the valve, - opens it. Prescribed nodes go their way in systole and back
-// in diastole, which begins from a closed shape: a start in the shape at rest is closed first.
+// The sign of the forces: + closes the valve, - opens it. Prescribed nodes move along their path in systole
+// and back in diastole, which begins from a closed shape: a start in the shape at rest is closed first.
 enum class HeartPhase { Systole, Diastole };
 
 // To what hinges want to fold (eq. 13).
@@ -50,10 +50,11 @@ inline constexpr double kXpbdPaperTimeStep = 0.005;  // the paper's [s]
 inline constexpr double kXpbdMaterialTimeStep = 1e-4;
 
 struct XpbdOptions {
-  double time_step = 0;    // [s]; 0: that of its stiffness, see xpbd_time_step()
-  int iterations = 20;     // sweeps over all constraints in a step; the paper has 3 and 20
-  int steps = 2000;        // greatest number of time steps in a phase
-  double motion_time = 0;  // in which the prescribed nodes go their way; 0: half the time of all steps [s]
+  double time_step = 0;  // [s]; 0: that of its stiffness, see xpbd_time_step()
+  int iterations = 20;   // sweeps over all constraints in a step; the paper has 3 and 20
+  int steps = 2000;      // greatest number of time steps in a phase
+  double motion_time =
+      0;  // in which the prescribed nodes move along their path; 0: half the time of all steps [s]
   double damping = 0.05;   // share of its velocity that a node loses in a step; the paper has 0
   double thickness = 0.5;  // h: distance that contact keeps [mm]
   double rest_move = 0;    // at rest where the moves of nodes in a step, root mean square, are less [mm];

@@ -61,7 +61,8 @@ bool shorten(const Tether& from, const Chord& chord, Tether& to) {
   return true;
 }
 
-// The shortest way along the chords from a tip to each junction and leaflet vertex; leaflets lead nowhere on.
+// The shortest path along the chords from a tip to each junction and leaflet vertex; leaflets lead nowhere
+// on.
 std::map<int, Tether> tethers_of(const ChordNetwork& network) {
   std::vector<Tether> tips, junctions(static_cast<size_t>(network.junctions.cols()));
   for (int tip = 0; tip < network.papillary.cols(); ++tip) tips.push_back({tip, 0});

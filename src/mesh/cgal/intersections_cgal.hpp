@@ -1,5 +1,5 @@
-// Which triangles of a mesh run through each other, by CGAL: a judge that shares no code with the solver, nor
-// with mesh/distance/intersections.cpp. Linking this makes the program a GPL work.
+// Which triangles of a mesh run through each other, by CGAL: a checker that shares no code with the solver,
+// nor with mesh/distance/intersections.cpp. Linking this makes the program a GPL work.
 #pragma once
 
 #include "core/types.hpp"

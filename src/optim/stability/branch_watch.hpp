@@ -26,7 +26,7 @@ struct PathMeans {
 // ends at a limit point and there is none nearby. That is put to the test by undoing the step. A shape that
 // does not come back to where it was has changed branches, and the distance between the two equilibria at
 // that place of the path is that of the branches. Where the place before was itself beyond the limit point
-// (places on the way are left at a loose tolerance), the one before it is taken. Costs nothing but two
+// (steps of the path are left at a loose tolerance), the one before it is taken. Costs nothing but two
 // vectors, and two solves from nearby for each step under suspicion; their iterates count and are observed
 // like all others.
 class BranchWatch {

@@ -7,7 +7,7 @@ namespace coapt {
 
 struct StationarySearch {
   bool is_found = false;
-  double least_residual = kInfinity;  // relative, on the way
+  double least_residual = kInfinity;  // relative, at any iterate
 };
 
 // Newton's method for the forces themselves, from q, which a line search makes smaller with every step: a

@@ -15,8 +15,8 @@ using FacetPairs = std::vector<std::array<int, 2>>;  // the smaller number first
 // The membrane's facets, then those of the obstacles, by node number.
 Triangles all_facets(const Model& model);
 
-// Pairs of all_facets() that pass through each other at x (3 x node_count [mm], finite), as `judge` sees it.
-// At least one of a pair is the membrane's: obstacles may overlap among themselves.
+// Pairs of all_facets() that pass through each other at x (3 x node_count [mm], finite), as `checker` finds
+// them. At least one of a pair is the membrane's: obstacles may overlap among themselves.
 FacetPairs membrane_intersections(const Points& x, const Model& model,
                                   const IntersectionChecker& checker = {});
 

@@ -23,7 +23,7 @@ std::string with_interventions(const std::string& scene, const std::vector<std::
 std::vector<std::string> intervention_texts(const std::string& scene, const std::string& file);
 
 // With another value at a key path: `ring.size`, where `ring` is the name (or type) of an intervention or a
-// term, or the way through the file, `solver.tolerance`, `terms[1].young`, `interventions[0].at[0]`. The
+// term, or the path in the file, `solver.tolerance`, `terms[1].young`, `interventions[0].at[0]`. The
 // object must be there; the key may be new. A number without a unit gets that of the text it replaces.
 // Throws InputError naming the path, with what there is in its place.
 std::string with_value(const std::string& scene, const std::string& path, const std::string& value,

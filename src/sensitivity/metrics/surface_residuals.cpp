@@ -77,7 +77,7 @@ class SurfaceResiduals final : public MeasuredResiduals {
     return r;
   }
 
-  // Of the way from the foot c to p, with the motion m of the corners of its facet,
+  // Of the vector from the closest point c to p, with the motion m of the corners of its facet,
   //   d(p - c) = -A sum_k w_k m_k - sum_k grad w_k ((p - c).m_k):
   // what p does not follow, and the turning of the facet or the edge.
   Eigen::MatrixXd derivatives(const Points& x, const std::vector<Points>& motions) const override {

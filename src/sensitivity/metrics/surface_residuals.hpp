@@ -13,7 +13,7 @@ namespace coapt {
 // from the target only, one that ends beyond from the surface only.
 enum class FitSides { Both, Surface, Target };
 
-// Three for each vertex of `triangles`, ascending, then three for each vertex of the target: the way to it
+// Three for each vertex of `triangles`, ascending, then three for each vertex of the target: the vector to it
 // from the closest point of the other surface, times the root of its share of the area, at x_weights (3 x
 // node_count) or of the target. Their squares add up to the mean square distance [length^2], of both sides
 // to the mean of the two.

@@ -102,8 +102,9 @@ struct Benchmark {
   std::vector<BenchRun> runs;
   std::vector<BenchEnd> ends;
   double assumed_order = 1;  // of what is beyond the last mesh
-  // The reference method on the scene's own mesh, solved once more beside the clock for the page: its way,
-  // where on the mesh its error is (where that is known), and its account. Empty where nothing is written.
+  // The reference method on the scene's own mesh, solved once more beside the clock for the page: its
+  // history, where on the mesh its error is (where that is known), and its account. Empty where nothing is
+  // written.
   std::optional<ShownSolve> shown = {};
   std::optional<Branches> branches = {};  // around the equilibrium of that solve, where they were wanted
   bool is_cancelled = false;
