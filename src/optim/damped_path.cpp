@@ -112,7 +112,7 @@ class DampedPath {
     pattern_version_ = objective.pattern_version();
     monitor_.count_certificate(1);
     result_.unstable_steps = std::max(result_.unstable_steps, 0);
-    if (factor_->inertia(hessian_).negative > 0) ++result_.unstable_steps;
+    if (!factor_->factorise(hessian_)) ++result_.unstable_steps;
   }
 
   // What is pressed together or overstretched gives way in the next steps, up to a limit.

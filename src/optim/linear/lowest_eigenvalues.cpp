@@ -55,19 +55,21 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
 namespace {
 
 constexpr double kShift = 10;  // times the magnitude of the lowest eigenvalue of the symmetric part
-constexpr std::array kBoundShifts = {2.0, 10.0};  // likewise, at which imaginary parts are bounded
-constexpr int kPowerSteps = 20;                   // towards the greatest imaginary part
-constexpr double kMargin = 1.25;                  // on the imaginary part that they find
-constexpr double kConverged = 1e-8;               // relative residual of an eigenpair
-constexpr int kFirst = 20, kMost = 160;           // eigenvalues that are asked for
-constexpr int kSubspace = 60;                     // vectors of the Krylov space, at least
-constexpr int kRestarts = 100;                    // of Arnoldi's method
+constexpr std::array kBoundShifts = {2.0, 4.0};  // likewise, at which imaginary parts are bounded
+constexpr int kPowerSteps = 40;                  // towards the greatest imaginary part
+constexpr double kMargin = 1.1;                  // on the imaginary part that they find
+constexpr double kConverged = 1e-8;              // relative residual of an eigenpair
+constexpr int kFirst = 20, kMost = 160;          // eigenvalues that are asked for
+constexpr int kSubspace = 60;                    // vectors of the Krylov space, at least
+constexpr int kRestarts = 100;                   // of Arnoldi's method
+constexpr double kMoreThanNeeded = 1.3;          // asked for, over what the last search lets expect
 
 // K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
 SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
                            double shift) {
   const Eigen::Index size = lower.cols();
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * static_cast<size_t>(lower.nonZeros()));
   for (int column = 0; column < size; ++column)
     for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
       if (entry.row() < column) continue;
@@ -91,12 +93,28 @@ SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, c
   return whole;
 }
 
-// The inverse of a shifted tangent, as Spectra asks for it.
+// Minimum degree on the pattern, which is symmetric: half the fill that an ordering of columns leaves.
+struct SymmetricOrdering {
+  template <class Matrix>
+  void operator()(const Matrix& matrix,
+                  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>& order) {
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
+    Eigen::AMDOrdering<int>()(matrix, inverse);  // SparseLU wants the other direction
+    order = inverse.inverse();
+  }
+};
+
+// The inverse of a shifted tangent, as Spectra asks for it. Its symmetric part is positive definite, so that
+// the diagonal gives the pivots.
 class InverseTangent {
  public:
   using Scalar = double;
 
-  explicit InverseTangent(const SparseMatrix& shifted) { factor_.compute(shifted); }
+  explicit InverseTangent(const SparseMatrix& shifted) {
+    factor_.isSymmetric(true);
+    factor_.setPivotThreshold(0);
+    factor_.compute(shifted);
+  }
   bool is_made() const { return factor_.info() == Eigen::Success; }
   Eigen::Index rows() const { return factor_.rows(); }
   Eigen::Index cols() const { return factor_.cols(); }
@@ -107,7 +125,7 @@ class InverseTangent {
   }
 
  private:
-  Eigen::SparseLU<SparseMatrix> factor_;
+  Eigen::SparseLU<SparseMatrix, SymmetricOrdering> factor_;
   mutable Vector b_;
 };
 
@@ -145,10 +163,18 @@ double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, co
   return least;
 }
 
+// How many values to ask for where the `last` reach to `far` from the shift and not to `reach`, as if they
+// lay evenly.
+int more_values(int last, double shift, double far, double reach) {
+  const double share = far > shift ? (reach - shift) / (far - shift) : kInfinity;
+  return static_cast<int>(std::min(double{kMost}, std::max(kMoreThanNeeded * share, 2.0) * last));
+}
+
 }  // namespace
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, const FactorisationFactory& factory) {
+                                     double least_value, double unstable,
+                                     const FactorisationFactory& factory) {
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   const double shift = kShift * std::abs(least_value);
   LowestEigenvalues found;
@@ -160,8 +186,8 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   if (!inverse.is_made()) return found;
 
   const auto free = static_cast<int>((start.array() != 0).count());
-  for (int wanted = kFirst; wanted <= kMost; wanted *= 2) {
-    const int subspace = std::min(free, std::max(3 * wanted, kSubspace));
+  for (int wanted = kFirst;;) {
+    const int subspace = std::min(free, std::max(2 * wanted + kFirst, kSubspace));
     if (wanted + 2 > subspace) break;
     Spectra::GenEigsRealShiftSolver<InverseTangent> solver(inverse, wanted, subspace, -shift);
     try {
@@ -174,8 +200,10 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
     more.factorisations = found.factorisations;
     found = std::move(more);
     if (solver.info() != Spectra::CompInfo::Successful) break;
-    found.is_complete = (found.values.array() + shift).abs().maxCoeff() > reach;
-    if (found.is_complete) break;
+    const double far = (found.values.array() + shift).abs().maxCoeff();
+    found.is_complete = far > reach;
+    if (found.is_complete || wanted == kMost || found.values[0].real() < unstable) break;
+    wanted = more_values(wanted, shift, far, reach);
   }
   return found;
 }
@@ -183,7 +211,7 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
 #else
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double, const FactorisationFactory&) {
+                                     double, double, const FactorisationFactory&) {
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   return {};
 }

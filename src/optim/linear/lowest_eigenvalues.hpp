@@ -21,8 +21,10 @@ struct LowestEigenvalues {
 //   imaginary axis, b bounding the imaginary parts of such values: the search is complete when what it found
 //   reaches beyond.
 // lower: K as Factorisation wants it. start: zero at unknowns that shall stay at rest. least_value: an
-// estimate of K's lowest eigenvalue, negative. In a build without Spectra large matrices give nothing.
+// estimate of K's lowest eigenvalue, negative. unstable: a real part below it ends the search, as the verdict
+// is known. In a build without Spectra large matrices give nothing.
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, const FactorisationFactory& factory);
+                                     double least_value, double unstable,
+                                     const FactorisationFactory& factory);
 
 }  // namespace coapt
