@@ -80,7 +80,9 @@ cholmod_factor* analyse_nodes(NodeGraph& graph, int ordering, std::vector<int>& 
   cholmod_sparse pattern =
       lower_view(graph.size(), graph.row.size(), graph.start.data(), graph.row.data(), nullptr);
   const auto release = [&](cholmod_factor* factor) { cholmod_free_factor(&factor, &common); };
-  const std::unique_ptr<cholmod_factor, decltype(release)> nodes(cholmod_analyze(&pattern, &common), release);
+  int* given = ordering == CHOLMOD_GIVEN ? order.data() : nullptr;
+  const std::unique_ptr<cholmod_factor, decltype(release)> nodes(
+      cholmod_analyze_p(&pattern, given, nullptr, 0, &common), release);
   if (nodes == nullptr) throw std::bad_alloc();
   const int* permutation = static_cast<const int*>(nodes->Perm);
   order.assign(permutation, permutation + graph.size());

@@ -13,6 +13,7 @@ namespace coapt::detail {
 cholmod_sparse lower_view(size_t size, size_t entries, const int* start, const int* row,
                           const double* values);
 
+// ordering: CHOLMOD's method; with CHOLMOD_GIVEN that of `order`.
 // order: to be filled with the node that comes k-th; postordered, so that supernodes are contiguous.
 // Returns a supernodal factor without values for the matrix of unknowns in that order. Throws InputError if
 // it has more entries than CHOLMOD's 32-bit indices can count.
