@@ -183,10 +183,13 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
       BarrierContact contact{{nodes[0], nodes[1], nodes[2], nodes[3]},
                              candidates_.rest[k].kind == PairKind::EdgeEdge,
                              0,
+                             {},
                              closest.distance,
                              candidates_.rest[k].range};
-      for (int a = 0; a < 4; ++a)
+      for (int a = 0; a < 4; ++a) {
+        contact.weights[static_cast<size_t>(a)] = closest.weights[a];
         if (closest.weights[a] != 0) contact.inside |= 1 << a;
+      }
       found.push_back(contact);
     }
     return found;

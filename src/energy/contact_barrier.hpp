@@ -41,9 +41,10 @@ std::unique_ptr<EnergyTerm> make_contact_barrier(std::string name, const Points&
 struct BarrierContact {
   std::array<int, 4> nodes;  // point and corners of the triangle, or the ends of both edges
   bool is_edge_edge = false;
-  int inside = 0;       // bit a: the closest points depend on node a
-  double distance = 0;  // [length]
-  double range = 0;     // at which the repulsion begins [length]
+  int inside = 0;                      // bit a: the closest points depend on node a
+  std::array<double, 4> weights = {};  // of the nodes in the vector between the closest points
+  double distance = 0;                 // [length]
+  double range = 0;                    // at which the repulsion begins [length]
 };
 
 // All of them at x (3 x node_count), in the order of the term's list; none for a term that

@@ -1,10 +1,12 @@
 #include "optim/harmonic_extension.hpp"
 
+#include "energy/contact_barrier.hpp"
+
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
-#include <optional>
+#include <array>
 #include <vector>
 
 namespace coapt {
@@ -15,32 +17,92 @@ using LaplacianFactor = Eigen::SimplicialLDLT<Laplacian>;
 
 constexpr double kLeastCotangent = 1e-3;  // obtuse and degenerate triangles: weights stay positive
 constexpr double kMostCotangent = 1e9;    // slivers are carried along whole, as far as the factor is exact
+constexpr double kContactWeight = 100;    // of a pair in contact beside those of edges, which are about 1
 
-struct WeightedEdge {
-  int a, b;
-  double weight;
+// A weighted sum of displacements that is kept small: the difference along an edge, or the change of the
+// vector between two features in contact.
+struct Coupling {
+  std::array<int, 4> nodes;
+  std::array<double, 4> weights;
+  int count;
+  double stiffness;
 };
 
-std::vector<WeightedEdge> weighted_edges(const Objective& objective, const Points& x) {
-  std::vector<WeightedEdge> edges;
-  for (const auto& term : objective.terms()) {
-    const Stencils& stencils = term->stencils();
-    const std::vector<int>& nodes = stencils.nodes;
-    if (term->role() != TermRole::Internal) continue;
-    if (stencils.width == 3)
-      for (size_t first = 0; first < nodes.size(); first += 3)
-        for (size_t k = 0; k < 3; ++k) {
-          const int apex = nodes[first + k], a = nodes[first + (k + 1) % 3], b = nodes[first + (k + 2) % 3];
-          const Vec3 u = x.col(a) - x.col(apex), v = x.col(b) - x.col(apex);
-          const double twice_area = u.cross(v).norm();
-          const double cotangent = twice_area > 0 ? u.dot(v) / twice_area : kMostCotangent;
-          edges.push_back({a, b, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent)});
-        }
-    else if (stencils.width == 2)
-      for (size_t first = 0; first < nodes.size(); first += 2)
-        edges.push_back({nodes[first], nodes[first + 1], 1});
+Coupling edge_coupling(int a, int b, double stiffness) { return {{a, b}, {1, -1}, 2, stiffness}; }
+
+void add_elements(const Stencils& stencils, const Points& x, std::vector<Coupling>& couplings) {
+  const std::vector<int>& nodes = stencils.nodes;
+  if (stencils.width == 3)
+    for (size_t first = 0; first < nodes.size(); first += 3)
+      for (size_t k = 0; k < 3; ++k) {
+        const int apex = nodes[first + k], a = nodes[first + (k + 1) % 3], b = nodes[first + (k + 2) % 3];
+        const Vec3 u = x.col(a) - x.col(apex), v = x.col(b) - x.col(apex);
+        const double twice_area = u.cross(v).norm();
+        const double cotangent = twice_area > 0 ? u.dot(v) / twice_area : kMostCotangent;
+        couplings.push_back(
+            edge_coupling(a, b, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent)));
+      }
+  else if (stencils.width == 2)
+    for (size_t first = 0; first < nodes.size(); first += 2)
+      couplings.push_back(edge_coupling(nodes[first], nodes[first + 1], 1));
+}
+
+// Of a prescribed feature with a free one: a sheet goes along with the obstacle that is pressed into it.
+void add_contacts(const EnergyTerm& term, const FixedMask& fixed, const Points& x,
+                  std::vector<Coupling>& couplings) {
+  for (const BarrierContact& contact : barrier_contacts(term, x)) {
+    const size_t first_count = contact.is_edge_edge ? 2 : 1;
+    bool is_held[2] = {true, true};
+    for (size_t a = 0; a < 4; ++a)
+      if (!fixed.col(contact.nodes[a]).all()) is_held[a < first_count ? 0 : 1] = false;
+    if (is_held[0] != is_held[1]) couplings.push_back({contact.nodes, contact.weights, 4, kContactWeight});
   }
-  return edges;
+}
+
+std::vector<Coupling> couplings_at(const Objective& objective, const Points& x) {
+  std::vector<Coupling> couplings;
+  for (const auto& term : objective.terms())
+    if (term->role() == TermRole::Internal)
+      add_elements(term->stencils(), x, couplings);
+    else if (term->limits_steps())
+      add_contacts(*term, objective.fixed(), x, couplings);
+  return couplings;
+}
+
+// The matrix of the free nodes; row: the number of each, -1 for others.
+Laplacian laplacian(const std::vector<Coupling>& couplings, const std::vector<int>& row, int free_count) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Coupling& coupling : couplings)
+    for (int i = 0; i < coupling.count; ++i)
+      for (int j = 0; j < coupling.count; ++j) {
+        const size_t first = static_cast<size_t>(i), second = static_cast<size_t>(j);
+        const int a = row[static_cast<size_t>(coupling.nodes[first])],
+                  b = row[static_cast<size_t>(coupling.nodes[second])];
+        if (b >= 0 && a >= b)
+          entries.emplace_back(a, b, coupling.stiffness * coupling.weights[first] * coupling.weights[second]);
+      }
+  // What hangs on nothing gets a weak hold, so that it stays.
+  for (int k = 0; k < free_count; ++k) entries.emplace_back(k, k, 1e-9);
+  Laplacian matrix(free_count, free_count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// What the displacements of prescribed nodes draw the free ones by.
+Vector drawn(const std::vector<Coupling>& couplings, const std::vector<int>& row, Eigen::Index free_count,
+             const Eigen::RowVectorXd& displacement) {
+  Vector rhs = Vector::Zero(free_count);
+  for (const Coupling& coupling : couplings)
+    for (int i = 0; i < coupling.count; ++i)
+      for (int j = 0; j < coupling.count; ++j) {
+        const size_t first = static_cast<size_t>(i), second = static_cast<size_t>(j);
+        const int a = row[static_cast<size_t>(coupling.nodes[first])];
+        const int node = coupling.nodes[second];
+        if (a >= 0 && row[static_cast<size_t>(node)] < 0)
+          rhs[a] -=
+              coupling.stiffness * coupling.weights[first] * coupling.weights[second] * displacement[node];
+      }
+  return rhs;
 }
 
 }  // namespace
@@ -49,7 +111,7 @@ Vector extended_harmonically(const Objective& objective, const Vector& q, const 
   const Points from = objective.positions(q);
   const int n = objective.node_count();
   Points displacement = objective.fixed().select(x - from, Points::Zero(3, n));
-  const std::vector<WeightedEdge> edges = weighted_edges(objective, from);
+  const std::vector<Coupling> couplings = couplings_at(objective, from);
   std::vector<int> row(static_cast<size_t>(n), -1);
   LaplacianFactor factor;
   for (int c = 0; c < 3; ++c) {
@@ -59,25 +121,9 @@ Vector extended_harmonically(const Objective& objective, const Vector& q, const 
     if (!is_factored) {
       int free_count = 0;
       for (int node = 0; node < n; ++node) row[static_cast<size_t>(node)] = held[node] ? -1 : free_count++;
-      std::vector<Eigen::Triplet<double>> entries;
-      for (const WeightedEdge& edge : edges) {
-        const int a = row[static_cast<size_t>(edge.a)], b = row[static_cast<size_t>(edge.b)];
-        if (a >= 0) entries.emplace_back(a, a, edge.weight);
-        if (b >= 0) entries.emplace_back(b, b, edge.weight);
-        if (a >= 0 && b >= 0) entries.emplace_back(std::max(a, b), std::min(a, b), -edge.weight);
-      }
-      // What hangs on nothing gets a weak hold, so that it stays.
-      for (int k = 0; k < free_count; ++k) entries.emplace_back(k, k, 1e-9);
-      Laplacian matrix(free_count, free_count);
-      matrix.setFromTriplets(entries.begin(), entries.end());
-      factor.compute(matrix);
+      factor.compute(laplacian(couplings, row, free_count));
     }
-    Vector rhs = Vector::Zero(factor.rows());
-    for (const WeightedEdge& edge : edges) {
-      const int a = row[static_cast<size_t>(edge.a)], b = row[static_cast<size_t>(edge.b)];
-      if (a >= 0 && b < 0) rhs[a] += edge.weight * displacement(c, edge.b);
-      if (b >= 0 && a < 0) rhs[b] += edge.weight * displacement(c, edge.a);
-    }
+    const Vector rhs = drawn(couplings, row, factor.rows(), displacement.row(c));
     const Vector solution = factor.solve(rhs);
     for (int node = 0; node < n; ++node)
       if (row[static_cast<size_t>(node)] >= 0)

@@ -59,20 +59,25 @@ class BallInFilmTest : public ContactSceneTest {
     write("ball.obj", ball);
   }
 
-  JudgedScene solve(const std::string& contact) const {
+  // more: terms beside the film.
+  JudgedScene solve(const std::string& more, double depth = 2.5) const {
     return solve_judged(scene_of(R"({
     "mesh": {"file": "film.obj"}, "obstacles": [{"name": "ball", "file": "ball.obj"}],
     "boundary": [{"nodes": "boundary", "fix": true},
-                 {"nodes": "ball", "move_to": {"translate": [0, 0, "-2.5 mm"]}}],
-    "terms": [{"type": "surface_tension", "tension": "0.1 N/mm"},
-              {"type": "cst_stvk", "young": "0.05 MPa", "poisson": 0.3, "thickness": "0.1 mm"})" +
-                                 contact + R"(],
-    "solver": {"type": "newton", "tolerance": 1e-6, "max_iterations": 2000}})"));
+                 {"nodes": "ball", "move_to": {"translate": [0, 0, "-)" +
+                                 std::to_string(depth) + R"( mm"]}}],
+    "terms": [{"type": "surface_tension", "tension": "0.1 N/mm"})" +
+                                 more + R"(],
+    "solver": {"type": "newton", "tolerance": 1e-8, "max_iterations": 2000}})"));
   }
 };
 
+constexpr const char* kSheet =
+    R"(, {"type": "cst_stvk", "young": "0.05 MPa", "poisson": 0.3, "thickness": "0.1 mm"})";
+constexpr const char* kContact = R"(, {"type": "contact_barrier", "gap": "0.3 mm"})";
+
 TEST_F(BallInFilmTest, LeavesItAsACatenoid) {
-  const JudgedScene judged = solve(R"(, {"type": "contact_barrier", "gap": "0.3 mm"})");
+  const JudgedScene judged = solve(std::string(kSheet) + kContact);
   expect_contact_without_intersection("ball in film", judged);
 
   const Points x = judged.positions();
@@ -95,7 +100,18 @@ TEST_F(BallInFilmTest, LeavesItAsACatenoid) {
   std::printf("ball in film: force %.5f N, rigid contact %.5f N\n", force[2], rigid.force());
 }
 
-TEST_F(BallInFilmTest, PassesThroughItWithoutABarrier) { EXPECT_GT(solve("").metrics.intersections, 0); }
+TEST_F(BallInFilmTest, PassesThroughItWithoutABarrier) { EXPECT_GT(solve(kSheet).metrics.intersections, 0); }
+
+// The film in contact goes along with the ball: without that each step of the motion ends after a part of the
+// gap, 50 to 250 iterations.
+TEST_F(BallInFilmTest, IsPressedIntoAFilmAloneInFewIterations) {
+  for (const double depth : {1.5, 2.5, 4.0}) {
+    SCOPED_TRACE(depth);
+    const JudgedScene judged = solve(kContact, depth);
+    expect_contact_without_intersection("ball in film alone", judged);
+    EXPECT_LE(judged.outcome.result.iterations, 30);
+  }
+}
 
 // --- A strip pressed onto a plane ------------------------------------------------------------------------
 
