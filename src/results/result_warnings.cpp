@@ -5,24 +5,44 @@
 namespace coapt {
 namespace {
 
-// "3 of 630 facets (12, 45, 300)"; empty where none is beyond its yield.
-std::string yielded(const Vector& ratios, const char* what) {
+constexpr double kMostFacetStrain = 1, kMostLineStrain = 0.2;  // beyond which they are named
+
+// "3 of 630 facets (12, 45, 300)": those above `most`; empty where none is.
+std::string those_above(double most, const Eigen::Ref<const Vector>& values, const char* what) {
   constexpr long kNamed = 8;
-  const long count = (ratios.array() > 1).count();
+  const long count = (values.array() > most).count();
   if (count == 0) return "";
   std::string names;
   long named = 0;
-  for (Eigen::Index k = 0; k < ratios.size() && named < kNamed; ++k)
-    if (ratios[k] > 1) names += (named++ > 0 ? ", " : "") + std::to_string(k);
-  return std::to_string(count) + " of " + std::to_string(ratios.size()) + " " + what + " (" + names +
+  for (Eigen::Index k = 0; k < values.size() && named < kNamed; ++k)
+    if (values[k] > most) names += (named++ > 0 ? ", " : "") + std::to_string(k);
+  return std::to_string(count) + " of " + std::to_string(values.size()) + " " + what + " (" + names +
          (count > kNamed ? ", ...)" : ")");
 }
 
+std::string percent(double share) { return number_text(100 * share, 3) + " %"; }
+
 }  // namespace
 
+std::string stretch_warning(const Fields& fields) {
+  const Vector strain = fields.principal_strain.row(0).transpose();
+  const std::string facets = those_above(kMostFacetStrain, strain, "facets"),
+                    lines = those_above(kMostLineStrain, fields.line_strain, "chords and cables");
+  if (facets.empty() && lines.empty()) return "";
+  std::string text = "Overstretched: ";
+  if (!facets.empty())
+    text += facets + " by more than " + percent(kMostFacetStrain) + ", the most by " +
+            percent(strain.maxCoeff<Eigen::PropagateNumbers>());
+  if (!facets.empty() && !lines.empty()) text += "; ";
+  if (!lines.empty())
+    text += lines + " by more than " + percent(kMostLineStrain) + ", the most by " +
+            percent(fields.line_strain.maxCoeff<Eigen::PropagateNumbers>());
+  return text + ". Are rest lengths, supports, stiffness, loads and their units right?";
+}
+
 std::string yield_warning(const Fields& fields) {
-  const std::string facets = yielded(fields.yield_ratio, "facets"),
-                    chords = yielded(fields.line_yield_ratio, "chords");
+  const std::string facets = those_above(1, fields.yield_ratio, "facets"),
+                    chords = those_above(1, fields.line_yield_ratio, "chords");
   if (facets.empty() && chords.empty()) return "";
   return "Fibres beyond their yield: " + facets + (facets.empty() || chords.empty() ? "" : " and ") + chords +
          ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).";

@@ -12,6 +12,10 @@ namespace coapt {
 // near by; how many nodes have no determined place.
 std::vector<std::string> result_warnings(const Report& report);
 
+// Which facets are stretched by more than 100 %, and which chords and cables by more than 20 %, numbered as
+// in closed.vtp, one sentence; empty where none is. Tissue and sailcloth bear neither: the data is at fault.
+std::string stretch_warning(const Fields& fields);
+
 // Which facets and chords have fibres beyond their yield, one sentence; empty where none has.
 std::string yield_warning(const Fields& fields);
 

@@ -81,8 +81,8 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");
-  if (const std::string warning = yield_warning(report.fields); !warning.empty())
-    report.warnings.push_back(warning);
+  for (const std::string& warning : {stretch_warning(report.fields), yield_warning(report.fields)})
+    if (!warning.empty()) report.warnings.push_back(warning);
   withdraw_penetrated(report);
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())

@@ -229,6 +229,14 @@ TEST_F(TissueScene, TakesAllThatCrimpedFibresMayBe) {
   const std::string warning = yield_warning(report.fields);
   EXPECT_NE(warning.find("beyond their yield: "), std::string::npos) << warning;
   EXPECT_NE(warning.find("chords (0, 1, 2"), std::string::npos) << warning;
+  EXPECT_TRUE(stretch_warning(compute_fields(model, 1.19 * model.X)).empty());
+  const std::string lines = stretch_warning(compute_fields(model, 1.25 * model.X));
+  EXPECT_EQ(lines.find("facets"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("chords and cables (0, 1, 2"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("the most by 25 %"), std::string::npos) << lines;
+  const std::string both = stretch_warning(compute_fields(model, 2.5 * model.X));
+  EXPECT_NE(both.find("facets (0, 1"), std::string::npos) << both;
+  EXPECT_NE(both.find("the most by 150 %"), std::string::npos) << both;
   EXPECT_TRUE(refuses(R"({"type": "cst_crimped_fibre", "crimp_ratio": 9, "radius_ratio": 1.6,
       "thickness": "0.5 mm", "failure": 0.5})",
                       "failure: says nothing without yield_strain"));
