@@ -58,4 +58,47 @@ def sail():
                   {"type": "load_pressure", "value": "100 Pa"}))
 
 
-SCENES = {make.__name__: make for make in (cylinder, pane, catenoid, sail)}
+def blown(place, u, v, pressure, **kind):
+    """Rubber sheet held at its rim under pressure."""
+    return (obj(u, v, place, **kind),
+            scene(RIM, {"type": "cst_neo_hookean", "shear_modulus": "0.3 MPa", "thickness": "0.5 mm"},
+                  {"type": "load_pressure", "value": pressure}))
+
+
+def ring():
+    """Rubber ring between two circles, blown up."""
+    return blown(lambda u, v: ((20 + 30 * v) * math.cos(2 * math.pi * u), (20 + 30 * v) * math.sin(2 * math.pi * u), 0.0),
+                 12, 3, "3 kPa", is_ring=True)
+
+
+def bent():
+    """Rubber sheet over the hole of a quarter of a torus in plan, with an edge that turns in."""
+    return blown(lambda u, v: ((30 + 40 * v) * math.cos(1.5 * math.pi * u), (30 + 40 * v) * math.sin(1.5 * math.pi * u), 0.0),
+                 12, 4, "3 kPa")
+
+
+def dome():
+    """Rubber cap of half a sphere with a hole at its top, blown up."""
+    def place(u, v):
+        polar = 0.5 * math.pi * (1 - 0.8 * v)
+        return (30 * math.sin(polar) * math.cos(2 * math.pi * u), 30 * math.sin(polar) * math.sin(2 * math.pi * u),
+                30 * math.cos(polar))
+    return blown(place, 12, 4, "4 kPa", is_ring=True)
+
+
+def cone():
+    """Prestressed cloth between a high ring and a low one, under snow."""
+    return (obj(16, 4, lambda u, v: ((400 + 1600 * v) * math.cos(2 * math.pi * u), (400 + 1600 * v) * math.sin(2 * math.pi * u),
+                                     1200 * (1 - v)), is_ring=True),
+            scene(RIM, {"type": "cst_stvk", "young": "500 MPa", "poisson": 0.3, "thickness": "0.8 mm", "prestress": "4 N/mm"},
+                  {"type": "load_pressure", "value": "600 Pa", "side": "back"}))
+
+
+def saddle():
+    """Prestressed cloth over a skew square, in the wind."""
+    return (obj(6, 6, lambda u, v: (4000 * u, 4000 * v, 1500 * (2 * u - 1) * (2 * v - 1))),
+            scene(RIM, {"type": "cst_stvk", "young": "500 MPa", "poisson": 0.3, "thickness": "0.8 mm", "prestress": "4 N/mm"},
+                  {"type": "load_pressure", "value": "800 Pa"}))
+
+
+SCENES = {make.__name__: make for make in (cylinder, pane, catenoid, sail, ring, bent, dome, cone, saddle)}

@@ -28,6 +28,11 @@ SHAPES = [  # shape, triangles (0: as it comes), accuracy
     ("pane", 0, "0.5mm"),
     ("catenoid", 0, "0.05mm"),
     ("sail", 0, "5mm"),
+    ("ring", 0, "0.1mm"),
+    ("bent", 0, "0.1mm"),
+    ("dome", 0, "0.1mm"),
+    ("cone", 0, "1mm"),
+    ("saddle", 0, "1mm"),
 ]
 SAMPLES = 1000
 

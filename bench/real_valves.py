@@ -2,6 +2,7 @@
 """Closes valves as people have them, with no option given, and prints Markdown tables.
 
     bench/real_valves.py [path of coapt] [--data FOLDER] [--seeds N] [--triangles N] [--wide] [--before COAPT] [--branches N]
+                         [--direct] [--only TEXT]
 
 What `coapt import FILE` and `coapt solve` do with each valve of FOLDER (the shared data), `coapt generate --rough` and
 `coapt solve` with N seeds each of the mitral and the tricuspid kind (default 10, of 900 triangles), and --wide: the
@@ -10,6 +11,7 @@ solve is given --max-seconds (default 300). Iterations are those on the finest m
 assembly for each of them, timed in the same run, over the CPU time; distances are to the published closed surface, from
 ours to it and from it to ours. --before: another coapt solves the same scenes, for a column beside ours. --branches: a
 column with the range of the orifice over other equilibria, from N perturbed starts of each kind (N times the work).
+--direct: without the damped path. --only: the shared valves whose path contains TEXT.
 """
 import argparse
 import json
@@ -96,9 +98,12 @@ def main() -> None:
     parser.add_argument("--wide", action="store_true")
     parser.add_argument("--before")
     parser.add_argument("--branches", type=int, default=0)
+    parser.add_argument("--direct", action="store_true")
+    parser.add_argument("--only", default="")
     arguments = parser.parse_args()
     columns = ["valve", "triangles", "status", "residual", "iterations", "factorisations", "CPU s", "floor / CPU",
                "intersections", "orifice mm2", "mean; 95 % mm, to and from", "stability"]
+    path = ["--damped-steps", "0"] if arguments.direct else []
     search = ["--branches", str(arguments.branches)] if arguments.branches else []
     if search:
         columns.append("others: orifice mm2")
@@ -108,19 +113,19 @@ def main() -> None:
     seen = []
 
     def row(name: str, folder: pathlib.Path) -> dict:
-        result = solved(arguments.coapt, folder, arguments.max_seconds)
+        result = solved(arguments.coapt, folder, arguments.max_seconds, *path)
         line = [name, str(result["mesh"]["triangles"]), *cells(result)]
         if search:
-            line.append(spread(solved(arguments.coapt, folder, arguments.max_seconds, *search)))
+            line.append(spread(solved(arguments.coapt, folder, arguments.max_seconds, *path, *search)))
         if arguments.before:
-            before = solved(arguments.before, folder, arguments.max_seconds)
+            before = solved(arguments.before, folder, arguments.max_seconds, *path)
             line.append(f"{before['status']}, {before['iterations']}, {before['time']['cpu_s']:.2f}")
         print("| " + " | ".join(line) + " |", flush=True)
         return result
 
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary) / "valve"
-        for valve in VALVES:
+        for valve in [valve for valve in VALVES if arguments.only in valve]:
             if not (arguments.data / valve).exists():
                 print(f"skipped: {valve} is not in {arguments.data}")
                 continue

@@ -70,7 +70,7 @@ std::string branches_message(const Branches& branches) {
   if (others == 0) {
     const int returned = branches.equilibria.front().found;
     if (branches.starts == 0) return "interrupted before a perturbed start was solved";
-    if (returned == 0) return "none of " + starts + " converged";
+    if (returned == 0) return "none of " + starts + " converged (the first: " + branches.first_failure + ")";
     return (lost.empty() ? starts : std::to_string(returned) + " of " + starts) +
            " came back to the same state (greatest distance " + millimetres(branches.greatest_return_mm) +
            ")" + lost;
@@ -93,6 +93,7 @@ nlohmann::ordered_json branches_json(const Branches& branches) {
           {"starts", branches.starts},
           {"starts_along_path", branches.starts_along_path},
           {"not_converged", branches.not_converged},
+          {"first_failure", branches.first_failure},
           {"kick_mm", branches.kick_mm},
           {"least_moved_share", branches.least_moved_share},
           {"tolerance_mm", branches.tolerance_mm},

@@ -30,6 +30,7 @@ struct Branches {
   int starts = 0;             // made; fewer than wanted where the user interrupted the search
   int starts_along_path = 0;  // of them, from the scene's own start; the others from its equilibrium
   int not_converged = 0;      // of all
+  std::string first_failure;  // message of the first of these
   double kick_mm = 0;
   double least_moved_share = 1;  // of the starts: length of all moves that contact admitted, over that wanted
   double tolerance_mm = 0;       // states are the same where no determined node is farther apart

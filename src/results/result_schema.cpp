@@ -257,6 +257,7 @@ OrderedJson branches() {
                  {"starts", count("perturbed starts that were made")},
                  {"starts_along_path", count("of them, from the scene's own start along its whole path")},
                  {"not_converged", count("of all")},
+                 {"first_failure", text("message of the first that did not converge; else empty")},
                  {"kick_mm", number("greatest move of a node of a start [mm]")},
                  {"least_moved_share",
                   number("of the starts: length of all moves that contact admitted, over that wanted")},

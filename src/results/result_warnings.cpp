@@ -57,6 +57,9 @@ std::vector<std::string> result_warnings(const Report& report) {
   if (report.branches && report.branches->equilibria.size() > 1)
     warnings.push_back("This shape is one of several equilibria: " + branches_message(*report.branches) +
                        ". Figures that differ between them are given with their range.");
+  if (report.branches && report.branches->starts > 0 &&
+      report.branches->not_converged == report.branches->starts)
+    warnings.push_back("Nothing is known of other equilibria: " + branches_message(*report.branches) + ".");
   const UndeterminedNodes nodes = undetermined_nodes(certificate.free_nodes, report.branches);
   if (nodes.total() > 0)
     warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +

@@ -186,8 +186,8 @@ Branches find_branches(const Scene& scene, const SolverTable& solvers, const Run
     if (is_from_own_start) ++branches.starts_along_path;
     if (result.status == Status::Converged)
       sort_in(result, model, options.checker, states, branches);
-    else
-      ++branches.not_converged;
+    else if (branches.not_converged++ == 0)
+      branches.first_failure = result.message;
   }
   branches.others = ranges_of_others(branches.equilibria);
   objective.prescribe(states.front().x);

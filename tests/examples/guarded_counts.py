@@ -20,7 +20,7 @@ from real_valves import run, solved  # noqa: E402
 TABLE = pathlib.Path(__file__).with_name("guarded_counts.csv")
 SHARED = ["bhv-trileaflet/valve_coarse.json", "bhv-trileaflet/valve_fine.json", "mitral-ct-normal1/valve_n32.json",
           "mitral-ct-normal1/valve_n64.json", "mitral-ct-normal1/valve_n128.json",
-          "trivalve11-healthy/valve_coarse.json"]
+          "trivalve11-healthy/valve_coarse.json", "trivalve11-healthy/valve.json"]
 VALVES = SHARED + [f"rough {kind} {seed}" for seed in (1, 2, 4, 5, 6) for kind in ("mitral", "tricuspid")]
 
 

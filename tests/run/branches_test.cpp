@@ -175,6 +175,23 @@ TEST(Headline, CallsNothingConvergedThatCollisionsLetThrough) {
             "keep apart; at rest with a residual of 2e-09");
 }
 
+TEST(Headline, SaysWhyNoPerturbedStartTellsAnything) {
+  Report report;
+  report.result.status = Status::Converged;
+  report.branches.emplace();
+  report.branches->equilibria.resize(1);
+  report.branches->starts = report.branches->not_converged = 4;
+  report.branches->first_failure = "stalled at residual 1e-3";
+  const std::vector<std::string> warnings = result_warnings(report);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(
+      warnings[0],
+      "Nothing is known of other equilibria: none of 4 perturbed starts converged (the first: stalled at "
+      "residual 1e-3).");
+  report.branches->not_converged = 3;
+  EXPECT_TRUE(result_warnings(report).empty());
+}
+
 TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
   Report report;
   report.result.message = "converged";
