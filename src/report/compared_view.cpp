@@ -74,9 +74,9 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
   for (const ComparedShape& shape : shapes) {
     const Model& model = *shape.model;
     if (!is_like_base(model)) continue;
-    std::vector<ViewState> states = {result_state(shape.label, *shape.report)};
+    std::vector<ViewState> states = {result_state(shape.label, *shape.report, view.frame.up)};
     if (shape.has_history) {
-      states = view_states(*shape.report, short_history(shape, shapes.size()));
+      states = view_states(*shape.report, short_history(shape, shapes.size()), view.frame.up);
       states.back().label = shape.label + ", residual " + page_number(shape.report->result.residual, 2);
       view.sequences.push_back({shape.label, states.size()});
     }
@@ -91,6 +91,7 @@ std::optional<ShapeView> compared_view(const std::vector<ComparedShape>& shapes,
     view.line_force->values.resize(view.states.size() - 1);
     view.line_force->values.push_back(shape.report->fields.line_force);
   }
+  view.is_pair = view.states.size() == 2 && view.sequences.empty();
   return view;
 }
 

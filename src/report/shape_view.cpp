@@ -4,6 +4,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/detail/report_files.hpp"
+#include "report/detail/slider_json.hpp"
 
 #include <algorithm>
 
@@ -93,6 +94,8 @@ OrderedJson view_json(const ShapeView& view) {
           {"states", states},
           {"sequences", sequences},
           {"fields", fields},
+          {"pair", view.is_pair && view.states.size() == 2},
+          {"sliders", view.first_order ? sliders_json(*view.first_order) : OrderedJson(nullptr)},
           {"line_force", view.line_force ? field_json(*view.line_force) : OrderedJson(nullptr)},
           {"line_values", line_values}};
 }
@@ -126,8 +129,9 @@ PageMarkup shape_view_html(const ShapeView& view) {
           formats::xml_escaped(files::three_notice) + "</pre></details>\n";
   html += script(files::three) + script(files::three_controls);
   std::string own = "\"use strict\";\n{\n";
-  for (const std::string_view part : {files::viewer_base, files::viewer_stage, files::viewer_parts,
-                                      files::viewer_values, files::viewer_screenshot, files::viewer_controls})
+  for (const std::string_view part :
+       {files::viewer_base, files::viewer_stage, files::viewer_parts, files::viewer_values,
+        files::viewer_screenshot, files::viewer_sliders, files::viewer_controls})
     own += part;
   html += script(own + "}");
   return {html};

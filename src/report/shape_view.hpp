@@ -4,6 +4,7 @@
 #include "formats/mesh_io.hpp"
 #include "mesh/top_view.hpp"
 #include "report/report_page.hpp"
+#include "results/first_order.hpp"
 
 #include <optional>
 #include <string>
@@ -58,8 +59,12 @@ struct ShapeView {
   // first. Empty: one way of all states.
   std::vector<ViewSequence> sequences = {};
   std::vector<ViewField> fields = {};  // of vertices and triangles; the first is shown
+  // Of two states: shown beside each other at first, and coloured by what changes.
+  bool is_pair = false;
   std::optional<ViewField> line_force = {};
   std::vector<ViewField> line_values = {};  // told of the lines at a node, after their force
+  // Moves the last state by sliders; as many of its parameters as the page has room for.
+  std::optional<FirstOrder> first_order = {};
 };
 
 // Whether this build holds what draws shapes.

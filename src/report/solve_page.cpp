@@ -1,6 +1,7 @@
 #include "report/solve_page.hpp"
 
 #include "core/components.hpp"
+#include "core/number_text.hpp"
 #include "core/timing.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/metric_words.hpp"
@@ -16,19 +17,42 @@ namespace {
 constexpr size_t kMostShapes = 12;
 constexpr size_t kShapeBytes = 2'000'000;  // of all shapes in the page; a node takes 16 in each
 
-std::string tile(const std::string& name, double value, const std::string& unit) {
-  return "<div><dt>" + formats::xml_escaped(name) + "</dt><dd>" + page_number(value) + " <small>" + unit +
-         "</small></dd></div>\n";
+// The criterion of a healthy closure that judges a figure; null where none does.
+const HealthyCriterion* criterion_of(const Report& report, const std::string& metric) {
+  for (const HealthyCriterion& criterion : report.metrics.healthy_closure)
+    if (criterion.name == metric) return &criterion;
+  return nullptr;
+}
+
+// A figure that sliders may change, with its healthy range where it has one.
+std::string tile(const std::string& name, double value, const std::string& unit,
+                 const HealthyCriterion* healthy = nullptr) {
+  std::string html = "<div data-figure=\"" + formats::xml_escaped(name) + "\" data-exact=\"" +
+                     number_text(value, 9) + "\"><dt>" + formats::xml_escaped(name) +
+                     "</dt><dd><span data-value>" + page_number(value) + "</span> <small>" + unit +
+                     "</small></dd>";
+  if (healthy != nullptr)
+    html += std::string("<dd class=\"range ") + (healthy->is_met() ? "good" : "caution") + "\">" +
+            (healthy->is_met() ? "healthy: " : "not in the healthy range: ") + range_in_words(*healthy) +
+            "</dd>";
+  return html + "</div>\n";
 }
 
 // The figures that a user looks at first.
 PageMarkup tiles(const Report& report) {
   std::string html;
-  for (const MetricRow& row : metric_rows(report.metrics))
+  const std::vector<MetricRow> rows = metric_rows(report.metrics);
+  for (const MetricRow& row : rows)
     for (const char* name : {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm",
                              "tenting_height_mm", "max_principal_strain", "max_cauchy_stress_kpa",
                              "max_chord_force_n", "max_chord_stress_kpa", "max_displacement_mm"})
-      if (row.name == name && row.value) html += tile(metric_in_words(row), *row.value, unit_sign(row.unit));
+      if (row.name == name && row.value)
+        html += tile(metric_in_words(row), *row.value, unit_sign(row.unit), criterion_of(report, name));
+  for (const HealthyCriterion& criterion : report.metrics.healthy_closure)  // those that are no metric
+    if (std::none_of(rows.begin(), rows.end(),
+                     [&](const MetricRow& row) { return row.name == criterion.name; }))
+      html += tile(metric_in_words({criterion.name, criterion.unit, "", false, {}}), criterion.value,
+                   unit_sign(criterion.unit), &criterion);
   if (report.reference)
     html += tile("mean distance to reference", both_directions(*report.reference).mean, "mm");
   return {"<dl class=\"tiles\">\n" + html + tile("residual", report.result.residual, "") + "</dl>\n"};

@@ -11,6 +11,7 @@ namespace coapt {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kOutlineWidth = 1.0 / 30;  // of the perimeter, over which heights of an outline are averaged
 
 Vector of_flags(const std::vector<char>& flags) {
   Vector values(std::ssize(flags));
@@ -114,6 +115,37 @@ ViewFrame upright(ViewFrame frame) {
 
 }  // namespace
 
+Points smooth_outline(const Points& corners, const Vec3& up) {
+  const Eigen::Index count = corners.cols();
+  Vector length(count);  // from each corner to the next, seen along up
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Vec3 step = corners.col((k + 1) % count) - corners.col(k);
+    length[k] = (step - step.dot(up) * up).norm();
+  }
+  const double perimeter = length.sum(), width = kOutlineWidth * perimeter;
+  if (!(perimeter > 0)) return corners;
+  Points smooth = corners;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    double sum = 0, weights = 0;
+    // Both ways round until the weights vanish, each corner for the stretches at it.
+    for (const int way : {-1, 1}) {
+      double away = 0;
+      for (Eigen::Index j = 0; j < count && away < std::min(3 * width, perimeter / 2); ++j) {
+        const Eigen::Index at = ((k + way * j) % count + count) % count, before = (at + count - 1) % count;
+        const double weight =
+            0.5 * (length[before] + length[at]) * std::exp(-0.5 * away * away / (width * width));
+        if (way == 1 || j > 0) {
+          sum += weight * corners.col(at).dot(up);
+          weights += weight;
+        }
+        away += way > 0 ? length[at] : length[before];
+      }
+    }
+    if (weights > 0) smooth.col(k) += (sum / weights - corners.col(k).dot(up)) * up;
+  }
+  return smooth;
+}
+
 ViewFrame viewing_frame(const Model& model, const Fields& fields) {
   if (const std::vector<int>* annulus = annulus_of(model)) return annulus_frame(model, fields, *annulus);
   Vec3 facing = Vec3::Zero();
@@ -149,23 +181,24 @@ std::vector<ViewField> view_fields(const Model& model, const Fields& fields) {
   return all;
 }
 
-ViewState result_state(const std::string& label, const Report& report) {
+ViewState result_state(const std::string& label, const Report& report, const Vec3& up) {
   ViewState state{.label = label, .x = report.fields.x};
   if (const auto& closure = report.metrics.closure) {
     for (const Seam& seam : closure->line) state.outlines.push_back({false, seam.points});
     for (const Orifice& orifice : closure->orifices)
-      state.outlines.push_back({true, orifice.outline.corners});
+      state.outlines.push_back({true, smooth_outline(orifice.outline.corners, up)});
   }
   if (const auto& area = report.metrics.orifice_area_mm2)
     state.orifice_text = "orifice outline, " + page_number(*area) + " mm²";
   return state;
 }
 
-std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history) {
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history,
+                                   const Vec3& up) {
   std::vector<ViewState> states;
   for (const RecordedShape& shape : history)
     states.push_back({.label = label(shape.iteration, states.empty()), .x = shape.x, .is_history = true});
-  states.push_back(result_state(label(report.result), report));
+  states.push_back(result_state(label(report.result), report, up));
   return states;
 }
 
@@ -173,8 +206,9 @@ ShapeView solved_view(const Model& model, const Report& report) {
   ShapeView view = bare_view(model, report.fields);
   view.name = "coapt";
   if (view.is_valve) view.slider = "Open ↔ closed";
-  view.states = view_states(report, report.shape_history);
+  view.states = view_states(report, report.shape_history, view.frame.up);
   view.fields = view_fields(model, report.fields);
+  view.first_order = report.first_order;
   if (model.lines.empty()) return view;
   const auto of_lines = [](const char* title, const char* unit, const Vector& values) {
     return ViewField{.title = title, .unit = unit, .place = ViewPlace::Line, .values = {values}};

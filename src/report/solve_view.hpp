@@ -21,10 +21,16 @@ std::vector<ViewField> view_fields(const Model& model, const Fields& fields);
 
 // From the start by the recorded iterates to the result, with its outlines and its coaptation line. `history`
 // holds positions relative to the model's origin, as report.shape_history.
-std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history);
+std::vector<ViewState> view_states(const Report& report, const std::vector<RecordedShape>& history,
+                                   const Vec3& up);
 
-// One state, with its outlines and coaptation line.
-ViewState result_state(const std::string& label, const Report& report);
+// One state, with its outlines and coaptation line. up: towards who looks from above, for smooth_outline().
+ViewState result_state(const std::string& label, const Report& report, const Vec3& up);
+
+// A closed outline as it is drawn: along `up`, a unit vector, every corner stands at the mean height of the
+// corners around it, by a Gaussian whose width is a thirtieth of the perimeter. The rim of an orifice passes
+// from one leaflet to another by a jump; seen along `up` nothing changes.
+Points smooth_outline(const Points& corners, const Vec3& up);
 
 // From the start by the recorded iterates to the result, with its fields.
 ShapeView solved_view(const Model& model, const Report& report);

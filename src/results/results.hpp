@@ -5,6 +5,7 @@
 #include "results/accuracy_estimate.hpp"
 #include "results/branch_report.hpp"
 #include "results/cascade_level.hpp"
+#include "results/first_order.hpp"
 #include "results/metrics.hpp"
 #include "results/neighbour_check.hpp"
 #include "results/reference/reference_distance.hpp"
@@ -30,7 +31,8 @@ struct Report {
   std::optional<ReferenceDistance> reference;
   std::optional<AccuracyEstimate> accuracy;  // where one was wanted
   NeighbourCheck neighbours;
-  std::optional<Branches> branches;  // where they were looked for
+  std::optional<Branches> branches;       // where they were looked for
+  std::optional<FirstOrder> first_order;  // where it was wanted, for the page
   std::vector<std::string> warnings;
   bool has_frames = false;      // of an animation, in the result folder
   bool has_collisions = false;  // the method was to keep facets apart (DynamicOptions::collisions)

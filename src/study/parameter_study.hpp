@@ -5,6 +5,7 @@
 #pragma once
 
 #include "formats/table.hpp"
+#include "report/shape_view.hpp"
 #include "run/run.hpp"
 
 #include <filesystem>
@@ -72,6 +73,7 @@ struct ParameterStudy {
   bool is_greatest_best = false;
   size_t point_count = 0;                 // of the grid
   std::vector<PointResult> results = {};  // in the order of the grid; fewer where the study was stopped
+  std::optional<ShapeView> shapes = {};   // for the page, see point_shapes.hpp
   bool has_converged() const;             // every point of the grid
 };
 

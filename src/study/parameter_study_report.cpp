@@ -168,6 +168,7 @@ std::string parameter_study_page(const ParameterStudy& study) {
   page.lead = std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
               (study.has_converged() ? ", all converged" : "; not every point converged");
   page.tone = study.has_converged() ? Tone::Good : Tone::Bad;
+  if (study.shapes) page.sections.push_back({"Shapes", {shape_view_html(*study.shapes)}});
   page.sections.push_back({"Points", {page_points(study)}});
   PageSection plots{"Figures", {}};
   for (const std::string& name : shown_metrics(study)) {

@@ -345,16 +345,17 @@ std::string chord_tuning_json(const ChordTuning& found) {
 
 std::string chord_tuning_page(const ChordTuning& found) {
   Page page{.title = "Chord lengths of " + found.scene_title};
-  page.lead = std::string(tuning_status_name(found.tuning.status)) + ": cost " +
+  page.lead = spaced(tuning_status_name(found.tuning.status)) + ": cost " +
               page_number(found.tuning.cost_before) + " before, " + page_number(found.tuning.cost_after) +
               " after";
   page.tone = found.has_converged() ? Tone::Good : Tone::Caution;
   page.sections.push_back({"Tuning", {messages(found)}});
-  if (!found.tuning.best.history.empty()) page.sections.back().blocks.emplace_back(history_plot(found));
   std::vector<ComparedShape> shapes = {{"before", &found.before.model, &found.before.report}};
   if (found.after) shapes.push_back({"after", &found.after->model, &found.after->report});
   if (const auto view = compared_view(shapes, shapes.size() - 1, "tuning", "Before ↔ after"))
     page.sections.push_back({"Shapes", {shape_view_html(*view)}});
+  if (!found.tuning.best.history.empty())
+    page.sections.push_back({"Course of the tuning", {history_plot(found)}});
   page.sections.push_back({"Lengths", {page_lengths(found)}});
   if (found.determinacy)
     page.sections.push_back({"What the target determines", {spectrum_plot(found), spectrum_table(found)}});

@@ -3,12 +3,15 @@
 
 #include "energy/kernels/cst_stvk.hpp"
 #include "energy/objective.hpp"
+#include "formats/json/json_text.hpp"
 #include "mesh/shapes.hpp"
 #include "support/trough_valve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace coapt {
 namespace {
@@ -76,6 +79,70 @@ TEST(SolveView, TellsStressAndStrainOfChords) {
   EXPECT_EQ(view.line_values[0].title, "strain");
   EXPECT_EQ(view.line_values[1].title, "Cauchy stress");
   EXPECT_EQ(view.line_values[1].unit, "kPa");
+}
+
+// The rim of an orifice passes from one leaflet to another by a jump of its height.
+TEST(SolveView, OutlinesAreDrawnSmoothWhereTheyAreSeenFromAbove) {
+  const int count = 200;
+  const Vec3 up = Vec3(1, 2, 2) / 3, across = Vec3(2, 1, -2) / 3, along = up.cross(across);
+  Points corners(3, count);
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count, height = k < count / 2 ? 0 : k == 150 ? 5 : 3;
+    corners.col(k) = 4 * std::cos(angle) * across + 2 * std::sin(angle) * along + height * up;
+  }
+  const Points smooth = smooth_outline(corners, up);
+  const auto height = [&](int k) { return smooth.col(k % count).dot(up); };
+  for (int k = 0; k < count; ++k) {
+    EXPECT_LT((smooth.col(k) - corners.col(k) - (smooth.col(k) - corners.col(k)).dot(up) * up).norm(), 1e-12);
+    EXPECT_LT(std::abs(height(k + 1) - height(k)), 0.25) << "no jump of 3 is left";
+    EXPECT_GE(height(k), -1e-12);
+    EXPECT_LE(height(k), 3.2);
+  }
+  EXPECT_NEAR(height(count / 4), 0, 1e-3) << "far from the jumps";
+  EXPECT_NEAR(height(0), 1.5, 0.1);
+}
+
+// A page with sliders of that many nodes, and the JSON of its sliders.
+nlohmann::json sliders_of(int nodes, size_t& bytes) {
+  ShapeView view;
+  view.states = {{"result", Points::Zero(3, nodes)}};
+  const std::string without = shape_view_html(view).html;
+  FirstOrder first{.tolerance_mm = 0.1, .candidates = 9};
+  for (int k = 0; k < 8; ++k) {
+    ParameterResponse& response = first.parameters.emplace_back();
+    response.name = "parameter " + std::to_string(k);
+    response.unit = "%";
+    response.motion = Points::Zero(3, nodes);
+    response.motion(k % 3, 5) = -0.25;
+    response.ends = {CheckedEnd{-8, 0.05, {}},
+                     CheckedEnd{10, 0.08, {{"orifice_area_mm2", "mm2", "", false, 7.5}}}};
+  }
+  view.first_order = first;
+  const std::string html = shape_view_html(view).html, mark = "id=\"shape-data\">";
+  bytes = html.size() - without.size();
+  const size_t from = html.find(mark) + mark.size();
+  return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from)).at("sliders");
+}
+
+TEST(SolveView, SlidersTakeLessThan200kB) {
+  if (!has_shape_view()) GTEST_SKIP() << "this build has no 3-D view";
+  size_t bytes = 0;
+  const nlohmann::json few = sliders_of(2000, bytes);
+  EXPECT_LT(bytes, 200'000u);
+  ASSERT_EQ(few["parameters"].size(), 8u);
+  const nlohmann::json& first = few["parameters"][0];
+  EXPECT_EQ(first["bytes"], 2);
+  EXPECT_NEAR(first["step"], 0.25 / 32767, 1e-12);
+  EXPECT_EQ(first["figures"]["orifice area"], nlohmann::json({nullptr, 7.5}));
+  EXPECT_NEAR(first["errors"][1], 0.08 + 10 * std::sqrt(3.0) / 2 * 0.25 / 32767, 1e-12);
+  EXPECT_EQ(first["motion"].get<std::string>().size(), 4u * 2000 * 3 * 2 / 3);
+  EXPECT_NE(first["motion"].get<std::string>().find("AYA"), std::string::npos) << "-32767, as 01 80";
+  const nlohmann::json more = sliders_of(5000, bytes);
+  EXPECT_LT(bytes, 200'000u);
+  ASSERT_EQ(more["parameters"].size(), 8u);
+  EXPECT_EQ(more["parameters"][0]["bytes"], 1);
+  EXPECT_EQ(sliders_of(20000, bytes)["parameters"].size(), 2u);
+  EXPECT_LT(bytes, 200'000u);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "results/result_warnings.hpp"
 #include "run/branches.hpp"
 #include "study/bench/accuracy.hpp"
+#include "tuning/first_order.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -26,7 +27,7 @@ struct SolveArguments {
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
   std::optional<int> damped_steps;
-  bool has_no_report = false;
+  bool has_no_report = false, has_sliders = false;
   BranchSearch branches = {.starts = 0};
   SolveCheckpointArguments checkpoint;
 };
@@ -197,6 +198,9 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
   again.observer = make_observer();
   report.report = with_branches(scene, all_solvers(), again, arguments.branches, report.model,
                                 std::move(report.report), report.folder);
+  if (arguments.has_sliders)
+    report.report =
+        with_first_order(scene, all_solvers(), again, report.model, std::move(report.report), report.folder);
   end_progress();
   print_summary(report);
   if (checkpoint) checkpoint->finish(arguments.scene);
@@ -239,6 +243,11 @@ void add_solve_command(CLI::App& app, int& exit_code) {
   add_branch_options(*command, arguments->branches);
   add_solve_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
+  auto* sliders = command->add_flag(
+      "--sliders", arguments->has_sliders,
+      "In report.html, sliders of the parameters that matter most, which move the shape and its figures by "
+      "their first-order response, over ranges that solves have checked");
+  sliders->excludes("--no-report")->excludes("--accuracy");
   command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
     listen_for_interrupts();
     RunOptions options;

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "study/parameter_study.hpp"
+#include "study/point_shapes.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -129,6 +130,7 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
 
   for (std::optional<PointResult>& result : results)
     if (result) study.results.push_back(std::move(*result));
+  if (has_shape_view()) study.shapes = point_shapes(scene, points, study.results, study.sweeps, folder);
   write_parameter_study(folder, study);
   print_study(study, arguments.prints_json, folder);
   exit_code = study.has_converged() ? kConverged : kNotConverged;

@@ -23,10 +23,15 @@ std::string coded(const std::string& bytes) {
 template <class Number>
 std::string little_endian(std::span<const Number> numbers) {
   std::string bytes;
-  bytes.reserve(4 * numbers.size());
+  bytes.reserve(sizeof(Number) * numbers.size());
   for (const Number number : numbers) {
-    const auto word = std::bit_cast<std::uint32_t>(number);
-    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((word >> shift) & 255);
+    std::uint32_t word = 0;
+    if constexpr (sizeof(Number) == sizeof word)
+      word = std::bit_cast<std::uint32_t>(number);
+    else
+      word = static_cast<std::uint32_t>(number);
+    for (unsigned shift = 0; shift < 8 * sizeof(Number); shift += 8)
+      bytes += static_cast<char>((word >> shift) & 255);
   }
   return bytes;
 }
@@ -35,5 +40,7 @@ std::string little_endian(std::span<const Number> numbers) {
 
 std::string base64(std::span<const float> numbers) { return coded(little_endian(numbers)); }
 std::string base64(std::span<const std::uint32_t> numbers) { return coded(little_endian(numbers)); }
+std::string base64(std::span<const std::int16_t> numbers) { return coded(little_endian(numbers)); }
+std::string base64(std::span<const std::int8_t> numbers) { return coded(little_endian(numbers)); }
 
 }  // namespace coapt

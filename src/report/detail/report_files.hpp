@@ -11,7 +11,7 @@ extern const std::string_view style;  // of every page
 // The 3-D view: its elements, their style, and scripts that go into one block in this order.
 extern const std::string_view viewer_markup, viewer_style;
 extern const std::string_view viewer_base, viewer_stage, viewer_parts, viewer_values, viewer_screenshot,
-    viewer_controls;
+    viewer_sliders, viewer_controls;
 
 // Empty in a build without three.js.
 extern const std::string_view three, three_controls, three_notice;

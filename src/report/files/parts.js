@@ -12,13 +12,18 @@ const nodeOf = (data, state, i) => data.states[state].nodes.subarray(3 * i, 3 * 
 function makeOutlines(data, kind, radius) {
   const group = new THREE.Group();
   for (const state of data.states) for (const outline of state.outlines.filter(each => each.kind === kind)) {
-    const points = outline.points, count = points.length / 3, isClosed = kind === "orifice";
-    const point = k => points.subarray(3 * (k % count), 3 * (k % count) + 3);
+    const isClosed = kind === "orifice", corner = k => outline.points.subarray(3 * k, 3 * k + 3);
+    // Corners nearer to each other than the tube is thick would show its ends.
+    const kept = [0];
+    for (let k = 1; k < outline.points.length / 3; ++k)
+      if (Math.hypot(...[0, 1, 2].map(c => corner(k)[c] - corner(kept[kept.length - 1])[c])) >= 2 * radius) kept.push(k);
+    const count = kept.length, point = k => corner(kept[k % count]);
     const tubes = makeTubes(isClosed ? count : count - 1, radius, new THREE.MeshBasicMaterial({
       vertexColors: THREE.VertexColors, depthTest: false, transparent: true }));
     tubes.state = state;
     tubes.renderOrder = 1;  // seen through the sheet
-    tubes.place(k => [point(k), point(k + 1)]);
+    tubes.follow = () => tubes.place(k => [point(k), point(k + 1)]);
+    tubes.follow();
     group.add(tubes);
   }
   return group;
@@ -39,8 +44,10 @@ function makeParts(data, stage, radius) {
                            new THREE.MeshBasicMaterial({ color: 0xff3b8d, depthTest: false, transparent: true })),
   };
   parts.marker.renderOrder = 2;
-  for (const part of Object.values(parts)) stage.scene.add(part);
-  return parts;
+  const group = new THREE.Group();
+  for (const part of Object.values(parts)) group.add(part);
+  stage.scene.add(group);
+  return { ...parts, group };
 }
 
 function placeParts(parts, data, shown, wanted) {
@@ -68,17 +75,17 @@ function paintParts(parts, data, shown) {
   parts.edges.material.opacity = isDark ? 0.45 : 0.28;
 }
 
-// What lies under a place of the canvas: the nearest node, and the triangle if it is one of the sheet; null beside
-// everything.
-function pickedAt(canvas, stage, parts, data, shown, x, y) {
-  const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
-  ray.setFromCamera({ x: 2 * (x - box.left) / box.width - 1, y: 1 - 2 * (y - box.top) / box.height }, stage.camera);
+// What lies under a place of the window: the nearest node, and the triangle if it is one of the sheet; null beside
+// everything. pictures: parts and state of each.
+function pickedAt(stage, pictures, data, x, y) {
+  const { pane, at } = stage.paneAt(x, y), { parts, state } = pictures[pane], ray = new THREE.Raycaster();
+  ray.setFromCamera(at, stage.camera);
   const isKept = hit => stage.renderer.clippingPlanes.every(plane => plane.distanceToPoint(hit.point) >= 0);
   const hit = ray.intersectObjects([parts.sheet, parts.chords].filter(part => part.visible)).find(isKept);
   if (!hit) return null;
   const onSheet = hit.object === parts.sheet;
   const k = onSheet ? hit.faceIndex : Math.floor(hit.faceIndex / parts.chords.trianglesPerTube);
   const corners = onSheet ? data.triangles.subarray(3 * k, 3 * k + 3) : data.lines.subarray(2 * k, 2 * k + 2);
-  const away = node => hit.point.distanceTo(new THREE.Vector3(...nodeOf(data, shown.state, node)));
+  const away = node => hit.point.distanceTo(new THREE.Vector3(...nodeOf(data, state, node)));
   return { node: Array.from(corners).sort((a, b) => away(a) - away(b))[0], triangle: onSheet ? k : -1 };
 }

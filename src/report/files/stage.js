@@ -2,6 +2,7 @@
 // data's origin.
 
 const kSides = 6;  // of a tube
+const kBesideFrom = 560;  // width of the canvas from which two pictures stand beside each other [px]
 
 // Unique edges of triangles, as pairs of nodes.
 function edgesOf(triangles) {
@@ -160,7 +161,30 @@ function makeStage(canvas, frame, bounds, states) {
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.enableKeys = false;
   controls.enableZoom = false;  // the wheel belongs to the page until the picture is chosen
-  const draw = () => renderer.render(scene, camera);
+  // Pictures by the one camera, beside each other or, where the canvas is narrow, below; each is made ready and drawn.
+  let panes = [() => {}];
+  const paneSize = () => {
+    const width = canvas.clientWidth, height = canvas.clientHeight, isBeside = width >= kBesideFrom;
+    return { isBeside, width: isBeside ? width / panes.length : width, height: isBeside ? height : height / panes.length };
+  };
+  const draw = () => {
+    const { isBeside, width, height } = paneSize();
+    renderer.setScissorTest(panes.length > 1);
+    panes.forEach((ready, k) => {
+      const box = isBeside ? [k * width, 0, width, height] : [0, (panes.length - 1 - k) * height, width, height];
+      ready();
+      renderer.setViewport(...box);
+      renderer.setScissor(...box);
+      renderer.render(scene, camera);
+    });
+  };
+  // Which picture lies under a place of the window, and where in it, from -1 to 1 each way.
+  const paneAt = (x, y) => {
+    const box = canvas.getBoundingClientRect(), { isBeside, width, height } = paneSize();
+    const across = (x - box.left) / width, down = (y - box.top) / height;
+    const pane = clamp(Math.floor(isBeside ? across : down), 0, panes.length - 1);
+    return { pane, at: { x: 2 * (across - (isBeside ? pane : 0)) - 1, y: 1 - 2 * (down - (isBeside ? 0 : pane)) } };
+  };
   controls.addEventListener("change", draw);
   canvas.addEventListener("focus", () => controls.enableZoom = true);
   canvas.addEventListener("blur", () => controls.enableZoom = false);
@@ -202,14 +226,18 @@ function makeStage(canvas, frame, bounds, states) {
   };
 
   const resize = () => {
-    const width = canvas.clientWidth, height = canvas.clientHeight;
+    const width = canvas.clientWidth, height = canvas.clientHeight, pane = paneSize();
     if (width === 0 || height === 0) return;
     renderer.setSize(width, height, false);
-    camera.aspect = width / height;
+    camera.aspect = pane.width / pane.height;
     camera.updateProjectionMatrix();
     if (lookedFrom) look(lookedFrom);
     else draw();
   };
   new ResizeObserver(resize).observe(canvas);
-  return { renderer, scene, camera, draw, resize, turn, views, vector, right, up, towards, centre };
+  const setPanes = those => {
+    panes = those;
+    resize();
+  };
+  return { renderer, scene, camera, draw, resize, setPanes, paneSize, paneAt, turn, views, vector, right, up, towards, centre };
 }

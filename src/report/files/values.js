@@ -64,13 +64,15 @@ function valuesAt(data, shown) {
   return rows;
 }
 
-function showValues(data, shown) {
+// before: of a pair, the same in its first shape.
+function showValues(data, shown, before) {
   const body = byId("values").tBodies[0];
   body.textContent = "";
+  const others = new Map(before ? valuesAt(data, before) : []);
   for (const [name, value] of valuesAt(data, shown)) {
-    const row = body.appendChild(element("tr"));
+    const row = body.appendChild(element("tr")), other = others.get(name);
     row.appendChild(element("th", name)).scope = "row";
-    row.appendChild(element("td", value));
+    row.appendChild(element("td", other === undefined || other === value ? value : data.states[before.state].label + ": " + other + "; " + data.states[shown.state].label + ": " + value));
   }
 }
 

@@ -18,31 +18,68 @@ function readData() {
     for (const outline of state.outlines) outline.points = floats(outline.points);
   }
   for (const field of [...data.fields, ...data.line_values]) field.values = unpacked(field.values);
+  if (data.pair) addChanges(data);
   if (data.line_force) data.line_force = { ...data.line_force, values: unpacked(data.line_force.values), map: "force" };
   return data;
+}
+
+// Of a pair: what has another value in the second shape than in the first, and how far each place has moved.
+function addChanges(data) {
+  const [before, after] = [data.states[0], data.states[data.states.length - 1]];
+  const changes = data.fields.flatMap(field => {
+    const [from, to] = [valuesIn(data, field, 0), valuesIn(data, field, data.states.length - 1)];
+    if (field.categories || !from || !to || from === to) return [];
+    return [{ title: "Change of " + field.title.charAt(0).toLowerCase() + field.title.slice(1), unit: field.unit, at: field.at,
+              values: [to.map((value, k) => value - from[k])], none: "no value in one of both" }];
+  });
+  const count = before.nodes.length / 3;
+  const moved = { title: "Distance between both shapes", unit: "mm", at: "vertex",
+                  values: [Float32Array.from({ length: count }, (_, n) => Math.hypot(...[0, 1, 2].map(c => after.nodes[3 * n + c] - before.nodes[3 * n + c])))] };
+  data.fields.unshift(...changes.splice(0, 1), moved);
+  data.fields.push(...changes);
 }
 
 function makeViewer() {
   const data = readData(), canvas = byId("canvas");
   const shapes = data.states.map(state => state.nodes), bounds = boundsOf(shapes);
   const stage = makeStage(canvas, data.frame, bounds, shapes);
-  const viewer = { data, canvas, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {},
+  const viewer = { data, canvas, bounds, stage, parts: makeParts(data, stage, bounds.radius), wanted: {}, isPair: false,
                    shown: { state: data.states.length - 1, field: data.fields[0], node: -1, triangle: -1 } };
+  const twin = data.pair && makeParts(data, stage, bounds.radius);
+  if (twin) twin.group.visible = false;
+
+  // What is drawn, from left to right.
+  viewer.pictures = () => viewer.isPair
+      ? [{ parts: viewer.parts, state: 0 }, { parts: twin, state: data.states.length - 1 }]
+      : [{ parts: viewer.parts, state: viewer.shown.state }];
 
   viewer.redraw = () => {
-    placeParts(viewer.parts, data, viewer.shown, viewer.wanted);
-    paintParts(viewer.parts, data, viewer.shown);
+    for (const { parts, state } of viewer.pictures()) {
+      const shown = { ...viewer.shown, state };
+      placeParts(parts, data, shown, viewer.wanted);
+      paintParts(parts, data, shown);
+    }
     stage.draw();
   };
 
+  viewer.standBeside = isPair => {
+    viewer.isPair = isPair;
+    const groups = viewer.pictures().map(picture => picture.parts.group);
+    if (twin) twin.group.visible = false;
+    stage.setPanes(groups.map(own => () => groups.forEach(group => group.visible = group === own)));
+    if (!isPair) viewer.parts.group.visible = true;
+    viewer.redraw();
+  };
+
   viewer.tell = () => {
-    const { shown } = viewer, box = byId("legends");
+    const pictures = viewer.pictures(), shown = { ...viewer.shown, state: pictures[pictures.length - 1].state }, box = byId("legends");
     box.textContent = "";
     if (shown.field) addLegend(box, shown.field);
     if (data.line_force && viewer.wanted.chords) addLegend(box, data.line_force);
     byId("carried").hidden = !shown.field || !data.states[shown.state].carried;
-    byId("orifice-text").textContent = data.states[data.states[shown.state].way.last].orifice_text || "orifice outline";
-    showValues(data, shown);
+    const { carried, way } = data.states[shown.state];  // on the way to a result its own outline is not known
+    byId("orifice-text").textContent = data.states[carried ? way.last : shown.state].orifice_text || "orifice outline";
+    showValues(data, shown, viewer.isPair ? { ...shown, state: 0 } : null);
     const sentence = spoken(data, shown);
     if (byId("picked").textContent !== sentence) byId("picked").textContent = sentence;
   };
@@ -94,6 +131,30 @@ function connectSlider({ data, shown, show }) {
   take(way);
 }
 
+// Two shapes beside each other, with their names; or one, along the slider.
+function connectPair(viewer) {
+  const { data, stage, canvas, standBeside, shown, show } = viewer, box = byId("pair"), names = byId("pane-names");
+  byId("pair-choice").hidden = !data.pair;
+  if (!data.pair) return;
+  const label = k => data.states[k].label;
+  names.append(element("span", label(0)), element("span", label(data.states.length - 1)));
+  const arrange = () => {
+    const { isBeside, width, height } = stage.paneSize();
+    Object.assign(names.lastChild.style, isBeside ? { left: width + "px", top: 0 } : { left: 0, top: height + "px" });
+  };
+  const apply = () => {
+    byId("viewer").classList.toggle("pair", box.checked);
+    byId("slider").hidden = byId("state-label").hidden = box.checked;
+    names.hidden = !box.checked;
+    standBeside(box.checked);
+    arrange();
+    show({ state: shown.state });
+  };
+  new ResizeObserver(arrange).observe(canvas);
+  box.addEventListener("change", apply);
+  apply();
+}
+
 function connectColours({ data, show }) {
   const select = byId("field");
   data.fields.forEach((field, k) => select.appendChild(element("option", field.title)).value = k);
@@ -131,10 +192,10 @@ function connectCut({ stage, bounds }) {
   apply();
 }
 
-function connectPicking({ data, canvas, stage, parts, shown, show }) {
+function connectPicking({ data, canvas, stage, pictures, show }) {
   const field = byId("node"), count = data.states[0].nodes.length / 3;
   const pickAt = (x, y) => {
-    const picked = pickedAt(canvas, stage, parts, data, shown, x, y) || { node: -1, triangle: -1 };
+    const picked = pickedAt(stage, pictures(), data, x, y) || { node: -1, triangle: -1 };
     field.value = picked.node < 0 ? "" : picked.node;
     show(picked);
   };
@@ -179,7 +240,8 @@ function canDraw() {
 
 if (canDraw()) {
   const viewer = makeViewer();
-  for (const connect of [connectSwitches, connectColours, connectCut, connectPicking, connectCamera, connectSlider]) connect(viewer);
+  for (const connect of [connectSwitches, connectColours, connectCut, connectPicking, connectCamera, connectSlider, connectPair, connectParameters])
+    connect(viewer);
   byId("screenshot").addEventListener("click", () => saveScreenshot(viewer.canvas, viewer.data, viewer.shown));
   byId("viewer").dataset.ready = "yes";
 } else {
