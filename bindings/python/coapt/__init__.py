@@ -21,9 +21,10 @@ import pathlib
 import warnings
 from typing import Any
 
-from . import _core, autograd, metrics
+from . import _core, autograd, metrics, plot, symbolic
 from ._api import minimize, solve
 from ._core import Iterate
+from ._energy import Energy, energy
 from ._equilibrium import Equilibrium
 from ._errors import InputError
 from ._objective import LostBranchWarning, Objective, objective
@@ -33,9 +34,10 @@ from ._terms import Term, check_term
 from ._warm_solve import AnchorCheck, KinkWarning, LostBranch, Switch, WarmSolve
 
 __version__ = _core.version()
-__all__ = ["AnchorCheck", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",
+__all__ = ["AnchorCheck", "Energy", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",
            "Objective", "Registration", "Result", "Status", "Switch", "Term", "WarmSolve", "autograd", "check_term",
-           "components", "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "register", "scene_schema", "solve"]
+           "components", "energy", "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "plot", "register",
+           "scene_schema", "solve", "symbolic"]
 
 
 def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:
