@@ -29,7 +29,8 @@ def of_equilibrium(equilibrium: Equilibrium) -> str:
     """HTML of an equilibrium that is followed: its picture and its parameters."""
     rows = [(name, f"{numbers.size} numbers" if numbers.size > 1 else _number(float(numbers.item())))
             for name, numbers in equilibrium.split(equilibrium.value).items()]
-    return _page(repr(equilibrium), [], rows, [], picture(equilibrium))
+    title = f"equilibrium of {equilibrium.x.shape[0]} nodes, {len(equilibrium.faces)} triangles"
+    return _page(title, [], rows, [], picture(equilibrium))
 
 
 def picture(of: Result | Equilibrium) -> str:
