@@ -82,7 +82,7 @@ if(TARGET coapt_python)
                        LICENCE "${coapt_python_licence}" LINKED ${coapt_python_parts}
                        DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})"
                                "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})" python3-numpy)
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-meshio")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-meshio, python3-sympy, python3-tqdm")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 endif()
 

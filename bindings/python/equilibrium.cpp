@@ -198,13 +198,26 @@ void Followed::add(std::unique_ptr<Parameter> parameter) {
 }
 
 // Numbers that stay are left to the bit, whatever the origin rounds.
-void Followed::set(const Vector& value) {
+Vector Followed::own(const Vector& value) {
   Vector own = equilibrium().value();
-  if (value.size() == own.size())
-    own = (value.array() == value_.array()).select(own, value - offset_);
-  else
-    own = value;  // refused with both sizes
-  at_work([&] { equilibrium().set(own); });
+  if (value.size() != own.size()) return value;  // refused with both sizes
+  own = (value.array() == value_.array()).select(own, value - offset_);
+  return own;
+}
+
+void Followed::set(const Vector& value) {
+  at_work([&] { equilibrium().set(own(value)); });
+  value_ = value;
+}
+
+void Followed::resume(const Vector& value, const Points& x) {
+  at_work([&] {
+    if (x.cols() != tracked.model.X.cols())
+      throw InputError("resume: " + std::to_string(x.cols()) + " nodes were given; the scene has " +
+                       std::to_string(tracked.model.X.cols()));
+    equilibrium().resume_at(own(value), tracked.model.objective->unknowns(x.colwise() - origin()));
+    keep_shape();
+  });
   value_ = value;
 }
 
@@ -234,6 +247,12 @@ void define_equilibrium(py::module_& module) {
       .def("anchor_here", &anchor_here)
       .def(
           "set", [](Followed& self, const Numbers& value) { self.set(vector_in(value)); }, py::arg("value"))
+      .def(
+          "resume",
+          [](Followed& self, const Numbers& value, const Numbers& x) {
+            self.resume(vector_in(value), points_in(x));
+          },
+          py::arg("value"), py::arg("x"))
       .def("value", idle([](Followed& self) { return vector_array(self.value()); }))
       .def("first_solve", &first_solve)
       .def("parameters", idle(&parameters_of))

@@ -48,11 +48,13 @@ class Followed {
   void add(const std::vector<std::string>& names);  // those that are sound; throws InputError for the others
   const Vector& value() const { return value_; }
   void set(const Vector& value);
+  void resume(const Vector& value, const Points& x);  // TrackedEquilibrium::resume_at(), as Python sees them
   py::array_t<double> shape();  // positions, (n, 3), read-only; kept by the array, whatever comes after
   void keep_shape();            // of the present; without the lock
 
  private:
   void add(std::unique_ptr<Parameter> parameter);
+  Vector own(const Vector& value);  // numbers in the model's coordinates
 
   struct Busy {
     explicit Busy(bool& flag) : is_busy(flag) { is_busy = true; }

@@ -5,8 +5,10 @@
 Headers: the comment in front of a declaration and the one behind it, on its line, are its documentation; the
 comment at the head of a file is that of the file; one that a blank line follows belongs to nothing. Markdown:
 headings get anchors of the form page-heading, so that links as GitHub understands them lead there; links to
-files that are no page of the site become their paths, pictures are found by their names.
+files that are no page of the site become their paths, those to scripts of the gallery lead to their pages where it is
+built (COAPT_GALLERY=yes), pictures are found by their names.
 """
+import os
 import pathlib
 import re
 import shutil
@@ -111,6 +113,8 @@ def page_text(path: pathlib.Path, text: str) -> str:
             return match[0]
         name, _, slug = target.partition("#")
         to = (path.parent / name).resolve() if name else path
+        if to.parent == ROOT / "docs/gallery" and to.suffix == ".py" and os.environ.get("COAPT_GALLERY") == "yes":
+            return f'<a href="gallery/pages/{to.stem}.html">{label}</a>'
         if not is_page(to):
             return f"{label} (<tt>{to.relative_to(ROOT)}</tt>)" if label != name else f"<tt>{name}</tt>"
         return f"[{label}](@ref {anchor(to, slug or 'page')})"

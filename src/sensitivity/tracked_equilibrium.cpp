@@ -40,10 +40,15 @@ size_t TrackedEquilibrium::add(std::unique_ptr<Parameter> parameter) {
     if (std::string clash = clash_of(*parameter, *other); !clash.empty()) defects.push_back(std::move(clash));
   }
   if (!defects.empty()) throw InputError(defects);
+  const Vector value = parameter->value();
   first_.push_back(number_count_);
-  number_count_ += static_cast<int>(parameter->value().size());
-  solved_value_.conservativeResize(number_count_);
-  solved_value_.tail(parameter->value().size()) = parameter->value();
+  number_count_ += static_cast<int>(value.size());
+  const auto append = [&](Vector& to) {
+    to.conservativeResize(number_count_);
+    to.tail(value.size()) = value;
+  };
+  append(solved_value_);
+  if (anchor_) append(anchor_->value);
   parameters_.push_back(std::move(parameter));
   return parameters_.size() - 1;
 }
@@ -84,6 +89,22 @@ void TrackedEquilibrium::assign(const Vector& value) {
     if (const Vector numbers = numbers_of(*parameters_[k], k, value); numbers != parameters_[k]->value())
       parameters_[k]->set(numbers);
   objective_.remeasure_reference();
+}
+
+void TrackedEquilibrium::resume_at(const Vector& value, const Vector& q) {
+  require_sound(value);
+  if (q.size() != q_.size())
+    throw InputError("resume: " + std::to_string(q.size()) + " unknowns were given; there are " +
+                     std::to_string(q_.size()));
+  assign(value);
+  q_ = q;
+  const Points x = prescribed();
+  objective_.prescribe(x);
+  q_ = objective_.unknowns(x);
+  is_solved_ = is_tangent_ready_ = false;
+  kinks_.reset();
+  states_.reset();
+  solved_value_ = value;
 }
 
 Points TrackedEquilibrium::prescribed() const {

@@ -116,6 +116,11 @@ class TrackedEquilibrium {
   // did not converge is kept, and status says so; also one at which a term threw.
   WarmSolve solve();
 
+  // Numbers, and unknowns at or near their equilibrium, in place of the present ones: as an object that goes
+  // on where another one of the same scene was left. solve() then goes from there; derivatives need it first.
+  // Throws InputError for wrong sizes and as set() does, and nothing has changed then.
+  void resume_at(const Vector& value, const Vector& q);
+
   // The anchor: the shape that was solved first, or this one from now on. Pre: solved.
   void anchor_here();
   // Another one: numbers, and unknowns at or near their equilibrium. Throws InputError for wrong sizes.

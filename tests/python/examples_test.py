@@ -53,6 +53,49 @@ def test_ring_sweep(run):
     assert np.subtract(*values) / (2 * step * width) == pytest.approx(table[-1, [2, 4]], rel=1e-4)
 
 
+@pytest.fixture
+def gallery(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    yield lambda name: runpy.run_path(str(ROOT / "docs/gallery" / name))
+    pyplot.close("all")
+
+
+def test_gallery_first_valve(gallery):
+    found = gallery("plot_1_first_valve.py")
+    assert found["result"].success and found["result"].metrics["intersections"] == 0 and found["forces"].max() > 0.5
+
+
+def test_gallery_repair(gallery):
+    found = gallery("plot_2_repair.py")
+    healthy, ruptured, clipped = (found[name] for name in ("healthy", "ruptured", "clipped"))
+    assert all(result.success for result in (healthy, ruptured, clipped))
+    heights = [result.metrics["prolapse_height_mm"] for result in (healthy, clipped, ruptured)]
+    assert heights[0] < heights[1] < 0.6 * heights[2] and heights[2] > 5
+
+
+def test_gallery_tent(gallery):
+    found = gallery("plot_3_tent.py")
+    sags = list(found["sags"].values())
+    assert found["tent"].success and sags == sorted(sags, reverse=True) and sags[0] > 4 * sags[-1]
+
+
+def test_gallery_own_energy(gallery):
+    pytest.importorskip("sympy", reason="python3-sympy is not installed: the gallery's energy from a formula is not run")
+    found = gallery("plot_4_own_energy.py")
+    assert found["result"].success and found["report"]["passed"] and found["difference"] < 1e-8
+    assert np.ptp(found["result"].x[:, 2]) > 1 and "struct Rubber" in found["kernel"]
+
+
+def test_gallery_study(gallery):
+    found = gallery("plot_5_study.py")
+    for points in found["values"].values():  # the slopes are those of the curve
+        values, slopes = np.array([value for value, _ in points]), np.array([slope[0] for _, slope in points])
+        assert np.gradient(values, found["lengths"])[1:-1] == pytest.approx(slopes[1:-1], rel=0.3)
+
+
 def test_every_example_is_tested():
+    gallery = {path.stem for path in (ROOT / "docs/gallery").glob("*.py")}
+    assert gallery == {"plot_1_first_valve", "plot_2_repair", "plot_3_tent", "plot_4_own_energy", "plot_5_study"}
     names = {path.stem for path in (ROOT / "examples/python").glob("*.py")}
     assert names == {"closure", "comparing_backends", "ring_sweep", "sail", "tuning"}

@@ -5,6 +5,7 @@
 #include "energy/load_dead.hpp"
 #include "sensitivity/metrics/covariance.hpp"
 #include "sensitivity/metrics/metrics_state.hpp"
+#include "sensitivity/parameters/dead_load.hpp"
 #include "sensitivity/refusal.hpp"
 #include "sensitivity/tracked_valve.hpp"
 
@@ -206,6 +207,50 @@ TEST(TrackedEquilibrium, SaysThatItHasLeftTheBranchOfItsAnchor) {
   truss.equilibrium.anchor_at(start, q);
   EXPECT_FALSE(truss.equilibrium.check_anchor().is_same_branch);
   EXPECT_THROW(truss.equilibrium.anchor_at(start, q.head(1)), InputError);
+}
+
+// What is added later had the same numbers at the anchor as it has now.
+TEST(TrackedEquilibrium, ComparesWithItsAnchorAfterAParameterWasAdded) {
+  Truss truss(0.0015);
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
+  truss.equilibrium.set(Vector::Constant(1, 1.0005));
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
+  truss.equilibrium.add(make_load_factor("load", *truss.objective.terms().front()));
+  truss.equilibrium.set(Eigen::Vector2d(1.0005, 0.9));
+  ASSERT_EQ(truss.equilibrium.solve().status, Status::Converged);
+  const AnchorCheck check = truss.equilibrium.check_anchor();
+  ASSERT_EQ(check.status, Status::Converged) << check.message;
+  EXPECT_TRUE(check.is_same_branch) << check.message;
+  EXPECT_GT(check.travel, 0);
+  EXPECT_LT(std::max(check.back, check.here), 1e-6);
+}
+
+TEST(TrackedEquilibrium, GoesOnWhereAnotherOneWasLeft) {
+  Truss left(0.0015), resumed(0.0015);
+  const Vector start = left.equilibrium.value();
+  ASSERT_EQ(left.equilibrium.solve().status, Status::Converged);
+  for (const double width : {1.012, 1.0005}) {  // it snaps through, and stays below
+    left.equilibrium.set(Vector::Constant(1, width));
+    ASSERT_EQ(left.equilibrium.solve().status, Status::Converged);
+  }
+  const Points here = left.equilibrium.positions();
+  ASSERT_LT(here(2, 2), 0);
+  ASSERT_EQ(resumed.equilibrium.solve().status, Status::Converged);
+  ASSERT_GT(resumed.equilibrium.positions()(2, 2), 0);
+  resumed.equilibrium.resume_at(left.equilibrium.value(), left.equilibrium.unknowns());
+  EXPECT_EQ(resumed.equilibrium.positions(), here);
+  EXPECT_EQ(resumed.equilibrium.value(), left.equilibrium.value());
+  EXPECT_THROW(resumed.equilibrium.pull_back(here), InputError);  // not solved yet
+  const WarmSolve report = resumed.equilibrium.solve();
+  EXPECT_EQ(report.status, Status::Converged);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_FALSE(report.lost_branch);
+  EXPECT_EQ(resumed.equilibrium.positions(), here);
+  const Vector slope = resumed.equilibrium.pull_back(here);
+  EXPECT_EQ(slope, left.equilibrium.pull_back(here));
+  EXPECT_GT(slope.norm(), 0);
+  EXPECT_THROW(resumed.equilibrium.resume_at(start, left.equilibrium.unknowns().head(1)), InputError);
+  EXPECT_THROW(resumed.equilibrium.resume_at(start.head(0), left.equilibrium.unknowns()), InputError);
 }
 
 TEST(TrackedEquilibrium, ComparesWithItsAnchorEveryFewSteps) {

@@ -13,19 +13,14 @@
 
 Lengths are mm, forces N, stresses MPa, energies mJ. Arrays of points have shape (n, 3).
 """
-from __future__ import annotations
-
-import json
-import os
-import pathlib
-import warnings
-from typing import Any
-
-from . import _core, autograd, metrics
+from . import _core, autograd, metrics, plot, symbolic
 from ._api import minimize, solve
 from ._core import Iterate
+from ._documents import Branches, Certificate, Metrics
+from ._energy import Energy, energy
 from ._equilibrium import Equilibrium
 from ._errors import InputError
+from ._library import components, generate_mitral, licence, methods, scene_schema
 from ._objective import LostBranchWarning, Objective, objective
 from ._registration import Registration, register
 from ._result import Result, Status
@@ -33,54 +28,19 @@ from ._terms import Term, check_term
 from ._warm_solve import AnchorCheck, KinkWarning, LostBranch, Switch, WarmSolve
 
 __version__ = _core.version()
-__all__ = ["AnchorCheck", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch", "LostBranchWarning",
-           "Objective", "Registration", "Result", "Status", "Switch", "Term", "WarmSolve", "autograd", "check_term",
-           "components", "generate_mitral", "licence", "methods", "metrics", "minimize", "objective", "register", "scene_schema", "solve"]
+__all__ = ["AnchorCheck", "Branches", "Certificate", "Energy", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch",
+           "LostBranchWarning", "Metrics", "Objective", "Registration", "Result", "Status", "Switch", "Term", "WarmSolve",
+           "autograd", "check_term", "components", "energy", "generate_mitral", "licence", "methods", "metrics", "minimize",
+           "objective", "plot", "register", "scene_schema", "solve", "symbolic"]
 
 
-def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:
-    """Writes the generated mitral valve into a folder, as `coapt generate mitral` does; returns the path of its scene.
-
-    Args:
-        folder: it is made where it does not exist; files of that name are replaced.
-        triangles: wanted number of triangles, at least 100; the mesh has within 5 % of it.
-        seed: 0 for the mean valve; any other draws its dimensions from published ranges.
-
-    Raises:
-        InputError: too few triangles, or a folder that cannot be written.
-    """
-    defects = [f"{name}: is {value!r}; expected a whole number from {least} to {2**31 - 1}"
-               for name, value, least in (("triangles", triangles, 100), ("seed", seed, 0))
-               if not isinstance(value, int) or not least <= value < 2**31]
-    if defects:
-        raise InputError(*defects)
-    _core.generate_mitral(folder=os.fsencode(folder), triangles=triangles, seed=seed)
-    return pathlib.Path(folder) / "scene.json"
+def __dir__() -> list[str]:
+    return [*__all__, "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> type[WarmSolve]:
     if name == "Settling":  # the former name, deprecated
+        import warnings
         warnings.warn("coapt.Settling is now coapt.WarmSolve", DeprecationWarning, stacklevel=2)
         return WarmSolve
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def methods() -> list[str]:
-    """Names of the solvers of this build, for `method`."""
-    return _core.methods()
-
-
-def components() -> dict[str, bool]:
-    """Optional packages, and whether this build holds them."""
-    return {name: present for name, _, _, present in _core.components()}
-
-
-def licence() -> str:
-    """SPDX expression of this build, with all that it is linked to."""
-    return _core.licence()
-
-
-def scene_schema() -> dict[str, Any]:
-    """JSON Schema of the scene file."""
-    schema: dict[str, Any] = json.loads(_core.scene_schema())
-    return schema

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from . import _arguments, _core, _inputs
+from . import _arguments, _core, _inputs, _progress
 from ._result import Result, result_of
 
 Callback = Callable[[_core.Iterate], Any]
@@ -33,11 +33,12 @@ def _checked_options(tol: Any, max_seconds: Any, callback: Any, branches: Any, b
 def _run(given: _inputs.Given, *, callback: Callback | None, method: str | None, tol: float | None,
          max_seconds: float | None, modes: int | None, folder: _inputs.Path | None, frames: int | None,
          report: bool | None, branches: int, branch_kick: float, branch_seed: int,
-         damped_steps: int | None) -> Result:
-    return result_of(given.solve(
-        _core.run, callback=callback, solver=method or "", tolerance=tol, max_seconds=max_seconds, modes=modes,
-        folder=None if folder is None else os.fsencode(folder), frames=frames, page=report,
-        branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps))
+         damped_steps: int | None, progress: bool) -> Result:
+    with _progress.shown(callback, progress) as seen:
+        return result_of(given.solve(
+            _core.run, callback=seen, solver=method or "", tolerance=tol, max_seconds=max_seconds, modes=modes,
+            folder=None if folder is None else os.fsencode(folder), frames=frames, page=report,
+            branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps))
 
 
 def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None, tol: float | None = None,
@@ -45,7 +46,7 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
           max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
           frames: int | None = None, report: bool | None = None,
           branches: int = 0, branch_kick: float = 0.01, branch_seed: int = 1,
-          damped_steps: int | None = None) -> Result:
+          damped_steps: int | None = None, progress: bool = False) -> Result:
     """Solves a scene, as `coapt solve` does.
 
     Args:
@@ -70,6 +71,8 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
         branch_seed: of their random moves.
         damped_steps: of all loads and the prescribed motion along a damped path, which defines the equilibrium that a
             valve comes to; 0 solves at once. Default: the scene's `solver.continuation.damped_steps`.
+        progress: whether a bar counts the iterates, in a notebook or a terminal; nothing where tqdm is not installed
+            (Debian: python3-tqdm).
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -83,7 +86,7 @@ def solve(scene: _inputs.Path | Mapping[str, Any], *, method: str | None = None,
     _checked_options(tol, max_seconds, callback, branches, branch_kick, damped_steps, defects)
     return _run(_inputs.of_scene(scene, terms, x0, defects), callback=callback, method=method, tol=tol,
                 max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report, branches=branches,
-                branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps)
+                branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps, progress=progress)
 
 
 def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed: Any = None,
@@ -91,7 +94,7 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
              callback: Callback | None = None, regions: Any = None, scene: Mapping[str, Any] | None = None,
              max_seconds: float | None = None, modes: int | None = None, folder: _inputs.Path | None = None,
              frames: int | None = None, report: bool | None = None, branches: int = 0, branch_kick: float = 0.01,
-             branch_seed: int = 1, damped_steps: int | None = None) -> Result:
+             branch_seed: int = 1, damped_steps: int | None = None, progress: bool = False) -> Result:
     """Finds the equilibrium of a membrane whose mesh is in memory.
 
     Args:
@@ -107,7 +110,7 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
         scene: other keys of the scene file (`boundary`, `sets`, `solver`, `obstacles`, `fibres`, `reference`, ...);
             entries of `boundary` win over `fixed`.
         method, tol, callback, max_seconds, modes, folder, frames, report, branches, branch_kick, branch_seed,
-            damped_steps: as in `solve`.
+            damped_steps, progress: as in `solve`.
 
     Returns:
         A `Result`. A run that does not converge returns one too, with `success` False.
@@ -119,4 +122,5 @@ def minimize(V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], *, fixed:
     _checked_options(tol, max_seconds, callback, branches, branch_kick, damped_steps, defects)
     return _run(_inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects), callback=callback, method=method,
                 tol=tol, max_seconds=max_seconds, modes=modes, folder=folder, frames=frames, report=report,
-                branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps)
+                branches=branches, branch_kick=branch_kick, branch_seed=branch_seed, damped_steps=damped_steps,
+                progress=progress)

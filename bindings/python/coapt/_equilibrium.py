@@ -8,9 +8,10 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from . import _arguments, _core, _inputs
+from . import _arguments, _core, _html, _inputs
 from ._errors import InputError
 from ._inputs import Found, Path
+from ._resumption import Place, Source, kept, kept_dict, kept_scene
 from ._warm_solve import AnchorCheck, KinkWarning, Switch, WarmSolve, anchor_check, warm_solve
 from .metrics import Metric, MetricLike, as_metric
 
@@ -48,6 +49,9 @@ class Equilibrium:
     time (another call meanwhile is refused); several objects side by side give the same bits. Ctrl-C ends a solve at
     its next step; `solve()` goes on from there.
 
+    It pickles, with its terms, and so goes to other processes: the copy reads the scene's files again, solves from this
+    shape, and stands where this one does, its anchor too. Metrics are made anew for the copy.
+
     Args:
         scene: path of a scene file, or the same keys as a dict, as in `solve`.
         parameters: their names; more may follow by `add`. No two may change the same data.
@@ -67,8 +71,9 @@ class Equilibrium:
     def __init__(self, scene: Path | Mapping[str, Any], parameters: Sequence[str] = (), *, terms: Sequence[Any] = (),
                  x0: npt.ArrayLike | None = None, tol: float = 1e-10, method: str | None = None,
                  max_seconds: float | None = None) -> None:
-        defects, options = _options(parameters, terms, tol, method, max_seconds)
-        self._core = _inputs.of_scene(scene, terms, x0, defects).solve(_core.follow, **options)
+        defects, names, options = _options(parameters, terms, tol, method, max_seconds)
+        given = _inputs.of_scene(scene, terms, x0, defects)
+        self._begin(given, names, Source(list(terms), options, kept_scene(scene)))
 
     @classmethod
     def of(cls, V: npt.ArrayLike, F: npt.ArrayLike, terms: Sequence[Any], parameters: Sequence[str] = (), *,
@@ -93,10 +98,35 @@ class Equilibrium:
         Raises:
             As the class.
         """
-        defects, options = _options(parameters, terms, tol, method, max_seconds)
+        defects, names, options = _options(parameters, terms, tol, method, max_seconds)
+        given = _inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects)
         equilibrium = cls.__new__(cls)
-        equilibrium._core = _inputs.of_mesh(V, F, terms, fixed, x0, regions, scene, defects).solve(_core.follow, **options)
+        equilibrium._begin(given, names, Source([kept_dict(t) if isinstance(t, Mapping) else t for t in terms], options,
+                                                None if scene is None else kept_dict(scene),
+                                                (kept(V), kept(F), kept(fixed), kept(regions))))
         return equilibrium
+
+    def _begin(self, given: _inputs.Given, parameters: Sequence[str], source: Source) -> None:
+        self._core = given.solve(_core.follow, parameters=list(parameters), **source.options)
+        self._source = source
+        self._first_x = self._core.x
+        self._solved: Place | None = None  # the last shape that was solved
+        self._anchor: Place | None = None
+
+    # --- copies elsewhere
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles the input, the names of the parameters, and where it stands."""
+        here = self._solved if self._solved is not None else Place(self._core.value(), self._core.x, is_solved=False)
+        return _resumed, (type(self), self._source, self._first_x, self.parameters, self._anchor, here, self._core.value())
+
+    def __repr__(self) -> str:
+        return (f"<coapt.Equilibrium: {self._core.node_count} nodes, {len(self.faces)} triangles; parameters "
+                f"{', '.join(self.parameters) or 'none'}>")
+
+    def _repr_html_(self) -> str:
+        """For notebooks: a picture of the shape (by matplotlib) and the parameters."""
+        return _html.of_equilibrium(self)
 
     # --- parameters
 
@@ -118,6 +148,10 @@ class Equilibrium:
         if defects:
             raise InputError(*defects)
         self._core.add(name)
+        if self._solved is not None:  # the new numbers are those at which it was solved
+            self._solved = Place(np.append(self._solved.value, self._core.value()[self._solved.value.size:]), self._solved.x)
+        if self._anchor is not None:
+            self._anchor = Place(np.append(self._anchor.value, self._core.value()[self._anchor.value.size:]), self._anchor.x)
 
     @property
     def value(self) -> Array:
@@ -159,7 +193,11 @@ class Equilibrium:
         Raises:
             KeyboardInterrupt: Ctrl-C; the shape is where it got to, and solve() goes on from there.
         """
-        return warm_solve(self._core.solve())
+        self._solved = None
+        found = warm_solve(self._core.solve())
+        self._solved = Place(self._core.value(), self._core.x) if found.success else None
+        self._anchor = self._anchor or self._solved
+        return found
 
     def settle(self) -> WarmSolve:
         """The former name of `solve()`, deprecated."""
@@ -185,6 +223,7 @@ class Equilibrium:
             InputError: it is not solved.
         """
         self._core.anchor_here()
+        self._anchor = self._solved
 
     @property
     def first(self) -> WarmSolve:
@@ -327,13 +366,28 @@ def _names(parameters: Any, defects: list[str]) -> list[str]:
     return [name for name in parameters if isinstance(name, str)]
 
 
+def _resumed(kind: type[Equilibrium], source: Source, first_x: Array, parameters: list[str], anchor: Place | None, here: Place,
+             value: Array) -> Equilibrium:
+    """The equilibrium that was pickled: solved from its first shape, and from its anchor and where it stood."""
+    equilibrium = kind.__new__(kind)
+    equilibrium._begin(source.given(first_x), parameters, source)
+    for place in (anchor, here):
+        if place is not None:
+            equilibrium._core.resume(np.array(place.value), np.array(place.x))
+            if place.is_solved:
+                equilibrium.solve()
+    if not np.array_equal(value, here.value):
+        equilibrium._core.set(np.array(value))
+    return equilibrium
+
+
 def _options(parameters: Any, terms: Any, tol: Any, method: str | None,
-             max_seconds: Any) -> tuple[list[str], dict[str, Any]]:
-    """What is wrong so far, and how the equilibrium is followed."""
+             max_seconds: Any) -> tuple[list[str], list[str], dict[str, Any]]:
+    """What is wrong so far, names of the parameters, and how the equilibrium is followed."""
     defects: list[str] = []
     names = _names(parameters, defects)
     _arguments.hessians(terms, defects)
     _arguments.positive(tol, "tol", "", defects)
     if max_seconds is not None:
         _arguments.positive(max_seconds, "max_seconds", " [s]", defects)
-    return defects, {"parameters": names, "solver": method or "", "tolerance": tol, "max_seconds": max_seconds}
+    return defects, names, {"solver": method or "", "tolerance": tol, "max_seconds": max_seconds}

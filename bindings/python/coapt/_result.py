@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _fields, _html
+from ._documents import Branches, Certificate, Metrics
 
 Array = npt.NDArray[np.float64]
 
@@ -45,8 +46,8 @@ class Result(dict[str, Any]):
     message: str  #: one sentence
     history: npt.NDArray[Any]  #: every accepted iterate: fields iteration, round, energy [mJ], residual, step [mm],
     #: seconds [s], time [s], evaluations
-    metrics: dict[str, Any]  #: figures of merit (docs/metrics.md); None where a scene does not define one
-    certificate: dict[str, Any]  #: stability, balance of reactions, parts that are free to move
+    metrics: Metrics  #: figures of merit (docs/metrics.md); None where a scene does not define one
+    certificate: Certificate  #: stability, balance of reactions, parts that are free to move
     residual: float  #: greatest out-of-balance force over the greatest load or reaction
     reactions: Array  #: forces of the supports on the body, (n, 3); loads on held nodes do not count [N]
     energies: dict[str, float]  #: of each term [mJ]
@@ -58,7 +59,7 @@ class Result(dict[str, Any]):
     #: where the scene asks for it, regime (m,) 0 slack, 1 wrinkled, 2 taut, gap (m_v,) [mm], is_contact (m_v,), reference_distance (m_v,) [mm],
     #: line_force (k,) [N], line_strain (k,), line_stress (k,) Cauchy [MPa], NaN for lines without; those that the scene has
     undetermined: npt.NDArray[np.int8]  #: of each node: 0 determined, 1 free by the certificate, 2 elsewhere in another equilibrium
-    branches: dict[str, Any] | None  #: other equilibria near by, where `branches` looked for them: `message`, `equilibria`
+    branches: Branches | None  #: other equilibria near by, where `branches` looked for them: `message`, `equilibria`
     #: (energy, stability, metrics of each, this one first), `others` (range of each metric over the others), `spread`
     #: (n,) greatest distance of each node from its place in them [mm]; else None
     warnings: list[str]  #: whole sentences
@@ -79,34 +80,26 @@ class Result(dict[str, Any]):
         return (f"<coapt.Result: {self.message}; energy {self.fun:.8g} mJ, {self.nit} iterations, "
                 f"{self.x.shape[0]} nodes, {self.faces.shape[0]} triangles>")
 
+    def _repr_html_(self) -> str:
+        """For notebooks: warnings, a picture of the closed shape (by matplotlib) and the figures."""
+        return _html.of_result(self)
+
     def to_meshio(self) -> Any:
         """The closed shape as a `meshio.Mesh` [mm]: triangles, chords as lines, and all fields.
 
         Raises:
             ImportError: meshio is not installed (nothing else needs it).
         """
-        try:
-            import meshio
-        except ImportError as error:
-            raise ImportError("to_meshio() needs the package meshio (Debian: python3-meshio)") from error
-        blocks = [("triangle", self.faces), ("line", self.lines)]
-        at_vertices, at_lines = {"gap", "is_contact", "reference_distance"}, {"line_force", "line_strain", "line_stress"}
-        point_data, cell_data = {}, {}
-        for name, values in self.fields.items():
-            values = values.astype(np.uint8) if values.dtype == bool else values
-            if name == "displacement":
-                point_data[name] = values
-            elif name in at_vertices:
-                padding = np.full(self.x.shape[0] - self.vertex_count, np.nan if values.dtype.kind == "f" else 0)
-                point_data[name] = np.concatenate([values, padding.astype(values.dtype)])
-            elif name in at_lines:
-                cell_data[name] = [np.full(len(self.faces), np.nan), values]
-            else:
-                rest = np.full((len(self.lines), *values.shape[1:]), np.nan if values.dtype.kind == "f" else -1)
-                cell_data[name] = [values, rest.astype(values.dtype)]
-        used = [k for k, (_, cells) in enumerate(blocks) if len(cells)]
-        cell_data = {name: [blocks_of[k] for k in used] for name, blocks_of in cell_data.items()}
-        return meshio.Mesh(self.x, [blocks[k] for k in used], point_data=point_data, cell_data=cell_data)
+        return _fields.to_meshio(self)
+
+    def to_pyvista(self) -> Any:
+        """The closed shape as a `pyvista.PolyData` [mm]: triangles, chords as lines, and all fields. Cell data hold the
+        lines first, then the triangles, as PyVista counts them.
+
+        Raises:
+            ImportError: PyVista is not installed (nothing else needs it).
+        """
+        return _fields.to_pyvista(self)
 
 
 def result_of(solution: _core.Solution) -> Result:

@@ -1,7 +1,6 @@
 """Energies of the caller's own."""
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -36,7 +35,7 @@ class Term:
     name: str
     role: str = "internal"
     elements: npt.ArrayLike | None = None
-    hessian: Callable[[Array], Any] | None = None
+    hessian: Any = None  # not Callable | None, which no method of a derived class may stand for
 
     def __init_subclass__(cls, **keywords: Any) -> None:
         super().__init_subclass__(**keywords)
