@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "exchange/detail/import_repair.hpp"
+#include "exchange/detail/law_doubts.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/valve_curves.hpp"
 #include "exchange/valve_doubts.hpp"
@@ -17,6 +18,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/utf8.hpp"
 #include "formats/whole_file.hpp"
+#include "scene/build/build.hpp"
 #include "scene/terms/term_types.hpp"
 #include "valve/valve_check.hpp"
 #include "valve/valve_import.hpp"
@@ -115,7 +117,8 @@ std::string boundary_text(const Valve& valve, const ImportOptions& options) {
     entries.push_back(valve.annulus_closed.cols() > 0
                           ? "    { \"nodes\": \"annulus\", \"move_to\": \"annulus_closed\" }"
                           : "    { \"nodes\": \"annulus\", \"fix\": true }");
-  if (valve.chords.papillary.cols() > 0)
+  // Tips are nodes of the chords' network, and without chords there is none.
+  if (valve.chords.papillary.cols() > 0 && !valve.chords.chords.empty())
     entries.push_back(valve.chords.papillary_closed.cols() > 0
                           ? "    { \"nodes\": \"papillary\", \"move_to\": \"papillary_closed\" }"
                           : "    { \"nodes\": \"papillary\", \"fix\": true }");
@@ -307,12 +310,36 @@ void complete_valve(const std::string& file, const ImportOptions& options, Valve
     warnings.push_back(file + ": states no pressure; the scene has " + kUsualPressure + ".");
 }
 
+// What closes a valve presses on the side that the normals point to; the sign of a number would say
+// otherwise, or nothing.
+void refuse_negative_pressure(const std::string& file, const ImportOptions& options, const Valve& valve) {
+  if (!(valve.pressure < 0) || !options.pressure.empty()) return;
+  throw InputError(file + ": pressure.value: is negative (" + exact_text(valve.pressure) +
+                   " MPa); give the size of the pressure, which acts on the side that the normals of the "
+                   "triangles point to, and turn the triangles over where that is the wrong one; --pressure "
+                   "gives another");
+}
+
 // Sizes of a valve that only a misread unit explains, and how to insist.
 void refuse_sizes(const std::string& file, const Valve& valve) {
   std::vector<std::string> defects;
   for (const std::string& doubt : size_doubts(valve))
     defects.push_back(file + ": " + doubt + " --any-size imports it as it is.");
   if (!defects.empty()) throw InputError(defects);
+}
+
+// The valve with the laws of its scene, and whether this can be built at all.
+void judge_scene(const Scene& scene, const Valve& valve, const std::string& file, bool is_valve,
+                 std::vector<std::string>& warnings) {
+  append(warnings, valve_doubts(valve, file, detail::chord_limits(scene)));
+  try {
+    const Model model = build(scene);
+    if (!is_valve) return;
+    for (const std::string& doubt : detail::law_doubts(scene, model)) warnings.push_back(file + ": " + doubt);
+  } catch (const InputError& error) {
+    for (const std::string& defect : error.defects())
+      warnings.push_back("the scene cannot be solved as it is: " + defect);
+  }
 }
 
 }  // namespace
@@ -349,6 +376,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   detail::apply_curves(options, file.string(), valve, warnings);
   is_valve |=
       !valve.chords.chords.empty() || valve.chords.papillary.cols() > 0 || !options.annulus_closed.empty();
+  refuse_negative_pressure(file.string(), options, valve);
   if (options.model.empty()) complete_valve(file.string(), options, valve, warnings);
   if (valve.annulus.empty() && valve.supports.empty())
     warnings.push_back(file.string() + ": names no annulus; nothing holds the leaflets' rim.");
@@ -360,9 +388,11 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   if (is_valve && !options.takes_any_size) refuse_sizes(file.string(), loaded());
   const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
   if (!options.model.empty()) apply_model(file.string(), valve, options);  // of the repaired mesh
-  append(warnings, valve_doubts(loaded(), file.string()));
   write_valve_scene(valve, out_dir, options);
   detail::write_repairs(out_dir / "repairs.csv", repair);
+  Valve judged = loaded();
+  if (!is_valve) judged.annulus.clear();  // a rim of any surface, whose side nobody knows
+  judge_scene(load_scene(out_dir / "scene.json"), judged, file.string(), is_valve, warnings);
   return warnings;
 }
 

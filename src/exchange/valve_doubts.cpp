@@ -1,6 +1,8 @@
 #include "exchange/valve_doubts.hpp"
 
-#include "valve/valve_check.hpp"
+#include "exchange/detail/law_doubts.hpp"
+#include "formats/json/valve_json.hpp"
+#include "formats/lower_extension.hpp"
 
 #include <algorithm>
 
@@ -45,12 +47,26 @@ bool presses_front(const Scene& scene) {
   });
 }
 
+// A scene whose valve JSON has tips, and maybe chords, of which no term makes anything.
+void find_unused_chords(const Scene& scene, std::vector<std::string>& doubts) {
+  if (!scene.mesh || !scene.mesh->sets || formats::lower_extension(*scene.mesh->sets) != ".json") return;
+  const ChordNetwork chords = read_valve(*scene.mesh->sets).valve.chords;
+  if (chords.papillary.cols() == 0) return;
+  doubts.push_back(scene.file.string() + ": no term makes chords, while " + scene.mesh->sets->string() +
+                   " has " + std::to_string(chords.papillary.cols()) + " papillary tips and " +
+                   std::to_string(chords.chords.size()) +
+                   " chords: nothing holds the free edge, and pressure will turn the leaflets over. " +
+                   (chords.chords.empty() ? "`coapt chords` makes some from the tips."
+                                          : "Add a term such as { \"type\": \"cable\", \"network\": ... }."));
+}
+
 }  // namespace
 
-std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file) {
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file,
+                                      const ChordLimits& limits) {
   std::vector<std::string> doubts;
   for (const std::vector<std::string>& list :
-       {chord_doubts(valve), size_doubts(valve), pressure_side_doubts(valve)})
+       {chord_doubts(valve, limits), size_doubts(valve), pressure_side_doubts(valve)})
     for (const std::string& doubt : list) doubts.push_back(file + ": " + doubt);
   return doubts;
 }
@@ -58,6 +74,7 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
 std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
   const auto annulus = geometry.model.sets.find("annulus");
   if (!scene.mesh || annulus == geometry.model.sets.end() || annulus->second.empty()) return {};
+  const std::string file = scene.file.string();
   Valve valve;
   valve.leaflets = geometry.model.mesh;
   valve.closed_reference = geometry.model.closed_reference;
@@ -67,12 +84,20 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   for (const MembraneProperties& membrane : model.membrane)
     if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))
       valve.thickness = membrane.thickness;
+  std::vector<std::string> doubts;
+  const auto add = [&](const std::string& place, const std::vector<std::string>& list) {
+    for (const std::string& doubt : list) doubts.push_back(place + ": " + doubt);
+  };
   // Cut and shortened chords hang loose or are overstretched by intention.
-  if (!scene.interventions.empty()) valve.chords.chords.clear();
-  if (!presses_front(scene)) valve.annulus.clear();
-  std::vector<std::string> doubts = valve_doubts(valve, scene.file.string());
-  for (const std::string& doubt : fold_doubts(valve.leaflets))
-    doubts.push_back(scene.mesh->file.string() + ": " + doubt);
+  if (scene.interventions.empty()) {
+    add(file, chord_doubts(valve, detail::chord_limits(scene)));
+    if (geometry.networks.empty()) find_unused_chords(scene, doubts);
+  }
+  add(file, size_doubts(valve));
+  if (presses_front(scene)) add(file, pressure_side_doubts(valve));
+  for (const std::string& doubt : detail::load_doubts(scene)) doubts.push_back(doubt);
+  add(file, detail::law_doubts(scene, model));
+  add(scene.mesh->file.string(), fold_doubts(valve.leaflets));
   return doubts;
 }
 

@@ -3,14 +3,16 @@
 #pragma once
 
 #include "scene/build/scene_geometry.hpp"
+#include "valve/valve_check.hpp"
 
 #include <string>
 #include <vector>
 
 namespace coapt {
 
-// valve: mm, MPa.
-std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file);
+// Chords, sizes and the side of the pressure. valve: mm, MPa.
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file,
+                                      const ChordLimits& limits = {});
 
 // Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
 // chords nothing where interventions edit them. Pre: model is built of it.

@@ -1,4 +1,5 @@
 #include "core/number_text.hpp"
+#include "valve/detail/bare_leaflets.hpp"
 #include "valve/valve_check.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kNoLength = 1e-6;  // of the median rest length
 constexpr size_t kNamed = 10;
+constexpr double kAllSlack = 0.5;  // strain, below zero, of the tautest way; of valves at hand at most 0.13
 
 using Kind = ChordEnd::Kind;
 
@@ -128,103 +130,147 @@ void find_unheld(const Valve& valve, const ChordGraph& graph, std::vector<std::s
                      "leave it out.");
 }
 
-void find_bare_regions(const Valve& valve, std::vector<std::string>& doubts) {
-  const TriangleMesh& mesh = valve.leaflets;
-  if (valve.chords.chords.empty() || mesh.region_names.empty()) return;
-  std::vector<bool> is_held(static_cast<size_t>(mesh.vertex_count()), false);
-  for (const Chord& chord : valve.chords.chords)
-    for (const ChordEnd& end : {chord.from, chord.to})
-      if (end.kind == Kind::Leaflet) is_held[static_cast<size_t>(end.index)] = true;
-  std::vector<int> triangles(mesh.region_names.size(), 0), ends = triangles;
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const auto region = static_cast<size_t>(mesh.regions[static_cast<size_t>(t)]);
-    ++triangles[region];
-    for (const int v : mesh.triangles.col(t)) ends[region] += is_held[static_cast<size_t>(v)] ? 1 : 0;
-  }
-  std::string bare;
-  for (size_t r = 0; r < ends.size(); ++r)
-    if (triangles[r] > 0 && ends[r] == 0)
-      bare += (bare.empty() ? "\"" : ", \"") + mesh.region_names[r] + "\"";
-  if (!bare.empty())
-    doubts.push_back("region " + bare +
-                     ": no chord inserts there while others have chords; pressure will turn it over unless "
-                     "something else holds its free edge. Add the missing chords.");
-}
+// Along the least way from a tip: its length at rest, that at which some chord of it is beyond what it bears
+// (infinite: none ever is), and the chord that arrives.
+struct Way {
+  double length = 0, bearable = 0;
+  int chord = -1;
+};
 
-// The least length of chords from a tip to each point, and the chord that arrives there.
-std::map<int, std::pair<double, int>> reach(const ChordGraph& graph, int tip) {
-  std::map<int, std::pair<double, int>> result;
-  using Entry = std::pair<double, std::pair<int, int>>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  open.push({0, {tip, -1}});
+// From a tip to each point.
+std::map<int, Way> reach(const ChordGraph& graph, const ChordLimits& limits, int tip) {
+  std::map<int, Way> result;
+  struct Arrival {
+    int at = 0;
+    Way way;
+    bool operator>(const Arrival& other) const { return way.length > other.way.length; }
+  };
+  std::priority_queue<Arrival, std::vector<Arrival>, std::greater<>> open;
+  open.push({tip, {}});
   while (!open.empty()) {
-    const auto [length, arrival] = open.top();
-    const auto [here, by] = arrival;
+    const Arrival arrival = open.top();
+    const auto& [here, way] = arrival;
     open.pop();
-    if (!result.emplace(here, std::pair(length, by)).second || graph.is_leaflet(here)) continue;
-    for (const int k : graph.chords_at(here))
-      open.push({length + graph.chord(k).rest_length, {graph.other_end(k, here), k}});
+    if (!result.emplace(here, way).second || graph.is_leaflet(here)) continue;
+    for (const int k : graph.chords_at(here)) {
+      const Chord& chord = graph.chord(k);
+      open.push({graph.other_end(k, here),
+                 {way.length + chord.rest_length,
+                  way.bearable + chord.rest_length * (1 + limits.strain(chord.material)), k}});
+    }
   }
   return result;
 }
 
+// Of one insertion, by the least way from a tip to it.
 struct Stretch {
   double open = 0, closed = 0;  // strain that no place of the junctions takes away
-  double length = 0, distance = 0;
+  double length = 0;
+  double distance = 0, distance_closed = 0;
+  double bearable = 0;  // strain at which some chord on the way is beyond what it bears
   int chord = 0;
+  bool knows_closed = false;  // where the leaflets go; else they may yet come to the tip
+
+  bool is_doubtful() const {
+    const double both = std::min(open, closed);
+    return both > std::min(kOverstretched, bearable) || closed > kOverstretchedClosed ||
+           (knows_closed && closed > bearable);
+  }
 };
 
-void find_overstretched(const Valve& valve, const ChordGraph& graph, std::vector<std::string>& doubts) {
+bool has_closed_leaflets(const Valve& valve) {
+  return valve.closed_reference && valve.closed_reference->vertex_count() == valve.leaflets.vertex_count();
+}
+
+std::vector<Stretch> stretches(const Valve& valve, const ChordGraph& graph, const ChordLimits& limits) {
   const ChordNetwork& chords = valve.chords;
   const Points& open = valve.leaflets.vertices;
-  const bool has_closed =
-      valve.closed_reference && valve.closed_reference->vertex_count() == valve.leaflets.vertex_count();
-  const Points& closed = has_closed ? valve.closed_reference->vertices : open;
+  const Points& closed = has_closed_leaflets(valve) ? valve.closed_reference->vertices : open;
   const Points& tips_closed = chords.papillary_closed.cols() > 0 ? chords.papillary_closed : chords.papillary;
-  std::map<int, Stretch> worst;  // by chord
+  std::vector<Stretch> list;
   for (int tip = 0; tip < graph.tip_count(); ++tip)
-    for (const auto& [point, arrival] : reach(graph, tip)) {
-      const auto& [length, chord] = arrival;
-      if (!graph.is_leaflet(point) || length <= 0) continue;
+    for (const auto& [point, way] : reach(graph, limits, tip)) {
+      if (!graph.is_leaflet(point) || way.length <= 0) continue;
       const int v = graph.vertex(point);
       const double apart = (open.col(v) - chords.papillary.col(tip)).norm();
       const double apart_closed = (closed.col(v) - tips_closed.col(tip)).norm();
-      const Stretch stretch{apart / length - 1, apart_closed / length - 1, length, apart, chord};
-      if (std::min(stretch.open, stretch.closed) <= kOverstretched) continue;
-      Stretch& known = worst[chord];
-      if (stretch.open > known.open) known = stretch;
+      list.push_back({apart / way.length - 1, apart_closed / way.length - 1, way.length, apart, apart_closed,
+                      way.bearable / way.length - 1, way.chord, has_closed_leaflets(valve)});
     }
+  return list;
+}
+
+void find_overstretched(const Valve& valve, const std::vector<Stretch>& all,
+                        std::vector<std::string>& doubts) {
+  std::map<int, Stretch> worst;  // by chord
+  for (const Stretch& stretch : all) {
+    if (!stretch.is_doubtful()) continue;
+    const auto [known, is_new] = worst.emplace(stretch.chord, stretch);
+    if (!is_new && stretch.closed > known->second.closed) known->second = stretch;
+  }
   if (worst.empty()) return;
   std::vector<Stretch> list;
   for (const auto& [chord, stretch] : worst) list.push_back(stretch);
   std::stable_sort(list.begin(), list.end(),
-                   [](const Stretch& l, const Stretch& r) { return l.open > r.open; });
+                   [](const Stretch& l, const Stretch& r) { return l.closed > r.closed; });
   std::vector<int> numbers;
   for (const Stretch& stretch : list) numbers.push_back(stretch.chord);
   const Stretch& most = list.front();
-  const bool is_moved = has_closed || chords.papillary_closed.cols() > 0;
+  const bool is_moved = has_closed_leaflets(valve) || valve.chords.papillary_closed.cols() > 0;
   std::string text = named("chord", "chords", numbers) + ": " + std::to_string(list.size()) +
                      (list.size() == 1 ? " insertion lies" : " insertions lie") +
                      " farther from the papillary tip than the chords to it are long";
-  if (is_moved) text += ", in the open and the closed position";
-  text += "; worst: " + number_text(most.distance) + " mm apart with " + number_text(most.length) +
-          " mm of chord, a strain of " + number_text(100 * most.open) + " %";
-  if (is_moved) text += " (closed: " + number_text(100 * most.closed) + " %)";
+  if (is_moved)
+    text += std::min(most.open, most.closed) > std::min(kOverstretched, most.bearable)
+                ? ", in the open and the closed position"
+                : ", in the closed position";
+  text += "; worst: " + number_text(most.distance_closed) + " mm apart with " + number_text(most.length) +
+          " mm of chord, a strain of " + number_text(100 * most.closed) + " %";
+  if (is_moved) text += " (open: " + number_text(100 * most.open) + " %)";
+  if (most.closed > most.bearable)
+    text += ", where by their law some chord on the way pulls with more than " +
+            number_text(kMostChordStress, 4) + " MPa (from " + number_text(100 * most.bearable) + " % on)";
   doubts.push_back(text + ". Check rest lengths, their unit and the place of the tips.");
+}
+
+// Chords as long as twice the way bind nothing; where that holds of all of them a unit was misread.
+void find_all_slack(const std::vector<Stretch>& all, std::vector<std::string>& doubts) {
+  const auto strain = [](const Stretch& stretch) { return std::max(stretch.open, stretch.closed); };
+  const auto tautest = std::max_element(
+      all.begin(), all.end(), [&](const Stretch& l, const Stretch& r) { return strain(l) < strain(r); });
+  if (tautest == all.end() || strain(*tautest) >= -kAllSlack) return;
+  doubts.push_back("all chords are slack: even the tautest way from a papillary tip to a leaflet, by chord " +
+                   std::to_string(tautest->chord) + ", is " + number_text(tautest->length) +
+                   " mm long for a distance of " +
+                   number_text(std::max(tautest->distance, tautest->distance_closed)) +
+                   " mm, in the open and the closed position. Check the unit of `rest_length`.");
 }
 
 }  // namespace
 
-std::vector<std::string> chord_doubts(const Valve& valve) {
+double ChordLimits::strain(const std::string& material) const {
+  const auto own = by_material.find(material);
+  return own == by_material.end() ? of_all : std::min(own->second, of_all);
+}
+
+std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits) {
   std::vector<std::string> doubts;
-  if (valve.chords.chords.empty()) return doubts;
+  if (valve.chords.chords.empty()) {
+    const auto tips = valve.chords.papillary.cols();
+    if (tips == 0) return doubts;
+    return {"has " + std::to_string(tips) + (tips == 1 ? " papillary tip" : " papillary tips") +
+            " and no chords: nothing holds the free edge, and pressure will turn the leaflets over. Add the "
+            "chords; `coapt chords` makes some from the tips."};
+  }
   const ChordGraph graph(valve);
   find_repeated(valve, graph, doubts);
   find_without_length(valve, doubts);
   find_loose_ends(graph, doubts);
   find_unheld(valve, graph, doubts);
-  find_bare_regions(valve, doubts);
-  find_overstretched(valve, graph, doubts);
+  for (const std::string& bare : detail::bare_leaflets(valve)) doubts.push_back(bare);
+  const std::vector<Stretch> ways = stretches(valve, graph, limits);
+  find_overstretched(valve, ways, doubts);
+  find_all_slack(ways, doubts);
   return doubts;
 }
 

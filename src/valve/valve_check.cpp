@@ -5,7 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 namespace coapt {
 namespace {
@@ -16,9 +18,12 @@ constexpr std::array<double, 2> kThickness = {0.001, 20};    // [mm]
 constexpr std::array<double, 2> kChordArea = {1e-6, 300};    // [mm2]
 constexpr std::array<double, 2> kPressure = {1.3e-6, 0.13};  // 0.01 to 1000 mmHg [MPa]
 constexpr double kMpaPerMmhg = 133.322387415e-6;             // conventional mmHg, BIPM SI brochure
-constexpr double kLeastFacing = 0.05;  // projected over whole area below which a side is not told
 
-constexpr double kFoldedCosine = -0.99985;  // between the normals of two neighbours: an angle of 1 degree
+// Between the normals of two neighbours. Small triangles of uneven meshes are folded that far by right: rough
+// valves have some, up to 0.57 of the mean edge high, and a solve unfolds them.
+constexpr double kFlatCosine = -0.99985;      // of any height: an angle of 1 degree between the triangles
+constexpr double kFoldedCosine = -0.8660254;  // of triangles that are not small: 150 degrees
+constexpr double kSmallHeight = 0.6;          // of the mean edge
 
 bool is_within(double value, const std::array<double, 2>& range) {
   return value >= range[0] && value <= range[1];
@@ -36,6 +41,15 @@ Vec3 normal_unless_sliver(const TriangleMesh& mesh, int t) {
   return n.norm() * kSliverAspect < 1 ? Vec3(Vec3::Zero()) : Vec3(n.normalized());
 }
 
+// The heights of two triangles over their common edge, the lower one.
+double lower_height(const TriangleMesh& mesh, const Edge& edge) {
+  const double length = (mesh.vertices.col(edge.a) - mesh.vertices.col(edge.b)).norm();
+  double area = std::numeric_limits<double>::infinity();
+  for (const int t : edge.triangles)
+    area = std::min(area, area_vector(mesh.vertices, mesh.triangles.col(t)).norm());
+  return 2 * area / length;
+}
+
 // Along the edge, from its lower to its higher vertex. Neighbours run in opposite directions, unless one of
 // them is turned over.
 bool runs_upward(const TriangleMesh& mesh, int t, const Edge& edge) {
@@ -50,12 +64,13 @@ std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
   constexpr size_t kFew = 10;
   size_t count = 0;
   std::string pairs;
+  const double small = kSmallHeight * mean_edge_length(leaflets.vertices, leaflets.triangles);
   for (const Edge& edge : edges(leaflets.triangles)) {
     if (edge.triangles.size() != 2) continue;
     const int s = edge.triangles[0], t = edge.triangles[1];
     const int sign = runs_upward(leaflets, s, edge) == runs_upward(leaflets, t, edge) ? -1 : 1;
-    if (!(sign * normal_unless_sliver(leaflets, s).dot(normal_unless_sliver(leaflets, t)) < kFoldedCosine))
-      continue;
+    const double cosine = sign * normal_unless_sliver(leaflets, s).dot(normal_unless_sliver(leaflets, t));
+    if (!(cosine < kFlatCosine || (cosine < kFoldedCosine && lower_height(leaflets, edge) > small))) continue;
     if (++count > kFew) continue;
     pairs.append(pairs.empty() ? "(" : ", (").append(std::to_string(s)).append(", ");
     pairs.append(std::to_string(t)).append(")");
@@ -63,7 +78,8 @@ std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
   if (count == 0) return {};
   if (count > kFew) pairs.append(" and ").append(std::to_string(count - kFew)).append(" more");
   return {"neighbouring triangles are folded onto each other: " + pairs +
-          "; bending and contact have no direction there. Unfold the mesh, or move the corners apart."};
+          " (more than 150 degrees between their normals); bending and contact have no direction there. "
+          "Unfold the mesh, or move the corners apart."};
 }
 
 std::vector<std::string> size_doubts(const Valve& valve) {
@@ -92,29 +108,6 @@ std::vector<std::string> size_doubts(const Valve& valve) {
         number_text(valve.chords.chords[static_cast<size_t>(odd.front())].area) +
         " mm2, have a cross-section outside " + range_text(kChordArea) + " mm2. Check the unit of `area`.");
   return doubts;
-}
-
-// A funnel shows its tips the area of its rim at the annulus less that at the free edge, whatever it does in
-// between: the sum of area vectors is a matter of the rims alone.
-std::vector<std::string> pressure_side_doubts(const Valve& valve) {
-  const TriangleMesh& mesh = valve.leaflets;
-  if (valve.chords.papillary.cols() == 0 || valve.annulus.empty() || mesh.triangle_count() == 0) return {};
-  Vec3 annulus = Vec3::Zero();
-  for (const int v : valve.annulus) annulus += mesh.vertices.col(v);
-  annulus /= static_cast<double>(valve.annulus.size());
-  const Vec3 axis = (valve.chords.papillary.rowwise().mean() - annulus).normalized();
-  double facing = 0, whole = 0;
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const Vec3 area = area_vector(mesh.vertices, mesh.triangles.col(t));
-    facing += area.dot(axis);
-    whole += area.norm();
-  }
-  if (!(facing < -kLeastFacing * whole)) return {};
-  return {
-      "the normals of the leaflets point away from the papillary tips, so the pressure acts on the wrong "
-      "side (" +
-      number_text(-facing) + " of " + number_text(whole) +
-      " mm2 face the other way); turn all triangles over, or set the side of the pressure."};
 }
 
 }  // namespace coapt

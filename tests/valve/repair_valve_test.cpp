@@ -229,7 +229,9 @@ TEST(ValveCheck, NamesNeighboursThatAreFoldedOntoEachOther) {
   EXPECT_TRUE(says(fold_doubts(mesh), "folded onto each other: (0, 1)"));
   mesh.triangles.col(1) << 0, 1, 3;  // turned over
   EXPECT_TRUE(says(fold_doubts(mesh), "folded onto each other: (0, 1)"));
-  mesh.vertices(2, 3) = 0.1;
+  mesh.vertices(2, 3) = 0.4;  // 0.8 wide: 153 degrees
+  EXPECT_TRUE(says(fold_doubts(mesh), "folded onto each other: (0, 1)"));
+  mesh.vertices(2, 3) = 0.5;  // 148
   EXPECT_TRUE(fold_doubts(mesh).empty());
   mesh.vertices.col(3) << 0.3, -0.8, 0;
   EXPECT_TRUE(fold_doubts(mesh).empty());

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "exchange/detail/law_terms.hpp"
+#include "exchange/detail/start_contact.hpp"
 #include "formats/csv_table.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/mesh_check.hpp"
@@ -72,6 +73,13 @@ void append_doubts(const std::vector<MeshDefect>& before, const std::vector<Mesh
   }
 }
 
+// Whether there are distances between its triangles.
+bool is_measurable(const std::vector<MeshDefect>& defects) {
+  return std::none_of(defects.begin(), defects.end(), [](const MeshDefect& defect) {
+    return defect.kind == DefectKind::IndexOutOfRange || defect.kind == DefectKind::NotFinite;
+  });
+}
+
 }  // namespace
 
 MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Valve& valve,
@@ -81,6 +89,7 @@ MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file,
   for (const std::string& doubt : fold_doubts(valve.leaflets)) warnings.push_back(place + doubt);
   if (!options.repairs) {
     append_doubts(before, before, place, warnings);
+    if (is_measurable(before)) separate_leaflets(options, place, valve, warnings);
     return {};
   }
   const ValveRepair repair = repair_valve(valve, kSliverAspect);
@@ -93,6 +102,7 @@ MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file,
         "are held or carry chords, or lie on the rim; remesh there, or keep them by --no-repair");
   if (leaflets.is_changed()) warnings.push_back(place + repaired_text(repair));
   append_doubts(before, leaflets.is_changed() ? check_mesh(valve.leaflets) : before, place, warnings);
+  if (is_measurable(before)) separate_leaflets(options, place, valve, warnings);
   return leaflets;
 }
 

@@ -12,8 +12,9 @@
 namespace coapt::detail {
 
 // Repairs the leaflets as the options say, and says in whole sentences what was done, how far the surface
-// moved, and what is doubtful about the mesh; elements have their numbers in the given file. Throws
-// InputError for slivers that no step repairs.
+// moved, and what is doubtful about the mesh; elements have their numbers in the given file, intersecting
+// pairs (start_contact.hpp) those in the repaired mesh. Throws InputError for slivers that no step repairs
+// and for pairs that contact cannot start from.
 MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Valve& valve,
                           std::vector<std::string>& warnings);
 

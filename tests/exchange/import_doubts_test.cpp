@@ -1,0 +1,204 @@
+// Valves and scenes with wrong data, which import and check name before any solve.
+#include "core/error.hpp"
+#include "exchange/check.hpp"
+#include "exchange/import.hpp"
+#include "formats/json/valve_json.hpp"
+#include "formats/whole_file.hpp"
+#include "mesh/distance/intersections.hpp"
+#include "scene/build/build.hpp"
+#include "support/temporary_folder.hpp"
+#include "valve/generators/mitral.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace coapt {
+namespace {
+
+bool tells(const std::vector<std::string>& sentences, const std::string& part) {
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& sentence) { return sentence.find(part) != std::string::npos; });
+}
+
+std::string with_piece(std::string text, const std::string& old, const std::string& fresh) {
+  const size_t at = text.find(old);
+  if (at == std::string::npos) throw std::logic_error("no " + old);
+  return text.replace(at, old.size(), fresh);
+}
+
+// A folder "a" with a written valve, and its import to "b".
+class ImportDoubts : public testing::Test {
+ protected:
+  std::vector<std::string> imported(const Valve& valve, const ImportOptions& options = {}) {
+    write_valve_scene(valve, folder_.path() / "a");
+    return import_valve(folder_.path() / "a" / "valve.json", folder_.path() / "b", options);
+  }
+
+  // The sentences of the refusal.
+  std::vector<std::string> refusal(const Valve& valve, const ImportOptions& options = {}) {
+    try {
+      imported(valve, options);
+    } catch (const InputError& error) {
+      return error.defects();
+    }
+    return {"accepted"};
+  }
+
+  // Of the scene that was written for the mean valve, with a piece of its text replaced.
+  std::vector<std::string> checked(const std::string& old, const std::string& fresh) {
+    write_valve_scene(mitral_valve({.triangles = 400}), folder_.path() / "a");
+    const std::filesystem::path file = folder_.path() / "a" / "scene.json";
+    const std::string text = with_piece(formats::read_whole(file), old, fresh);
+    formats::write_whole(file, text);
+    return check(file).warnings;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ImportDoubts, RefuseANegativePressure) {
+  write_valve_scene(mitral_valve({.triangles = 400}), folder_.path() / "a");
+  const std::filesystem::path file = folder_.path() / "a" / "valve.json";
+  const std::string text = formats::read_whole(file);
+  const size_t pressure = text.find("\"pressure\""), value = text.find("\"value\"", pressure);
+  ASSERT_NE(value, std::string::npos);
+  const size_t number = text.find_first_of("0123456789", value + 7);
+  formats::write_whole(file, std::string(text).insert(number, "-"));
+  try {
+    import_valve(file, folder_.path() / "b");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(tells(error.defects(), "pressure.value: is negative (-0.0159")) << error.what();
+    EXPECT_TRUE(tells(error.defects(), "turn the triangles over")) << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "b"));
+  EXPECT_NO_THROW(import_valve(file, folder_.path() / "b", {.pressure = "100 mmHg"}));
+}
+
+TEST_F(ImportDoubts, NameANegativePressureOfAScene) {
+  EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"-120 mmHg\""), "value: is negative"));
+}
+
+TEST_F(ImportDoubts, NameLoadsOfAnotherUnit) {
+  EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"1 Pa\""), "Check the unit of the pressure"));
+  EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"1e6 MPa\""), "Check the unit of the pressure"));
+}
+
+TEST_F(ImportDoubts, NameModuliOfAnotherUnit) {
+  for (const char* young : {"\"1 Pa\"", "\"1e6 MPa\""})
+    EXPECT_TRUE(tells(checked("\"1 MPa\"", young), "\"leaflets\": a membrane that, stretched by 10 % both"))
+        << young;
+  for (const char* young : {"\"40 Pa\"", "\"4e7 MPa\""})
+    EXPECT_TRUE(tells(checked("\"40 MPa\"", young), "\"chords\": chords whose law at a strain of 2 %"))
+        << young;
+  EXPECT_FALSE(tells(checked("\"40 MPa\"", "\"400 MPa\""), "Check the unit"));
+  const auto warnings = imported(mitral_valve({.triangles = 400}), {.young = "1e6 MPa"});
+  EXPECT_TRUE(tells(warnings, "Check the unit of its moduli"));
+}
+
+TEST_F(ImportDoubts, WriteASceneOfAValveWithoutChordsThatBuilds) {
+  Valve valve = mitral_valve({.triangles = 400});
+  valve.chords.chords.clear();
+  valve.chords.junctions.resize(3, 0);
+  EXPECT_TRUE(tells(imported(valve), "has 8 papillary tips and no chords"));
+  const CheckReport report = check(folder_.path() / "b" / "scene.json");
+  EXPECT_TRUE(report.defects.empty()) << report.defects.front();
+  EXPECT_TRUE(tells(report.warnings, "no term makes chords"));
+}
+
+TEST_F(ImportDoubts, JudgeChordsByTheirLaw) {
+  Valve valve = mitral_valve({.triangles = 400});
+  valve.chords.papillary_closed.resize(3, 0);  // tips that stay
+  std::set<std::string> materials;
+  for (Chord& chord : valve.chords.chords) {
+    chord.rest_length *= 0.87;  // 15 %
+    materials.insert(chord.material);
+  }
+  EXPECT_FALSE(tells(imported(valve), "farther"));
+  for (const std::string& material : materials)
+    valve.cables[material] = {"cable_ogden", {{"mu", "[\"60 MPa\"]"}, {"alpha", "[98]"}}};
+  EXPECT_TRUE(tells(imported(valve), "pulls with more than 1000 MPa"));
+  EXPECT_TRUE(tells(check(folder_.path() / "b" / "scene.json").warnings, "pulls with more than 1000 MPa"));
+}
+
+// An inner vertex, away from rims and chords, reflected over the edge of its first triangle.
+Valve valve_with_folded_fan() {
+  Valve valve = mitral_valve({.triangles = 400});
+  std::vector<bool> named(static_cast<size_t>(valve.leaflets.vertex_count()), false);
+  for (const auto& loop : boundary_loops(valve.leaflets.triangles))
+    for (const int v : loop) named[static_cast<size_t>(v)] = true;
+  for (const Chord& chord : valve.chords.chords)
+    if (chord.to.kind == ChordEnd::Kind::Leaflet) named[static_cast<size_t>(chord.to.index)] = true;
+  Points& x = valve.leaflets.vertices;
+  for (const Eigen::Vector3i corners : valve.leaflets.triangles.colwise()) {
+    if (named[static_cast<size_t>(corners[0])]) continue;
+    const Vec3 old = x.col(corners[0]);
+    x.col(corners[0]) = x.col(corners[1]) + x.col(corners[2]) - old;
+    if (!intersecting_pairs(x, valve.leaflets.triangles).empty()) return valve;
+    x.col(corners[0]) = old;
+  }
+  throw std::logic_error("no vertex whose fan folds");
+}
+
+TEST_F(ImportDoubts, RefuseWhatContactCannotStartFrom) {
+  const Valve valve = valve_with_folded_fan();
+  const auto pairs = intersecting_pairs(valve.leaflets.vertices, valve.leaflets.triangles);
+  const std::string first = std::to_string(pairs[0][0]) + "-" + std::to_string(pairs[0][1]);
+  const auto defects = refusal(valve);
+  EXPECT_TRUE(tells(defects, first)) << defects.front();
+  EXPECT_TRUE(tells(defects, "--contact none")) << defects.front();
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "b"));
+  const auto without = imported(valve, {.contact = "none"});
+  EXPECT_TRUE(tells(without, first));
+  EXPECT_TRUE(tells(without, "the scene has no contact, so it can be solved"));
+  EXPECT_NO_THROW(build(load_scene(folder_.path() / "b" / "scene.json")));
+  const auto kept = imported(valve, {.contact = "barrier", .repairs = false});
+  EXPECT_TRUE(tells(kept, "the scene cannot be solved as it is"));
+}
+
+// A vertex of one sheet just through another one.
+TEST_F(ImportDoubts, PushApartWhatTouchesOnAShortWay) {
+  Valve valve = mitral_valve({.triangles = 400});
+  TriangleMesh& mesh = valve.leaflets;
+  const int n = mesh.vertex_count(), t = mesh.triangle_count() / 2;
+  const Vec3 normal = area_vector(mesh.vertices, mesh.triangles.col(t)).normalized();
+  Vec3 centre = Vec3::Zero();
+  for (const int v : mesh.triangles.col(t)) centre += mesh.vertices.col(v) / 3;
+  const Vec3 along = (mesh.vertices.col(mesh.triangles(0, t)) - centre).normalized();
+  mesh.vertices.conservativeResize(3, n + 3);
+  mesh.vertices.col(n) = centre - 1e-3 * normal;
+  mesh.vertices.col(n + 1) = centre + 2 * normal + along;
+  mesh.vertices.col(n + 2) = centre + 2 * normal - along;
+  mesh.triangles.conservativeResize(3, mesh.triangle_count() + 1);
+  mesh.triangles.rightCols(1) << n, n + 1, n + 2;
+  mesh.regions.push_back(0);
+  EXPECT_TRUE(tells(imported(valve), "were pushed apart; no vertex moved by more than"));
+  const Valve pushed = read_valve(folder_.path() / "b" / "valve.json").valve;
+  EXPECT_TRUE(intersecting_pairs(pushed.leaflets.vertices, pushed.leaflets.triangles).empty());
+}
+
+TEST_F(ImportDoubts, AreNoneOfThePublishedValves) {
+  for (const char* name : {"trivalve11-healthy/valve_coarse.json", "mitral-ct-normal1/valve_n32.json",
+                           "mitral-ct-normal1/valve_n64.json", "bhv-trileaflet/valve_coarse.json"}) {
+    const auto file = std::filesystem::path(COAPT_SHARED_DIR) / "data" / name;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped: data not found";
+    const auto warnings = import_valve(file, folder_.path() / "b");
+    const auto checked = check(folder_.path() / "b" / "scene.json").warnings;
+    for (const char* part : {"wrong side", "no chord", "farther", "slack", "folded", "Check the unit",
+                             "cannot be solved", "through each other", "is negative"}) {
+      EXPECT_FALSE(tells(warnings, part)) << name << ": " << part;
+      EXPECT_FALSE(tells(checked, part)) << name << ": " << part;
+    }
+    // The same turned over: the free edge of the tricuspid valve is as wide as its annulus.
+    Valve valve = read_valve(file).valve;
+    valve.leaflets.triangles.row(0).swap(valve.leaflets.triangles.row(1));
+    valve.closed_reference.reset();
+    EXPECT_TRUE(tells(imported(valve), "wrong side; turn all triangles over")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace coapt
