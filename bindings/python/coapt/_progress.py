@@ -20,7 +20,7 @@ def shown(callback: Callback | None, is_wanted: bool) -> Iterator[Callback | Non
         return
 
     def see(at: _core.Iterate) -> Any:
-        bar.update(max(1, at.iteration - bar.n) if at.iteration > bar.n else 1)
+        bar.update(1)
         bar.set_postfix_str(f"residual {at.residual:.1e}, energy {at.energy:.6g} mJ", refresh=False)
         return None if callback is None else callback(at)
 
@@ -35,4 +35,4 @@ def _bar() -> Any:
         tqdm = importlib.import_module("tqdm.auto").tqdm
     except ImportError:
         return None
-    return tqdm(desc="coapt", unit=" iterations", mininterval=0.2)
+    return tqdm(desc="coapt", unit=" iterates", mininterval=0.2)
