@@ -125,6 +125,9 @@ TEST(BareLeaflets, AreNamedWithoutAnyChord) {
 TEST(BareLeaflets, AreNamedByTheRunOfTheFreeEdge) {
   Valve valve = without_regions();
   EXPECT_FALSE(names(chord_doubts(valve), "no chord inserts"));
+  Valve mixed = valve;  // whose sides change along the rim
+  turn_over(mixed.leaflets, 0, mixed.leaflets.triangle_count() / 3);
+  EXPECT_FALSE(names(chord_doubts(mixed), "no chord inserts"));
   std::erase_if(valve.chords.chords, [&](const Chord& chord) {
     return chord.to.kind == ChordEnd::Kind::Leaflet && valve.leaflets.vertices(1, chord.to.index) < 0;
   });

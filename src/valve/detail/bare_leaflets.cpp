@@ -61,7 +61,7 @@ std::vector<std::string> bare_pieces(const TriangleMesh& mesh, const Components&
   return doubts;
 }
 
-// Where triangles are turned over against each other, rims are cut into chains.
+// Where more than two triangles meet, rims are cut into chains.
 bool is_closed(const std::vector<int>& loop, const std::vector<Edge>& sorted) {
   const int a = std::min(loop.front(), loop.back()), b = std::max(loop.front(), loop.back());
   const auto found =
@@ -75,8 +75,15 @@ std::vector<std::vector<int>> free_edges(const Valve& valve, const Components& p
   std::vector<bool> is_annulus(static_cast<size_t>(valve.leaflets.vertex_count()), false);
   for (const int v : valve.annulus) is_annulus[static_cast<size_t>(v)] = true;
   std::vector<std::vector<int>> longest(static_cast<size_t>(parts.count));
-  const std::vector<Edge> sorted = edges(valve.leaflets.triangles);
-  for (std::vector<int>& loop : boundary_loops(valve.leaflets.triangles)) {
+  Triangles triangles = valve.leaflets.triangles;  // all to one side, or rims would not go round
+  const Orientation sides = consistent_orientation(valve.leaflets);
+  for (size_t t = 0; t < sides.flip.size(); ++t)
+    if (sides.flip[t]) {
+      const auto column = static_cast<Eigen::Index>(t);
+      std::swap(triangles(0, column), triangles(1, column));
+    }
+  const std::vector<Edge> sorted = edges(triangles);
+  for (std::vector<int>& loop : boundary_loops(triangles)) {
     if (!is_closed(loop, sorted)) continue;
     if (std::all_of(loop.begin(), loop.end(), [&](int v) { return is_annulus[static_cast<size_t>(v)]; }))
       continue;
