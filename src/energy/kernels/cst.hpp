@@ -135,6 +135,14 @@ inline CstFrame turned(const CstFrame& frame, const CstPrincipal& p) {
   return {w, frame.f1 * c + frame.f2 * s, frame.f2 * c - frame.f1 * s};
 }
 
+// May the Hessian overflow? tangent: the sum of its absolute values, times rest area and thickness.
+inline bool overflows(const CstFrame& frame, double tangent) {
+  // With room for the sums of products that an entry has.
+  const double entry =
+      100 * tangent * frame.w.squaredNorm() * (frame.f1.squaredNorm() + frame.f2.squaredNorm());
+  return !std::isfinite(entry);
+}
+
 inline void cst_gradient(const CstFrame& frame, const CstStress& s, CstVector& g) {
   const Eigen::Matrix2d& w = frame.w;
   const Vec3 p1 = frame.f1 * s.s11 + frame.f2 * s.s12, p2 = frame.f1 * s.s12 + frame.f2 * s.s22;

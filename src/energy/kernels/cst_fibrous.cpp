@@ -2,12 +2,22 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <cmath>
+
 namespace coapt {
 
 LeastDirection least_direction(double a, double c, double b) {
-  const CstPrincipal p = cst_principal({a, c, b});
+  // Scaled where the squares of the entries would overflow.
+  const double size = std::max({std::abs(a), std::abs(c), std::abs(b)});
+  const double scale = size > 1e150 ? power_of_two(size) : 1;
+  const CstPrincipal p = cst_principal({a / scale, c / scale, b / scale});
   const Eigen::Vector2d major = p.direction();
-  return {p.minor, {-major[1], major[0]}};
+  return {scale * p.minor, {-major[1], major[0]}};
+}
+
+double power_of_two(double size) {
+  return size > 0 && std::isfinite(size) ? std::ldexp(1.0, std::ilogb(size)) : 1;
 }
 
 void make_positive(PlaneEnergy& w) {

@@ -10,7 +10,7 @@
 // By the envelope theorem the stress is that of C + P; the tangent is condensed by the same two unknowns, so
 // both derivatives are exact. The relaxed W is continuously differentiable and its Hessian jumps at the
 // borders. Sources: Pipkin 1986, Steigmann 1990; Epstein 1999 (anisotropic membranes). Never throws; infinite
-// where an exponential overflows.
+// where an exponential or a derivative of it overflows, and where wrinkles have not been found.
 #pragma once
 
 #include "energy/kernels/cst_state.hpp"
@@ -44,6 +44,9 @@ struct LeastDirection {
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
 };
 LeastDirection least_direction(double a, double c, double b);
+
+// The power of two next below a size; 1 for zero and what is not finite.
+double power_of_two(double size);
 
 template <typename Law>
 struct CstFibrous {
@@ -184,9 +187,9 @@ struct CstFibrous {
     if (c.c11 * c.c22 - c.c12 * c.c12 > kCollapsed || !rest.relaxes) {
       const PlaneEnergy w = at(rest.law, c);
       const LeastDirection least = least_direction(w.stress[0], w.stress[1], w.stress[2]);
+      const double none = kRoundOff * w.tangent.diagonal().maxCoeff();
       // Infinite where an exponential overflows: compressed beyond measure.
-      const bool is_taut =
-          std::isfinite(least.value) && least.value >= -kRoundOff * w.tangent.diagonal().maxCoeff();
+      const bool is_taut = std::isfinite(least.value) && std::isfinite(none) && least.value >= -none;
       if (is_taut || !rest.relaxes)
         return {w,
                 is_taut      ? MembraneRegime::Taut
@@ -218,14 +221,18 @@ struct CstFibrous {
     return k;
   }
 
-  // Pre: one principal stretch of C exceeds 1, and C is compressed in some direction.
-  static Response wrinkled(const Law& law, const Metric& c) {
-    // The first guess widens the narrow direction to what a strip of constant volume would have.
+  // The first guess widens the narrow direction to what a strip of constant volume would have.
+  static Eigen::Vector2d first_guess(const Metric& c) {
     const LeastDirection narrow = least_direction(c.c11, c.c22, c.c12);
     const double wide = c.c11 + c.c22 - narrow.value;
     const double missing = std::max(1 / std::sqrt(wide) - narrow.value, 1e-3 * (1 - narrow.value));
-    Eigen::Vector2d a = std::sqrt(std::max(missing, 1e-16)) * narrow.direction;
-    PlaneEnergy w = at(law, c.widened(a));
+    return std::sqrt(std::max(missing, 1e-16)) * narrow.direction;
+  }
+
+  // Newton towards the a at which f(C + a a^T) is least, from the a given. Returns f there.
+  template <typename Function>
+  static PlaneEnergy descend(const Function& f, const Metric& c, Eigen::Vector2d& a) {
+    PlaneEnergy w = f(c.widened(a));
     constexpr int kMost = 60;       // steps towards what wrinkles take up
     constexpr double kLast = 1e-9;  // of a: the error that a step this small leaves is its square
     for (int k = 0; k < kMost; ++k) {
@@ -241,7 +248,7 @@ struct CstFibrous {
         h = high * Eigen::Matrix2d::Identity() + (low - high) * least.direction * least.direction.transpose();
       }
       const Eigen::Vector2d step = -h.inverse() * g;
-      PlaneEnergy next = at(law, c.widened(a + step));
+      PlaneEnergy next = f(c.widened(a + step));
       if (!(step.norm() > (is_convex ? kLast : 1e-15) * a.norm())) {
         if (!std::isfinite(next.energy)) break;
         a += step;
@@ -255,16 +262,44 @@ struct CstFibrous {
       };
       while (is_worse(next, a + length * step) && length > 1e-6) {
         length *= 0.5;
-        next = at(law, c.widened(a + length * step));
+        next = f(c.widened(a + length * step));
       }
       if (is_worse(next, a + length * step)) break;
       a += length * step;
       w = next;
     }
+    return w;
+  }
+
+  // Is no stress left along a? Beside the stress itself or, where there is hardly any, the round-off of it.
+  static bool is_free(const PlaneEnergy& w, const Eigen::Vector2d& a) {
+    constexpr double kLeft = 1e-7, kNoise = 1e-12;  // of the stress; of the stiffness
+    const double most = kLeft * w.stress.cwiseAbs().maxCoeff() + kNoise * w.tangent.cwiseAbs().maxCoeff();
+    return std::isfinite(most) && traction(w, a).cwiseAbs().maxCoeff() <= most * a.cwiseAbs().maxCoeff();
+  }
+
+  // Pre: one principal stretch of C exceeds 1, and C is compressed in some direction.
+  static Response wrinkled(const Law& law, const Metric& c) {
+    Eigen::Vector2d a = first_guess(c);
+    PlaneEnergy w = descend([&](const Metric& wide) { return at(law, wide); }, c, a);
+    bool has_converged = is_free(w, a);
+    // Newton lowers an exponent by about one in each step, and nothing that overflows: so that of the
+    // exponent itself, which is least at the same place.
+    if constexpr (requires { law.exponent(1.0, 1.0, 0.0); })
+      if (!has_converged) {
+        a = first_guess(c);
+        const auto exponent = [&](const Metric& e) { return law.exponent(e.c11, e.c22, e.c12); };
+        has_converged = is_free(descend(exponent, c, a), a);
+        w = at(law, c.widened(a));
+      }
+    if (!has_converged) w.energy = std::numeric_limits<double>::infinity();
     // Condensed: the wrinkles follow the strain.
     const Eigen::Matrix<double, 3, 2> m = w.tangent * widening(a);
     const Eigen::Matrix2d h = stiffness(w, widening(a));
-    if (h.determinant() > 0) w.tangent -= m * h.inverse() * m.transpose();
+    // Scaled, which rounds nothing, as the determinant of a large one overflows.
+    const double scale = power_of_two(h.cwiseAbs().maxCoeff());
+    const Eigen::Matrix2d small = h / scale;
+    if (small.determinant() > 0) w.tangent -= (m / scale) * small.inverse() * m.transpose();
     return {w, MembraneRegime::Wrinkled, c.widened(a)};
   }
 
@@ -272,7 +307,10 @@ struct CstFibrous {
     const CstFrame frame = cst_frame(rest.shape, x);
     Response at = respond(rest, cst_strain(frame));
     PlaneEnergy& w = at.w;
-    const double V = rest.volume, energy = V * w.energy;
+    const double V = rest.volume;
+    // Next to where the energy overflows its derivatives have.
+    if (overflows(frame, V * w.tangent.cwiseAbs().sum())) w.energy = std::numeric_limits<double>::infinity();
+    const double energy = V * w.energy;
     if (g == nullptr) return energy;
     cst_gradient(frame, {V * w.stress[0], V * w.stress[1], V * w.stress[2]}, *g);
     if (H == nullptr) return energy;

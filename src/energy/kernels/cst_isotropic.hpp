@@ -6,7 +6,8 @@
 //   slack     l1 <= 1                     W = 0
 // The relaxed W is continuously differentiable, its second derivatives are exact in each regime and jump at
 // the borders; the stress is never compressive. Sources: Pipkin 1986 (relaxed energies of membranes),
-// Steigmann 1990. Never throws; infinite where an exponential overflows.
+// Steigmann 1990. Never throws; infinite where an exponential or a derivative of it
+// overflows.
 #pragma once
 
 #include "energy/kernels/cst_state.hpp"
@@ -160,7 +161,8 @@ struct CstIsotropic {
       const StretchEnergy w = law.evaluate(l1, l2);
       (w.w2 < 0 ? low : high) = l2;
       const double next = l2 - w.w2 / w.w22;
-      if (std::abs(next - l2) <= kLast * l2) return next;
+      // A slope that overflows leaves no step.
+      if (std::isfinite(w.w22) && std::abs(next - l2) <= kLast * l2) return next;
       const bool is_slow = !(std::abs(w.w2) <= kGain * std::exchange(last, std::abs(w.w2)));
       l2 = next > low && next < high && !is_slow ? next : std::sqrt(low * high);
       if (high - low <= kLast * kLast * high) break;
@@ -195,6 +197,10 @@ struct CstIsotropic {
     const CstPrincipal p = cst_principal(cst_strain(frame));
     Principal at = respond(rest, p);
     const double V = rest.volume;
+    const CstTangent& c = at.tangent;
+    // Next to where the energy overflows its derivatives have.
+    if (overflows(frame, V * (std::abs(c.c11) + std::abs(c.c22) + std::abs(c.c12) + std::abs(c.shear))))
+      at.energy = std::numeric_limits<double>::infinity();
     if (g == nullptr) return V * at.energy;
     // S = mean I + half (n n^T - t t^T), with n the major direction and t across it.
     const double mean = 0.5 * V * (at.stress.s11 + at.stress.s22),

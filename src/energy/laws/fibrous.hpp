@@ -142,12 +142,17 @@ struct MayNewmanYinLaw {
   double c1 = 0, c2 = 0;
   double limit = std::numeric_limits<double>::infinity();
 
-  PlaneEnergy evaluate(double c11, double c22, double c12) const {
+  // Q, which is finite where exp(Q) overflows, and least where W is.
+  PlaneEnergy exponent(double c11, double c22, double c12) const {
     const PlaneInvariant i = first_invariant(c11, c22, c12), l = stretch_of(1, 0, c11, c22);
     const double j = i.value, e = l.value - 1;
     PlaneEnergy q;
     add_composed({c1 * j * j, 2 * c1 * j, 2 * c1}, i, q);
     add_composed({c2 * e * e * e * e, 4 * c2 * e * e * e, 12 * c2 * e * e}, l, q);
+    return q;
+  }
+  PlaneEnergy evaluate(double c11, double c22, double c12) const {
+    const PlaneEnergy q = exponent(c11, c22, c12);
     const double at = std::min(q.energy, limit), past = q.energy > limit ? q.energy - limit : 0;
     const double grown = c0 * std::exp(at), slope = grown * (1 + past);
     return {c0 * std::expm1(at) + (past > 0 ? grown * (past + 0.5 * past * past) : 0), slope * q.stress,
