@@ -1,5 +1,4 @@
-// What is doubtful about a valve (valve/valve_check.hpp), as sentences that name the file. Private to this
-// room.
+// What is doubtful about a valve (valve/valve_check.hpp), as sentences that name the file.
 #pragma once
 
 #include "scene/build/scene_geometry.hpp"

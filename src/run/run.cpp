@@ -12,6 +12,7 @@
 #include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 namespace coapt {
@@ -140,6 +141,10 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
   SolveSetup setup = solve_setup(scene, solvers, options);
   const SceneGeometry geometry = scene_geometry(scene);
   run.model = build(scene, geometry);
+  if (options.doubts)
+    for (std::string& doubt : options.doubts(scene, geometry, run.model))
+      if (std::find(run.model.warnings.begin(), run.model.warnings.end(), doubt) == run.model.warnings.end())
+        run.model.warnings.push_back(std::move(doubt));
   run.folder = open_result_folder(scene, options);  // only now: a scene that is refused leaves none behind
   run.report = run_built(scene, geometry, std::move(setup), options, run.model, run.folder);
   return run;

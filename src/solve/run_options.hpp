@@ -5,10 +5,16 @@
 #include "optim/solver.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace coapt {
+
+struct Scene;
+struct SceneGeometry;
+struct Model;
 
 struct RunOptions {
   std::string solver;                 // empty: the scene's
@@ -21,6 +27,10 @@ struct RunOptions {
   std::filesystem::path folder;       // empty: the scene's, see result_folder() of run.hpp
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty
+
+  // What is doubtful about a scene that was built, asked before it is solved: sentences for the warnings of
+  // the result; may be empty.
+  std::function<std::vector<std::string>(const Scene&, const SceneGeometry&, const Model&)> doubts = {};
 
   // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
   FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};

@@ -230,6 +230,15 @@ class CommandTest(CommandCase):
         self.assertRegex(" ".join(self.result()["warnings"]), r"\d+ of \d+ chords and cables are slack")
         self.assertIn("are slack", run.stdout + run.stderr)
 
+    def test_names_what_is_doubtful_about_a_valve_before_it_is_solved(self):
+        scene = self.generate("mitral", "--triangles", 250)
+        text = scene.read_text()
+        scene.write_text(re.sub(r'("type": "load_pressure", "value": )"[^"]*"', r'\1"0.1 Pa"', text))
+        self.assertNotEqual(scene.read_text(), text)
+        run = coapt("solve", scene, "--max-seconds", 1)
+        self.assertRegex(run.stderr, r"coapt: warning: [^\n]*the pressure is 0\.00075\S* mmHg; hearts have")
+        self.assertRegex(" ".join(self.result()["warnings"]), "the pressure is .* Check the unit of the pressure")
+
     def start(self, scene, *options, interrupts=signal.SIG_DFL):
         """A solve that has begun. It starts with SIGINT as given, whatever the tests themselves were started with."""
         process = subprocess.Popen([COAPT, "solve", str(scene), *options], stdout=subprocess.PIPE,

@@ -7,6 +7,7 @@
 #include "cli/study_options.hpp"
 #include "core/components.hpp"
 #include "core/error.hpp"
+#include "exchange/valve_doubts.hpp"
 #include "formats/json/units.hpp"
 #include "results/result_warnings.hpp"
 #include "run/branches.hpp"
@@ -18,6 +19,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 namespace {
@@ -169,6 +171,13 @@ void print_summary(const RunReport& run) {
   std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
 }
 
+// Before the solve, which may take long, and in the warnings of its result.
+std::vector<std::string> told_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
+  std::vector<std::string> doubts = valve_doubts(scene, geometry, model);
+  for (const std::string& doubt : doubts) std::fprintf(stderr, "coapt: warning: %s\n", doubt.c_str());
+  return doubts;
+}
+
 // What a checkpoint of this run is recognised by.
 RunIdentity identity(const Scene& scene, const RunOptions& options,
                      const std::optional<double>& accuracy_mm) {
@@ -185,6 +194,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
   const Scene scene = load_scene(arguments.scene);
   std::optional<double> accuracy_mm;
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
+  options.doubts = told_doubts;
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
