@@ -71,7 +71,8 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
   return doubts;
 }
 
-std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model,
+                                      bool names_repeated) {
   const auto annulus = geometry.model.sets.find("annulus");
   if (!scene.mesh || annulus == geometry.model.sets.end() || annulus->second.empty()) return {};
   const std::string file = scene.file.string();
@@ -90,7 +91,7 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   };
   // Cut and shortened chords hang loose or are overstretched by intention.
   if (scene.interventions.empty()) {
-    add(file, chord_doubts(valve, detail::chord_limits(scene)));
+    add(file, chord_doubts(valve, detail::chord_limits(scene), names_repeated));
     if (geometry.networks.empty()) find_unused_chords(scene, doubts);
   }
   add(file, size_doubts(valve));

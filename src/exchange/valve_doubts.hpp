@@ -14,7 +14,9 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
                                       const ChordLimits& limits = {});
 
 // Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
-// chords nothing where interventions edit them. Pre: model is built of it.
-std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model);
+// chords nothing where interventions edit them. names_repeated: see chord_doubts(). Pre: model is built of
+// it.
+std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model,
+                                      bool names_repeated = true);
 
 }  // namespace coapt

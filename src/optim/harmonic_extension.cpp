@@ -19,18 +19,29 @@ constexpr double kLeastCotangent = 1e-3;  // obtuse and degenerate triangles: we
 constexpr double kMostCotangent = 1e9;    // slivers are carried along whole, as far as the factor is exact
 constexpr double kContactWeight = 100;    // of a pair in contact beside those of edges, which are about 1
 
-// A weighted sum of displacements that is kept small: the difference along an edge, or the change of the
-// vector between two features in contact.
-struct Coupling {
-  std::array<int, 4> nodes;
-  std::array<double, 4> weights;
-  int count;
-  double stiffness;
+struct WeightedEdge {
+  int a, b;
+  double weight;
 };
 
-Coupling edge_coupling(int a, int b, double stiffness) { return {{a, b}, {1, -1}, 2, stiffness}; }
+// What is kept small: differences along edges, and changes of the vector between two features in contact,
+// each a weighted sum of displacements.
+struct Couplings {
+  std::vector<WeightedEdge> edges;
+  std::vector<BarrierContact> contacts;
 
-void add_elements(const Stencils& stencils, const Points& x, std::vector<Coupling>& couplings) {
+  // visit(nodes, weights, count, stiffness)
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    constexpr std::array kDifference = {1.0, -1.0};
+    for (const WeightedEdge& edge : edges)
+      visit(std::array{edge.a, edge.b}.data(), kDifference.data(), 2, edge.weight);
+    for (const BarrierContact& contact : contacts)
+      visit(contact.nodes.data(), contact.weights.data(), 4, kContactWeight);
+  }
+};
+
+void add_elements(const Stencils& stencils, const Points& x, std::vector<WeightedEdge>& edges) {
   const std::vector<int>& nodes = stencils.nodes;
   if (stencils.width == 3)
     for (size_t first = 0; first < nodes.size(); first += 3)
@@ -39,48 +50,45 @@ void add_elements(const Stencils& stencils, const Points& x, std::vector<Couplin
         const Vec3 u = x.col(a) - x.col(apex), v = x.col(b) - x.col(apex);
         const double twice_area = u.cross(v).norm();
         const double cotangent = twice_area > 0 ? u.dot(v) / twice_area : kMostCotangent;
-        couplings.push_back(
-            edge_coupling(a, b, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent)));
+        edges.push_back({a, b, 0.5 * std::clamp(cotangent, kLeastCotangent, kMostCotangent)});
       }
   else if (stencils.width == 2)
     for (size_t first = 0; first < nodes.size(); first += 2)
-      couplings.push_back(edge_coupling(nodes[first], nodes[first + 1], 1));
+      edges.push_back({nodes[first], nodes[first + 1], 1});
 }
 
 // Of a prescribed feature with a free one: a sheet goes along with the obstacle that is pressed into it.
 void add_contacts(const EnergyTerm& term, const FixedMask& fixed, const Points& x,
-                  std::vector<Coupling>& couplings) {
+                  std::vector<BarrierContact>& contacts) {
   for (const BarrierContact& contact : barrier_contacts(term, x)) {
     const size_t first_count = contact.is_edge_edge ? 2 : 1;
     bool is_held[2] = {true, true};
     for (size_t a = 0; a < 4; ++a)
       if (!fixed.col(contact.nodes[a]).all()) is_held[a < first_count ? 0 : 1] = false;
-    if (is_held[0] != is_held[1]) couplings.push_back({contact.nodes, contact.weights, 4, kContactWeight});
+    if (is_held[0] != is_held[1]) contacts.push_back(contact);
   }
 }
 
-std::vector<Coupling> couplings_at(const Objective& objective, const Points& x) {
-  std::vector<Coupling> couplings;
+Couplings couplings_at(const Objective& objective, const Points& x) {
+  Couplings couplings;
   for (const auto& term : objective.terms())
     if (term->role() == TermRole::Internal)
-      add_elements(term->stencils(), x, couplings);
+      add_elements(term->stencils(), x, couplings.edges);
     else if (term->limits_steps())
-      add_contacts(*term, objective.fixed(), x, couplings);
+      add_contacts(*term, objective.fixed(), x, couplings.contacts);
   return couplings;
 }
 
 // The matrix of the free nodes; row: the number of each, -1 for others.
-Laplacian laplacian(const std::vector<Coupling>& couplings, const std::vector<int>& row, int free_count) {
+Laplacian laplacian(const Couplings& couplings, const std::vector<int>& row, int free_count) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Coupling& coupling : couplings)
-    for (int i = 0; i < coupling.count; ++i)
-      for (int j = 0; j < coupling.count; ++j) {
-        const size_t first = static_cast<size_t>(i), second = static_cast<size_t>(j);
-        const int a = row[static_cast<size_t>(coupling.nodes[first])],
-                  b = row[static_cast<size_t>(coupling.nodes[second])];
-        if (b >= 0 && a >= b)
-          entries.emplace_back(a, b, coupling.stiffness * coupling.weights[first] * coupling.weights[second]);
+  couplings.for_each([&](const int* nodes, const double* weights, int count, double stiffness) {
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) {
+        const int a = row[static_cast<size_t>(nodes[i])], b = row[static_cast<size_t>(nodes[j])];
+        if (b >= 0 && a >= b) entries.emplace_back(a, b, stiffness * weights[i] * weights[j]);
       }
+  });
   // What hangs on nothing gets a weak hold, so that it stays.
   for (int k = 0; k < free_count; ++k) entries.emplace_back(k, k, 1e-9);
   Laplacian matrix(free_count, free_count);
@@ -89,19 +97,17 @@ Laplacian laplacian(const std::vector<Coupling>& couplings, const std::vector<in
 }
 
 // What the displacements of prescribed nodes draw the free ones by.
-Vector drawn(const std::vector<Coupling>& couplings, const std::vector<int>& row, Eigen::Index free_count,
+Vector drawn(const Couplings& couplings, const std::vector<int>& row, Eigen::Index free_count,
              const Eigen::RowVectorXd& displacement) {
   Vector rhs = Vector::Zero(free_count);
-  for (const Coupling& coupling : couplings)
-    for (int i = 0; i < coupling.count; ++i)
-      for (int j = 0; j < coupling.count; ++j) {
-        const size_t first = static_cast<size_t>(i), second = static_cast<size_t>(j);
-        const int a = row[static_cast<size_t>(coupling.nodes[first])];
-        const int node = coupling.nodes[second];
-        if (a >= 0 && row[static_cast<size_t>(node)] < 0)
-          rhs[a] -=
-              coupling.stiffness * coupling.weights[first] * coupling.weights[second] * displacement[node];
+  couplings.for_each([&](const int* nodes, const double* weights, int count, double stiffness) {
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) {
+        const int a = row[static_cast<size_t>(nodes[i])];
+        if (a >= 0 && row[static_cast<size_t>(nodes[j])] < 0)
+          rhs[a] -= stiffness * weights[i] * weights[j] * displacement[nodes[j]];
       }
+  });
   return rhs;
 }
 
@@ -111,7 +117,7 @@ Vector extended_harmonically(const Objective& objective, const Vector& q, const 
   const Points from = objective.positions(q);
   const int n = objective.node_count();
   Points displacement = objective.fixed().select(x - from, Points::Zero(3, n));
-  const std::vector<Coupling> couplings = couplings_at(objective, from);
+  const Couplings couplings = couplings_at(objective, from);
   std::vector<int> row(static_cast<size_t>(n), -1);
   LaplacianFactor factor;
   for (int c = 0; c < 3; ++c) {

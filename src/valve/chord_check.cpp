@@ -253,7 +253,7 @@ double ChordLimits::strain(const std::string& material) const {
   return own == by_material.end() ? of_all : std::min(own->second, of_all);
 }
 
-std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits) {
+std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits, bool names_repeated) {
   std::vector<std::string> doubts;
   if (valve.chords.chords.empty()) {
     const auto tips = valve.chords.papillary.cols();
@@ -263,7 +263,7 @@ std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& lim
             "chords; `coapt chords` makes some from the tips."};
   }
   const ChordGraph graph(valve);
-  find_repeated(valve, graph, doubts);
+  if (names_repeated) find_repeated(valve, graph, doubts);
   find_without_length(valve, doubts);
   find_loose_ends(graph, doubts);
   find_unheld(valve, graph, doubts);

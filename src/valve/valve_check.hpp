@@ -30,7 +30,9 @@ inline constexpr double kMostChordStress = 1000;
 // with which all hang slack. Where the closed reference has the vertices of the leaflets they are the closed
 // position, else these stay where they are and the tips alone go to theirs. Each entry is a sentence with the
 // numbers of chords (as in valve.chords.chords), junctions or regions, and what to do. Lengths in mm.
-std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits = {});
+// names_repeated: false leaves out strands between the same two points, which coarse meshes have by right.
+std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits = {},
+                                      bool names_repeated = true);
 inline constexpr double kOverstretched =
     0.2;  // strain, beyond what the valves at hand were designed for (0.16)
 inline constexpr double kOverstretchedClosed = 0.3;  // strain; chords tear at some 0.2 to 0.4, rough valves

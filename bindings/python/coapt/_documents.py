@@ -125,6 +125,7 @@ class Branches(TypedDict):
     starts: int  #: perturbed starts that were made
     starts_along_path: int  #: of them, from the scene's own start along its whole path
     not_converged: int  #: of all
+    first_failure: str  #: message of the first that did not converge; else empty
     kick_mm: float | None  #: greatest move of a node of a start [mm]
     least_moved_share: float | None  #: of the starts: length of all moves that contact admitted, over that wanted
     tolerance_mm: float | None  #: nodes of distinct equilibria are farther apart somewhere [mm]

@@ -173,7 +173,7 @@ void print_summary(const RunReport& run) {
 
 // Before the solve, which may take long, and in the warnings of its result.
 std::vector<std::string> told_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
-  std::vector<std::string> doubts = valve_doubts(scene, geometry, model);
+  std::vector<std::string> doubts = valve_doubts(scene, geometry, model, false);
   for (const std::string& doubt : doubts) std::fprintf(stderr, "coapt: warning: %s\n", doubt.c_str());
   return doubts;
 }
