@@ -33,9 +33,9 @@ struct Couplings {
   // visit(nodes, weights, count, stiffness)
   template <class Visit>
   void for_each(const Visit& visit) const {
-    constexpr std::array kDifference = {1.0, -1.0};
+    const std::array difference = {1.0, -1.0};
     for (const WeightedEdge& edge : edges)
-      visit(std::array{edge.a, edge.b}.data(), kDifference.data(), 2, edge.weight);
+      visit(std::array{edge.a, edge.b}.data(), difference.data(), 2, edge.weight);
     for (const BarrierContact& contact : contacts)
       visit(contact.nodes.data(), contact.weights.data(), 4, kContactWeight);
   }
