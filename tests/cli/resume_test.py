@@ -183,7 +183,8 @@ class ResumeTest(CommandCase):
         scene = self.generate("disc", "--triangles", 500)
         for solver in ["newton", "lbfgs", "dynamic", "ceres", "nlopt"]:
             with self.subTest(solver):
-                options = [*TIGHT, "--solver", solver]
+                # From some cuts Ceres comes no nearer than 1.4e-10: the differences of its energy are round-off.
+                options = [*(["--tolerance", "1e-9"] if solver == "ceres" else TIGHT), "--solver", solver]
                 if not self.cut_by_time(scene, *options):
                     continue
                 run = self.solve(scene, *options, "--resume", self.kept, name="cut")
