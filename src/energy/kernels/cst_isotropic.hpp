@@ -6,8 +6,7 @@
 //   slack     l1 <= 1                     W = 0
 // The relaxed W is continuously differentiable, its second derivatives are exact in each regime and jump at
 // the borders; the stress is never compressive. Sources: Pipkin 1986 (relaxed energies of membranes),
-// Steigmann 1990. Never throws; infinite where an exponential or a derivative of it
-// overflows.
+// Steigmann 1990. Never throws; infinite where an exponential or its derivatives overflow.
 #pragma once
 
 #include "energy/kernels/cst_state.hpp"
