@@ -8,7 +8,7 @@ namespace coapt {
 namespace {
 
 template <typename LawOf>
-Kind tissue(const std::string& label, const LawOf& law_of, double thickness, bool relaxes,
+Kind tissue(const std::string& label, LawOf law_of, double thickness, bool relaxes,
             bool can_overflow = false) {
   using K = KernelOf<decltype(law_of(1.0))>;
   Kind kind{
@@ -26,8 +26,8 @@ Kind tissue(const std::string& label, const LawOf& law_of, double thickness, boo
 }
 
 template <typename LawOf>
-void add_tissue(std::vector<Kind>& kinds, const std::string& label, const LawOf& law_of,
-                double thickness = 0.4, bool can_overflow = false) {
+void add_tissue(std::vector<Kind>& kinds, const std::string& label, LawOf law_of, double thickness = 0.4,
+                bool can_overflow = false) {
   for (const bool relaxes : {true, false})
     kinds.push_back(tissue(label, law_of, thickness, relaxes, can_overflow));
 }
