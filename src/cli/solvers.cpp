@@ -31,7 +31,7 @@ SolverTable all_solvers() {
 }
 
 FactorisationTable all_factorisations() {
-  FactorisationTable table{{"eigen", make_eigen_factorisation}};
+  FactorisationTable table = built_in_factorisations();
 #ifdef COAPT_HAS_CHOLMOD
   table["cholmod"] = [] { return make_cholmod_factorisation(); };
 #endif

@@ -1,4 +1,4 @@
-// Clocks, time by phase and peak memory. Always on: a reading costs some 50 ns.
+// Clocks, time by phase and peak memory. Always on: a reading costs some 300 ns.
 #pragma once
 
 #include <map>
@@ -10,29 +10,33 @@ double wall_seconds();    // monotonic clock [s]
 double cpu_seconds();     // CPU time of the process [s]
 double peak_memory_mb();  // largest resident size of the process so far [MB]
 
-// Wall time by phase [s], summed over all visits.
+// Time by phase [s], summed over all visits.
 class PhaseTimes {
  public:
-  void add(const std::string& phase, double seconds) { seconds_[phase] += seconds; }
-  const std::map<std::string, double>& seconds() const { return seconds_; }
+  void add(const std::string& phase, double wall, double cpu) {
+    wall_[phase] += wall;
+    cpu_[phase] += cpu;
+  }
+  const std::map<std::string, double>& wall() const { return wall_; }
+  const std::map<std::string, double>& cpu() const { return cpu_; }
 
  private:
-  std::map<std::string, double> seconds_;
+  std::map<std::string, double> wall_, cpu_;
 };
 
-// Adds the wall time between its construction and its destruction to one phase.
+// Adds the time between its construction and its destruction to one phase: by the clock and of the processor.
 class PhaseTimer {
  public:
   PhaseTimer(PhaseTimes& times, std::string phase)
-      : times_(times), phase_(std::move(phase)), start_(wall_seconds()) {}
-  ~PhaseTimer() { times_.add(phase_, wall_seconds() - start_); }
+      : times_(times), phase_(std::move(phase)), wall_(wall_seconds()), cpu_(cpu_seconds()) {}
+  ~PhaseTimer() { times_.add(phase_, wall_seconds() - wall_, cpu_seconds() - cpu_); }
   PhaseTimer(const PhaseTimer&) = delete;
   PhaseTimer& operator=(const PhaseTimer&) = delete;
 
  private:
   PhaseTimes& times_;
   std::string phase_;
-  double start_;
+  double wall_, cpu_;
 };
 
 }  // namespace coapt

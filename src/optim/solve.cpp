@@ -343,7 +343,8 @@ Result solve(Solver& solver, const Problem& problem, const StopRule& stop, const
   result.factorisations = monitor.factorisations();
   result.factorised_steps = monitor.factorised_steps();
   result.trace = monitor.take_trace();
-  result.phase_s = monitor.phases().seconds();
+  result.phase_s = monitor.phases().wall();
+  result.phase_cpu_s = monitor.phases().cpu();
   result.wall_s = monitor.seconds();
   result.cpu_s = cpu_seconds() - cpu_start;
   return result;

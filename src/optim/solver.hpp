@@ -148,7 +148,7 @@ struct Result {
   std::vector<BranchChange> branch_changes;  // from the third step of a path on; a path of fewer has none
   std::vector<Iteration> trace;
   double wall_s = 0, cpu_s = 0;
-  std::map<std::string, double> phase_s;  // wall time by phase
+  std::map<std::string, double> phase_s, phase_cpu_s;  // wall time and time of the processor by phase
 };
 
 // Runs a solver on a problem: follows the prescribed motion, renews loads without a potential until the
@@ -176,7 +176,7 @@ struct MethodOptions {
 
 // And what the build and the body give them.
 struct SolverOptions : MethodOptions {
-  FactorisationFactory factorisation = make_eigen_factorisation;  // newton, lbfgs
+  FactorisationFactory factorisation = make_multifrontal_factorisation;  // newton, lbfgs
   std::function<TriangleMesh()> surface =
       {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them

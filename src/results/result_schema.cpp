@@ -307,6 +307,10 @@ OrderedJson counters() {
                 "work by kind: zero for what the scene does not use");
 }
 
+OrderedJson seconds_by_phase(const char* description) {
+  return {{"type", "object"}, {"description", description}, {"additionalProperties", number("[s]")}};
+}
+
 OrderedJson potential_changes() {
   return list(count("number of the iterate"),
               "iterates from which on another energy is minimised, a new outer iteration of trace.csv: a "
@@ -344,10 +348,8 @@ std::string result_schema() {
                                      "evaluations of the objective")},
               {"time", object({{"wall_s", number("wall time of the solve [s]")},
                                {"cpu_s", number("CPU time of the solve [s]")},
-                               {"by_phase",
-                                {{"type", "object"},
-                                 {"description", "wall time [s]"},
-                                 {"additionalProperties", number("[s]")}}}},
+                               {"by_phase", seconds_by_phase("wall time [s]")},
+                               {"cpu_by_phase", seconds_by_phase("CPU time [s]")}},
                               "how long it took")},
               {"peak_memory_mb", number("largest resident size of the process [MB]")},
               {"mesh", object({{"vertices", count("of the surface")},

@@ -266,38 +266,43 @@ std::string pressure_route(const Model& model, const Result& result) {
 
 std::string result_json(const Model& model, const Report& report) {
   const Result& result = report.result;
-  OrderedJson phases = OrderedJson::object();
-  for (const auto& [phase, seconds] : result.phase_s) phases[phase] = number_json(seconds);
-  OrderedJson json = {
-      {"version", version()},
-      {"scene", report.scene_file},
-      {"status", status_name(result.status)},
-      {"message", result.message},
-      {"converged", result.status == Status::Converged},
-      {"residual", number_json(result.residual)},
-      {"energy_mj", number_json(result.energy)},
-      {"certificate", certificate_json(model, result)},
-      {"terms", terms_json(result)},
-      {"iterations", result.iterations},
-      {"rounds", result.outer_iterations},
-      {"damped_steps", result.damped_steps},
-      {"potential_changes", potential_changes_json(result.trace)},
-      {"branch_changes", branch_changes_json(result.branch_changes)},
-      {"evaluations",
-       {{"value", result.evaluations.value},
-        {"gradient", result.evaluations.gradient},
-        {"hessian", result.evaluations.hessian},
-        {"factorisations", result.factorisations}}},
-      {"time",
-       {{"wall_s", number_json(result.wall_s)}, {"cpu_s", number_json(result.cpu_s)}, {"by_phase", phases}}},
-      {"peak_memory_mb", number_json(peak_memory_mb())},
-      {"mesh",
-       {{"vertices", model.mesh.vertex_count()},
-        {"triangles", model.mesh.triangle_count()},
-        {"nodes", model.X.cols()},
-        {"unknowns", model.objective->free_count()}}},
-      {"metrics", rows_json(metric_rows(report.metrics))},
-      {"judge", report.metrics.intersection_checker}};
+  const auto phases_json = [](const std::map<std::string, double>& phases) {
+    OrderedJson json = OrderedJson::object();
+    for (const auto& [phase, seconds] : phases) json[phase] = number_json(seconds);
+    return json;
+  };
+  OrderedJson json = {{"version", version()},
+                      {"scene", report.scene_file},
+                      {"status", status_name(result.status)},
+                      {"message", result.message},
+                      {"converged", result.status == Status::Converged},
+                      {"residual", number_json(result.residual)},
+                      {"energy_mj", number_json(result.energy)},
+                      {"certificate", certificate_json(model, result)},
+                      {"terms", terms_json(result)},
+                      {"iterations", result.iterations},
+                      {"rounds", result.outer_iterations},
+                      {"damped_steps", result.damped_steps},
+                      {"potential_changes", potential_changes_json(result.trace)},
+                      {"branch_changes", branch_changes_json(result.branch_changes)},
+                      {"evaluations",
+                       {{"value", result.evaluations.value},
+                        {"gradient", result.evaluations.gradient},
+                        {"hessian", result.evaluations.hessian},
+                        {"factorisations", result.factorisations}}},
+                      {"time",
+                       {{"wall_s", number_json(result.wall_s)},
+                        {"cpu_s", number_json(result.cpu_s)},
+                        {"by_phase", phases_json(result.phase_s)},
+                        {"cpu_by_phase", phases_json(result.phase_cpu_s)}}},
+                      {"peak_memory_mb", number_json(peak_memory_mb())},
+                      {"mesh",
+                       {{"vertices", model.mesh.vertex_count()},
+                        {"triangles", model.mesh.triangle_count()},
+                        {"nodes", model.X.cols()},
+                        {"unknowns", model.objective->free_count()}}},
+                      {"metrics", rows_json(metric_rows(report.metrics))},
+                      {"judge", report.metrics.intersection_checker}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
   if (!report.metrics.healthy_closure.empty())
     json["healthy_closure"] = criteria_json(report.metrics.healthy_closure);

@@ -35,7 +35,7 @@
 namespace coapt {
 
 struct TrackingOptions {
-  FactorisationFactory factorisation = make_eigen_factorisation;
+  FactorisationFactory factorisation = make_multifrontal_factorisation;
   double tolerance = 1e-10;   // on the relative residual
   int quick_steps = 15;       // Newton steps from the predicted shape before the whole method is called
   int max_iterations = 2000;  // of the whole method (newton, with all its safeguards)

@@ -137,7 +137,9 @@ class Cascade {
     for (Iteration& iteration : result.trace) iteration.seconds += before;
     result.phase_s["coarse_levels"] = before;
     result.wall_s += before;
-    result.cpu_s = cpu_seconds() - cpu_start_;
+    const double cpu = cpu_seconds() - cpu_start_;
+    result.phase_cpu_s["coarse_levels"] = cpu - result.cpu_s;
+    result.cpu_s = cpu;
     outcome.result = std::move(result);
   }
 

@@ -32,8 +32,8 @@ struct RunOptions {
   // the result; may be empty.
   std::function<std::vector<std::string>(const Scene&, const SceneGeometry&, const Model&)> doubts = {};
 
-  // Those of the build; a scene that leaves the choice open gets "cholmod" where it is there.
-  FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
+  // Those of the build; a scene that leaves the choice open gets "multifrontal".
+  FactorisationTable factorisations = built_in_factorisations();
   IntersectionChecker checker;  // of the result
 };
 

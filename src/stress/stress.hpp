@@ -72,7 +72,7 @@ struct StressOptions {
   double row_seconds = 20;                // time limit of each solve [s]
   std::filesystem::path folder;           // the built-in scenes are written into a folder here
   SolverTable solvers = scene_solvers();  // "newton" and "lbfgs" are used where they are there
-  FactorisationTable factorisations = {{"eigen", make_eigen_factorisation}};
+  FactorisationTable factorisations = built_in_factorisations();
   IntersectionChecker checker;
   // Solves the scene file in a process of its own and writes the results into the folder, within so many
   // seconds; empty: the row that needs it is left out.

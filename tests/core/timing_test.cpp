@@ -11,21 +11,23 @@ namespace {
 
 TEST(Timing, PhasesAddUpOverTheirVisits) {
   PhaseTimes times;
-  times.add("assembly", 0.5);
-  times.add("line search", 1);
-  times.add("assembly", 0.25);
-  EXPECT_EQ(times.seconds(), (std::map<std::string, double>{{"assembly", 0.75}, {"line search", 1}}));
+  times.add("assembly", 0.5, 0.25);
+  times.add("line search", 1, 2);
+  times.add("assembly", 0.25, 0.25);
+  EXPECT_EQ(times.wall(), (std::map<std::string, double>{{"assembly", 0.75}, {"line search", 1}}));
+  EXPECT_EQ(times.cpu(), (std::map<std::string, double>{{"assembly", 0.5}, {"line search", 2}}));
 }
 
-TEST(Timing, ATimerAddsTheWallTimeOfItsScope) {
+TEST(Timing, ATimerAddsBothTimesOfItsScope) {
   PhaseTimes times;
   const double before = wall_seconds();
   {
     const PhaseTimer timer(times, "pause");
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  EXPECT_GE(times.seconds().at("pause"), 0.02);
-  EXPECT_LE(times.seconds().at("pause"), wall_seconds() - before);
+  EXPECT_GE(times.wall().at("pause"), 0.02);
+  EXPECT_LE(times.wall().at("pause"), wall_seconds() - before);
+  EXPECT_LT(times.cpu().at("pause"), 0.02);
 }
 
 TEST(Timing, WaitingTakesNoCpuTimeAndWorkDoes) {

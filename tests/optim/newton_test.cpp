@@ -98,9 +98,9 @@ TEST(FollowerTangent, IsWhatTheLastStepsTakeWhereItsSymmetricPartIsIndefinite) {
   const ValveScene scene({.triangles = 200, .young = 0.05});
   Objective objective(scene.X, scene.fixed, scene.terms());
   SolverOptions options;
-  options.factorisation = best_factorisation();
+  options.factorisation = make_multifrontal_factorisation;
   Problem problem{objective, objective.unknowns(scene.X), scene.method().motion};
-  problem.stability.factorisation = best_factorisation();
+  problem.stability.factorisation = make_multifrontal_factorisation;
   StopRule stop;
   stop.tolerance = 1e-9;
   stop.max_iterations = 500;

@@ -239,7 +239,7 @@ struct Verdict {
 Verdict verdict_in(const Frame& frame, const ValveScene& scene, const Points& x) {
   Objective objective(frame.points(x), scene.fixed_in(frame), scene.terms(frame));
   const Certificate certificate =
-      certify(objective, objective.unknowns(frame.points(x)), 1e-8, {best_factorisation()});
+      certify(objective, objective.unknowns(frame.points(x)), 1e-8, {make_multifrontal_factorisation});
   std::vector<int> own(static_cast<size_t>(x.cols()));
   for (int node = 0; node < x.cols(); ++node) own[static_cast<size_t>(frame.node(node))] = node;
   const StabilityReport& report = certificate.stability;
@@ -291,7 +291,7 @@ TEST(Stability, IsNotJudgedOfAStateThatIsNoEquilibrium) {
   const ValveScene scene({.triangles = 200});
   Objective objective(scene.X, scene.fixed, scene.terms());
   const Certificate certificate =
-      certify(objective, objective.unknowns(scene.X), 1e-8, {best_factorisation()});
+      certify(objective, objective.unknowns(scene.X), 1e-8, {make_multifrontal_factorisation});
   EXPECT_GT(certificate.residual, 1e-8);
   EXPECT_EQ(certificate.stability.verdict, Stability::NotKnown);
   EXPECT_TRUE(certificate.imbalance.has_value());

@@ -34,9 +34,9 @@ constexpr double kTolerance = 1e-10;
 Equilibrium closed(const ValveScene& scene, const std::string& solver, bool is_certified = false) {
   Objective objective(scene.X, scene.fixed, scene.terms());
   SolverOptions options;
-  options.factorisation = best_factorisation();
+  options.factorisation = make_multifrontal_factorisation;
   Problem problem{objective, objective.unknowns(scene.X), scene.method().motion};
-  if (is_certified) problem.stability.factorisation = best_factorisation();
+  if (is_certified) problem.stability.factorisation = make_multifrontal_factorisation;
   StopRule stop;
   stop.tolerance = kTolerance;
   stop.max_seconds = 60;

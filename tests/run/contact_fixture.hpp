@@ -21,7 +21,7 @@ class ContactSceneTest : public testing::Test {
   RunReport run_scene(const std::string& text) const {
     RunOptions options;
     options.writes = false;
-    options.factorisations = {{"cholmod", best_factorisation()}, {"eigen", make_eigen_factorisation}};
+    options.factorisations = built_in_factorisations();
     return run(scene_of(text), scene_solvers(), options);
   }
 

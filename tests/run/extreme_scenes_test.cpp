@@ -36,7 +36,7 @@ class ExtremeScene : public testing::Test {
   RunReport solved(const std::string& name, const std::string& scene) {
     RunOptions options;
     options.writes = false;
-    options.factorisations = {{"auto", best_factorisation()}};
+    options.factorisations = built_in_factorisations();
     RunReport found = run(load_scene(folder_.write("scene.json", scene)), scene_solvers(), options);
     const Result& result = found.report.result;
     std::printf("S25 %s: %s, %d iterations\n", name.c_str(), result.message.c_str(), result.iterations);

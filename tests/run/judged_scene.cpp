@@ -21,7 +21,7 @@ long JudgedScene::pairs_in_contact() const {
 
 JudgedScene solve_judged(const Scene& scene) {
   RunOptions options;
-  options.factorisations = {{"cholmod", best_factorisation()}, {"eigen", make_eigen_factorisation}};
+  options.factorisations = built_in_factorisations();
   SolveSetup setup = solve_setup(scene, scene_solvers(), options);
   JudgedScene judged;
   const Model* level = nullptr;  // whose iterates the observer sees

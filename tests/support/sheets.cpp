@@ -5,10 +5,6 @@
 #include "energy/kernels/cst_tension_field.hpp"
 #include "support/meshes.hpp"
 
-#ifdef COAPT_HAS_CHOLMOD
-#include "optim/cholmod/cholmod_factorisation.hpp"
-#endif
-
 namespace coapt {
 namespace {
 
@@ -71,7 +67,7 @@ Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms 
   stop.max_iterations = method.max_iterations;
   stop.max_seconds = method.max_seconds;
   SolverOptions options;
-  options.factorisation = best_factorisation();
+  options.factorisation = make_multifrontal_factorisation;
   options.masses = method.masses;
   options.dynamic = method.dynamic;
   const auto watch = [&](const Iteration&, const Vector& q) {
@@ -84,14 +80,6 @@ Equilibrium find_equilibrium(const Points& start, const FixedMask& fixed, Terms 
             {objective, objective.unknowns(start), method.motion, method.continuation}, stop, watch);
   found.x = objective.positions(found.result.q);
   return found;
-}
-
-FactorisationFactory best_factorisation() {
-#ifdef COAPT_HAS_CHOLMOD
-  return [] { return make_cholmod_factorisation(); };
-#else
-  return make_eigen_factorisation;
-#endif
 }
 
 }  // namespace coapt

@@ -21,9 +21,6 @@ std::unique_ptr<EnergyTerm> bending_term(const Points& X, const Triangles& trian
 Eigen::Vector3d regime_areas(const Points& X, const Points& x, const Triangles& triangles,
                              const Membrane& membrane);
 
-// The fastest factorisation that this build of the tests has.
-FactorisationFactory best_factorisation();
-
 // The whole of a way to solve.
 struct Method {
   std::string solver = "newton";

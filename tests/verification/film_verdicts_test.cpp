@@ -31,7 +31,7 @@ Judged judged(const TriangleMesh& mesh, const FixedMask& fixed, double pressure,
   stop.tolerance = 1e-8;
   stop.max_iterations = 2000;
   Problem problem{objective, objective.unknowns(mesh.vertices)};
-  problem.stability.factorisation = best_factorisation();
+  problem.stability.factorisation = make_multifrontal_factorisation;
   SolverOptions options;
   options.factorisation = problem.stability.factorisation;
   Judged found{solve(*built_in_solvers().at(solver)(options), problem, stop), {}};

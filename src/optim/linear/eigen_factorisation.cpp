@@ -1,7 +1,7 @@
+#include "optim/linear/node_ordering.hpp"
 #include "optim/linear/permuted_matrix.hpp"
 #include "optim/linear/pivots.hpp"
 
-#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 
 #include <cmath>
@@ -9,18 +9,6 @@
 
 namespace coapt {
 namespace {
-
-// Approximate minimum degree on the graph of nodes.
-std::vector<int> node_order(const NodeGraph& graph) {
-  SparseMatrix pattern(graph.size(), graph.size());
-  pattern.resizeNonZeros(static_cast<Eigen::Index>(graph.row.size()));
-  std::copy(graph.start.begin(), graph.start.end(), pattern.outerIndexPtr());
-  std::copy(graph.row.begin(), graph.row.end(), pattern.innerIndexPtr());
-  std::fill_n(pattern.valuePtr(), pattern.nonZeros(), 1.0);
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower>(), permutation);
-  return {permutation.indices().data(), permutation.indices().data() + permutation.size()};
-}
 
 // factorise() of the base class would first make, and throw away, an array as long as the matrix.
 class Cholesky final : public Eigen::SimplicialLLT<SparseMatrix, Eigen::Upper, Eigen::NaturalOrdering<int>> {
@@ -43,7 +31,7 @@ class EigenFactorisation final : public Factorisation {
 
   void analyse(const SparseMatrix& lower) override {
     const NodeGraph graph = node_graph(lower);
-    permuted_ = PermutedMatrix(graph, node_order(graph), Triangle::Upper);
+    permuted_ = PermutedMatrix(graph, minimum_degree_order(graph), Triangle::Upper);
     cholesky_.analyzePattern(permuted_.matrix());
   }
 

@@ -27,7 +27,7 @@ struct Inertia {
 class Factorisation {
  public:
   virtual ~Factorisation() = default;
-  virtual std::string_view name() const = 0;  // "cholmod", "eigen"
+  virtual std::string_view name() const = 0;  // "cholmod", "eigen", "multifrontal"
 
   // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
   virtual void analyse(const SparseMatrix& lower) = 0;
@@ -54,5 +54,11 @@ using FactorisationTable = std::map<std::string, FactorisationFactory>;
 
 // Eigen's simplicial factorisation: always there.
 std::unique_ptr<Factorisation> make_eigen_factorisation();
+
+// Dense fronts along the elimination tree: always there, and the fastest.
+std::unique_ptr<Factorisation> make_multifrontal_factorisation();
+
+// Those that are always there, by name.
+FactorisationTable built_in_factorisations();
 
 }  // namespace coapt

@@ -1,10 +1,10 @@
 #include "optim/linear/lowest_eigenvalues.hpp"
 
+#include "optim/linear/inverse_tangent.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #ifdef COAPT_HAS_SPECTRA
-#include <Eigen/SparseLU>
-
 #include <Spectra/GenEigsRealShiftSolver.h>
 #endif
 
@@ -64,71 +64,6 @@ constexpr int kSubspace = 60;                    // vectors of the Krylov space,
 constexpr int kRestarts = 100;                   // of Arnoldi's method
 constexpr double kMoreThanNeeded = 1.3;          // asked for, over what the last search lets expect
 
-// K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
-SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                           double shift) {
-  const Eigen::Index size = lower.cols();
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(2 * static_cast<size_t>(lower.nonZeros()));
-  for (int column = 0; column < size; ++column)
-    for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
-      if (entry.row() < column) continue;
-      const double added = entry.row() == column ? shift : 0;
-      entries.emplace_back(entry.row(), column, entry.value() + added);
-      if (entry.row() > column) entries.emplace_back(column, entry.row(), entry.value());
-    }
-  Vector coupled = Vector::Zero(size), unit = coupled, product(size);
-  skew(start, coupled);
-  for (int column = 0; column < size; ++column) {
-    if (coupled[column] == 0) continue;
-    unit[column] = 1;
-    product.setZero();
-    skew(unit, product);
-    unit[column] = 0;
-    for (int row = 0; row < size; ++row)
-      if (product[row] != 0) entries.emplace_back(row, column, product[row]);
-  }
-  SparseMatrix whole(size, size);
-  whole.setFromTriplets(entries.begin(), entries.end());
-  return whole;
-}
-
-// Minimum degree on the pattern, which is symmetric: half the fill that an ordering of columns leaves.
-struct SymmetricOrdering {
-  template <class Matrix>
-  void operator()(const Matrix& matrix,
-                  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>& order) {
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> inverse;
-    Eigen::AMDOrdering<int>()(matrix, inverse);  // SparseLU wants the other direction
-    order = inverse.inverse();
-  }
-};
-
-// The inverse of a shifted tangent, as Spectra asks for it. Its symmetric part is positive definite, so that
-// the diagonal gives the pivots.
-class InverseTangent {
- public:
-  using Scalar = double;
-
-  explicit InverseTangent(const SparseMatrix& shifted) {
-    factor_.isSymmetric(true);
-    factor_.setPivotThreshold(0);
-    factor_.compute(shifted);
-  }
-  bool is_made() const { return factor_.info() == Eigen::Success; }
-  Eigen::Index rows() const { return factor_.rows(); }
-  Eigen::Index cols() const { return factor_.cols(); }
-  void set_shift(double) {}  // it is in the factor already
-  void perform_op(const double* in, double* out) const {
-    b_ = Eigen::Map<const Vector>(in, cols());
-    Eigen::Map<Vector>(out, cols()) = factor_.solve(b_);
-  }
-
- private:
-  Eigen::SparseLU<SparseMatrix, SymmetricOrdering> factor_;
-  mutable Vector b_;
-};
-
 // An estimate from below of the greatest |v^* W v| / (v^* M v), by the power method from v: M^-1 W is normal
 // in the scalar product of M, which has been factorised.
 double greatest_ratio(Factorisation& factor, const SkewProduct& skew, Vector v) {
@@ -149,16 +84,14 @@ double greatest_ratio(Factorisation& factor, const SkewProduct& skew, Vector v) 
 // the greatest |v^* W v| / (v^* (K + s) v) is a bound for every s that makes K + s positive definite: the
 // least of some. Infinity where none of them does.
 double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                          double magnitude, const FactorisationFactory& factory) {
+                          double magnitude, Factorisation& factor) {
   double least = kInfinity;
   SparseMatrix shifted = lower;
   for (const double multiple : kBoundShifts) {
     const double shift = multiple * magnitude;
     shifted.diagonal() = lower.diagonal().array() + shift;
-    const auto factor = factory();
-    factor->analyse(shifted);
-    if (factor->factorise(shifted))
-      least = std::min(least, kMargin * greatest_ratio(*factor, skew, start) * shift);
+    if (factor.factorise(shifted))
+      least = std::min(least, kMargin * greatest_ratio(factor, skew, start) * shift);
   }
   return least;
 }
@@ -173,16 +106,15 @@ int more_values(int last, double shift, double far, double reach) {
 }  // namespace
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, double unstable,
-                                     const FactorisationFactory& factory) {
+                                     double least_value, double unstable, Factorisation& factor) {
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   const double shift = kShift * std::abs(least_value);
   LowestEigenvalues found;
   found.factorisations = 1 + static_cast<int>(kBoundShifts.size());
   const double reach =
-      std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factory));
+      std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factor));
   if (!std::isfinite(reach)) return found;
-  InverseTangent inverse(whole_tangent(lower, skew, start, shift));
+  InverseTangent inverse(lower, skew, start, shift);
   if (!inverse.is_made()) return found;
 
   const auto free = static_cast<int>((start.array() != 0).count());
@@ -211,7 +143,7 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
 #else
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double, double, const FactorisationFactory&) {
+                                     double, double, Factorisation&) {
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   return {};
 }

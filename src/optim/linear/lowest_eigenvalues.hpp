@@ -22,9 +22,9 @@ struct LowestEigenvalues {
 //   reaches beyond.
 // lower: K as Factorisation wants it. start: zero at unknowns that shall stay at rest. least_value: an
 // estimate of K's lowest eigenvalue, negative. unstable: a real part below it ends the search, as the verdict
-// is known. In a build without Spectra large matrices give nothing.
+// is known. factor: has analysed the pattern of K; its factor is lost. In a build without Spectra large
+// matrices give nothing.
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, double unstable,
-                                     const FactorisationFactory& factory);
+                                     double least_value, double unstable, Factorisation& factor);
 
 }  // namespace coapt

@@ -177,8 +177,8 @@ class Judgement {
 
   void classify_tangent(double lowest_of_symmetric_part) {
     shift(0);
-    const LowestEigenvalues found = lowest_eigenvalues(h_, skew_, start_vector(), lowest_of_symmetric_part,
-                                                       -zero_, options_.factorisation);
+    const LowestEigenvalues found =
+        lowest_eigenvalues(h_, skew_, start_vector(), lowest_of_symmetric_part, -zero_, *factor_);
     report_.factorisations += found.factorisations;
     if (found.values.size() == 0) return;
     report_.is_tangent_checked = true;

@@ -291,9 +291,9 @@ std::vector<KeySpec> option_keys() {
           {.name = "factorisation",
            .kind = KeyKind::Choice,
            .fallback = "\"auto\"",
-           .choices = {"auto", "cholmod", "eigen"},
+           .choices = {"auto", "multifrontal", "cholmod", "eigen"},
            .doc = "Sparse Cholesky method of newton, preconditioned lbfgs and the certificate; "
-                  "auto takes cholmod in a build that has it."},
+                  "auto takes multifrontal."},
           certificate_key()};
 }
 

@@ -1,0 +1,32 @@
+// A factor of K + W, where K is symmetric and W couples few nodes alone: the rim of a surface under follower
+// pressure. These are eliminated last, by L U of their Schur complement; all others by Cholesky.
+#pragma once
+
+#include "optim/linear/factorisation.hpp"
+#include "optim/linear/multifrontal_factor.hpp"
+
+#include <Eigen/LU>
+
+#include <vector>
+
+namespace coapt {
+
+class BorderedFactor {
+ public:
+  // lower: the pattern of K, as Factorisation has it. border: the nodes that W couples.
+  void analyse(const SparseMatrix& lower, const std::vector<int>& border);
+
+  // border_part: W between the coordinates of the border's nodes, in their order. False where K is not
+  // positive definite on the other nodes, or the Schur complement is not finite.
+  bool factorise(const SparseMatrix& lower, const Eigen::MatrixXd& border_part);
+
+  // x = (K + W)^-1 b. Pre: factorise() returned true.
+  void solve(const Vector& b, Vector& x);
+
+ private:
+  MultifrontalFactor factor_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
+  Vector work_;
+};
+
+}  // namespace coapt

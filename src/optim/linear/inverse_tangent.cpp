@@ -1,0 +1,95 @@
+#include "optim/linear/inverse_tangent.hpp"
+
+#include <vector>
+
+namespace coapt {
+namespace {
+
+constexpr size_t kMostBorder = 1000;  // nodes: the time of a dense factor grows with their cube
+
+// The nodes that W couples: `start` has no zero in a free direction.
+std::vector<int> coupled_nodes(const SkewProduct& skew, const Vector& start) {
+  Vector coupled = Vector::Zero(start.size());
+  skew(start, coupled);
+  std::vector<int> nodes;
+  for (int node = 0; node < static_cast<int>(start.size()) / 3; ++node)
+    if ((coupled.segment<3>(3 * node).array() != 0).any()) nodes.push_back(node);
+  return nodes;
+}
+
+// W between these nodes. It is not given by its entries: it is applied to each coordinate.
+Eigen::MatrixXd part_of(const SkewProduct& skew, const std::vector<int>& nodes, Eigen::Index size) {
+  const auto count = static_cast<int>(nodes.size());
+  Eigen::MatrixXd part(3 * count, 3 * count);
+  Vector unit = Vector::Zero(size), product(size);
+  for (int column = 0; column < 3 * count; ++column) {
+    const int unknown = 3 * nodes[column / 3] + column % 3;
+    unit[unknown] = 1;
+    product.setZero();
+    skew(unit, product);
+    unit[unknown] = 0;
+    for (int k = 0; k < count; ++k) part.block<3, 1>(3 * k, column) = product.segment<3>(3 * nodes[k]);
+  }
+  return part;
+}
+
+// K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
+SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
+                           double shift) {
+  const Eigen::Index size = lower.cols();
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * static_cast<size_t>(lower.nonZeros()));
+  for (int column = 0; column < size; ++column)
+    for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
+      if (entry.row() < column) continue;
+      const double added = entry.row() == column ? shift : 0;
+      entries.emplace_back(entry.row(), column, entry.value() + added);
+      if (entry.row() > column) entries.emplace_back(column, entry.row(), entry.value());
+    }
+  Vector coupled = Vector::Zero(size), unit = coupled, product(size);
+  skew(start, coupled);
+  for (int column = 0; column < size; ++column) {
+    if (coupled[column] == 0) continue;
+    unit[column] = 1;
+    product.setZero();
+    skew(unit, product);
+    unit[column] = 0;
+    for (int row = 0; row < size; ++row)
+      if (product[row] != 0) entries.emplace_back(row, column, product[row]);
+  }
+  SparseMatrix whole(size, size);
+  whole.setFromTriplets(entries.begin(), entries.end());
+  return whole;
+}
+
+}  // namespace
+
+InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
+                               double shift)
+    : size_(lower.cols()) {
+  const std::vector<int> border = coupled_nodes(skew, start);
+  if (border.size() <= kMostBorder) {
+    SparseMatrix shifted = lower;
+    shifted.diagonal().array() += shift;
+    bordered_.emplace();
+    bordered_->analyse(shifted, border);
+    is_made_ = bordered_->factorise(shifted, part_of(skew, border, size_));
+    return;
+  }
+  sparse_.emplace();
+  sparse_->isSymmetric(true);
+  sparse_->setPivotThreshold(0);  // K + shift is positive definite, so that the diagonal gives the pivots
+  sparse_->compute(whole_tangent(lower, skew, start, shift));
+  is_made_ = sparse_->info() == Eigen::Success;
+}
+
+void InverseTangent::perform_op(const double* in, double* out) const {
+  in_ = Eigen::Map<const Vector>(in, size_);
+  if (sparse_)
+    out_ = sparse_->solve(in_);
+  else
+    bordered_->solve(in_, out_);
+  Eigen::Map<Vector>(out, size_) = out_;
+}
+
+}  // namespace coapt
