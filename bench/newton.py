@@ -22,10 +22,7 @@ def scene_of(coapt: str, shape: str, triangles: int, folder: pathlib.Path) -> pa
     subprocess.run([coapt, "generate", shape, "--triangles", str(triangles), "--contact", "none", "-o",
                     str(folder)], check=True,
                    stdout=subprocess.DEVNULL)
-    scene = folder / "scene.json"
-    if shape == "airbag":
-        scene.write_text(scene.read_text().replace("cst_stvk", "cst_tension_field"))
-    return scene
+    return folder / "scene.json"
 
 
 def best(coapt: str, scene: pathlib.Path, runs: int, *arguments: str) -> dict:

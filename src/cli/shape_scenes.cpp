@@ -94,7 +94,7 @@ Shape catenary_shape() {
 
 Shape airbag_shape() {
   return {"airbag",
-          "Quarter of one sheet of a square airbag, diagonal 1.2 m, 5 kPa (Contri & Schrefler 1988)",
+          "Quarter of one sheet of a square airbag that bears no compression, diagonal 1.2 m, 5 kPa (Contri & Schrefler 1988)",
           R"([
     { "nodes": { "plane": { "axis": "x", "at": "$SIDE" } }, "fix": ["z"] },
     { "nodes": { "plane": { "axis": "y", "at": "$SIDE" } }, "fix": ["z"] },
@@ -105,7 +105,7 @@ Shape airbag_shape() {
     { "nodes": { "nearest": [0, 1000, 0] }, "fix": ["x", "z"] }
   ])",
           R"([
-    { "type": "cst_stvk", "young": "588 MPa", "poisson": 0.4, "thickness": "0.6 mm" },
+    { "type": "cst_tension_field", "young": "588 MPa", "poisson": 0.4, "thickness": "0.6 mm" },
     { "type": "load_pressure", "value": "5 kPa", "model": "$MODEL" })",
           "volume",
           [](int triangles) { return square(kAirbagSide, triangles, CellPattern::Cross); }};

@@ -47,6 +47,28 @@ class CommandTest(CommandCase):
                 self.assertLessEqual(result["residual"], 1e-6)
                 self.assertLess(result["metrics"]["force_balance"], 1e-5)
 
+    def test_an_airbag_takes_as_many_iterations_on_a_checkerboard(self):
+        scene = self.generate("airbag", "--triangles", 900)
+        counts, heights = [], []
+        for _ in range(2):
+            self.assertEqual(coapt("solve", scene, "--no-report").returncode, 0)
+            counts.append(self.result()["iterations"])
+            heights.append(self.result()["metrics"]["max_displacement_mm"])
+            cells, side = 21, 600 / 2 ** 0.5
+            number = lambda i, j: i * (cells + 1) + j + 1
+            with (self.folder / "mesh.obj").open("w") as mesh:
+                for i in range(cells + 1):
+                    mesh.writelines(f"v {side * i / cells:.12g} {side * j / cells:.12g} 0\n" for j in range(cells + 1))
+                for i in range(cells):
+                    for j in range(cells):
+                        a, b, c, d = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+                        halves = [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
+                        mesh.writelines(f"f {p} {q} {r}\n" for p, q, r in halves)
+        self.assertLess(max(counts), 45)  # 142 and more where the sheet bears compression
+        self.assertLess(max(counts), 1.3 * min(counts))
+        self.assertAlmostEqual(heights[0], heights[1], delta=2)
+        self.assertAlmostEqual(heights[0], 216.3, delta=2)
+
     def test_writes_a_page_unless_nobody_wants_it(self):
         scene = self.generate("disc", "--triangles", 200)
         page = self.folder / "result" / "report.html"

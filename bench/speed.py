@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Time of solves against their floor and against another build, one row a case, as a Markdown table.
+
+    bench/speed.py [path of coapt] [--against OTHER] [--seeds N] [--largest TRIANGLES]
+
+Cases: the generated mitral valve with and without contact, by the method that a scene gets with no option, and the disc and the
+airbag. Valves are solved for the seeds 0 to N - 1 of their dimensions (default 3), each by both builds in turn, and every
+number is the median over the seeds. CPU s: of the solve with its certificate, to a residual of 1e-8, and of one thread. floor: iterations
+times one factorisation and one assembly of the Hessian, both timed in the same run, with those of coarser meshes. shares: of the
+time of the processor (`time.cpu_by_phase` of result.json), in percent. ratio: the time over that of OTHER, which may be the
+program of the last release.
+"""
+import argparse
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+from runs import print_header, solved
+
+CASES = [("mitral", "barrier", size) for size in (630, 2500, 10000, 40000, 160000)]
+CASES += [("mitral", "none", size) for size in (630, 2500, 10000, 40000)]
+CASES += [("disc", "none", size) for size in (10000, 40000)] + [("airbag", "none", size) for size in (2500, 10000)]
+PHASES = {"factor": ("factorise", "analyse"), "gradient": ("gradient", "value"), "Hessian": ("hessian",), "solves": ("direction",),
+          "collisions": ("collisions",), "certificate": ("certificate",), "coarser": ("coarse_levels",)}
+
+
+def generated(coapt: str, shape: str, contact: str, triangles: int, seed: int, folder: pathlib.Path) -> pathlib.Path:
+    options = ["--triangles", str(triangles), "--contact", contact, "-o", str(folder)]
+    options += ["--seed", str(seed)] if shape == "mitral" else []
+    subprocess.run([coapt, "generate", shape, *options], check=True, stdout=subprocess.DEVNULL)
+    return folder / "scene.json"
+
+
+def figures(result: dict) -> dict[str, float]:
+    time, count = result["time"], result["evaluations"]
+    phases = time.get("cpu_by_phase", time["by_phase"])  # builds before the former have the wall time alone
+    unit = phases["factorise"] / max(1, count["factorisations"]) + phases["hessian"] / max(1, count["hessian"])
+    shares = {name: 100 * sum(phases.get(part, 0) for part in parts) / time["cpu_s"] for name, parts in PHASES.items()}
+    return {"iterations": result["iterations"], "factorisations": count["factorisations"], "cpu": time["cpu_s"],
+            "floor": result["iterations"] * unit, **shares}
+
+
+def medians(rows: list[dict[str, float]]) -> dict[str, float]:
+    return {name: statistics.median(row[name] for row in rows) for name in rows[0]}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("coapt", nargs="?", default="build/release/bin/coapt")
+    parser.add_argument("--against")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--largest", type=int, default=40000)
+    options = parser.parse_args()
+    print_header("case", "triangles", "seeds", "converged", "iterations", "factorisations", "CPU s", "floor s", *PHASES, "ratio")
+    for shape, contact, triangles in [case for case in CASES if case[2] <= options.largest]:
+        seeds = options.seeds if shape == "mitral" else 1
+        ours, theirs, converged = [], [], 0
+        for seed in range(seeds):
+            with tempfile.TemporaryDirectory() as folder:
+                scene = generated(options.coapt, shape, contact, triangles, seed, pathlib.Path(folder))
+                for coapt, rows in [(options.coapt, ours)] + ([(options.against, theirs)] if options.against else []):
+                    result = solved(coapt, scene, "--tolerance", "1e-8", "--max-seconds", "900", "--no-report")
+                    rows.append(figures(result))
+                    converged += coapt == options.coapt and result["converged"]
+        row = medians(ours)
+        name = shape + (", contact" if contact == "barrier" else "")
+        shares = " | ".join(f"{row[phase]:.0f}" for phase in PHASES)
+        ratio = f"{row['cpu'] / medians(theirs)['cpu']:.2f}" if theirs else ""
+        print(f"| {name} | {triangles} | {seeds} | {converged} | {row['iterations']:.0f} | {row['factorisations']:.0f} | "
+              f"{row['cpu']:.3f} | {row['floor']:.3f} | {shares} | {ratio} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
