@@ -43,9 +43,12 @@ endif()
 if("ZLIB" IN_LIST coapt_finds_core)
   list(APPEND coapt_core_depends zlib1g-dev)
 endif()
+if("METIS" IN_LIST coapt_finds_core)
+  list(APPEND coapt_core_depends libmetis-dev)
+endif()
 coapt_debian_package(core libcoapt-dev libdevel "The library with its headers, for CMake and pkg-config"
                      LICENCE "BSD-3-Clause" DEPENDS ${coapt_core_depends}
-                     LINKED NANOFLANN JSON PUGIXML ZLIB REPORT UPLOT SPECTRA)
+                     LINKED NANOFLANN JSON PUGIXML ZLIB REPORT UPLOT SPECTRA METIS)
 
 set(coapt_depends_cgal libcgal-dev)
 set(coapt_depends_cholmod libsuitesparse-dev libopenblas-dev)

@@ -20,6 +20,10 @@ if(coapt_type STREQUAL "STATIC_LIBRARY")
     list(APPEND coapt_finds_core ZLIB)
     list(APPEND coapt_requires_core zlib)
   endif()
+  if(COAPT_HAS_METIS)
+    list(APPEND coapt_finds_core METIS)
+    set(coapt_libs_core "-lmetis")
+  endif()
   set(coapt_finds_cgal CGAL)
   set(coapt_libs_cgal "-lmpfr -lgmp")
   # OpenBLAS before CHOLMOD, see src/optim/cholmod.
@@ -90,7 +94,8 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/coaptConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/coaptConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/coaptConfig.cmake ${PROJECT_BINARY_DIR}/coaptConfigVersion.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindOpenBLAS.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindMETIS.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindOpenBLAS.cmake
         DESTINATION ${coapt_config_dir} COMPONENT core)
 if(TARGET coapt_command)
   install(TARGETS coapt_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)

@@ -8,11 +8,14 @@ import sys
 
 RUNTIME = {"libstdc++", "libm", "libgcc_s", "libc", "libpthread", "libdl", "ld-linux-x86-64", "ld-linux-aarch64"}
 COMPONENTS = {"PUGIXML": {"libpugixml"}, "ZLIB": {"libz"}, "NLOPT": {"libnlopt"}, "OPENBLAS": {"libopenblas"},
-              "CHOLMOD": {"libcholmod"}, "CGAL": {"libgmp", "libmpfr"}}
+              "CHOLMOD": {"libcholmod"}, "CGAL": {"libgmp", "libmpfr"}, "METIS": {"libmetis"}}
 # Debian's Ceres names all that it was built with; the linker keeps what is used.
 CERES = {"libceres", "libglog", "libgflags", "libspqr", "libcholmod", "libccolamd", "libcamd", "libcolamd", "libamd",
          "libcxsparse", "libsuitesparseconfig", "liblapack", "libblas", "libf77blas", "libatlas", "libunwind", "libtbb",
          "libmetis"}
+
+
+ITK = re.compile(r"lib(ITK|itk|gdcm)")  # one library for each of its modules
 
 
 def needed(program: str) -> set[str]:
@@ -25,6 +28,8 @@ def main() -> int:
     found, allowed = needed(program), set(RUNTIME)
     for component in present:
         allowed |= CERES if component == "CERES" else COMPONENTS.get(component, set())
+    if "ITK" in present:
+        allowed |= {name for name in found if ITK.match(name)}
     print(f"{program} needs {', '.join(sorted(found))}")
     if "libstdc++" not in found:
         print("not a program of C++ that was linked dynamically: nothing is shown by it")
