@@ -52,7 +52,7 @@ struct Tracked {
   explicit Tracked(const Solved& valve)
       : objective(valve.x, valve.scene->fixed, valve.scene->terms()),
         equilibrium(objective, objective.unknowns(valve.x),
-                    {.factorisation = best_factorisation(), .tolerance = kTolerance}) {
+                    {.factorisation = make_multifrontal_factorisation, .tolerance = kTolerance}) {
     EnergyTerm& chords = term("cable");
     equilibrium.add(make_line_lengths("lengths", chords, single_lines(chords), LengthMeasure::Length));
   }
