@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace coapt {
@@ -83,6 +84,29 @@ void measure_yield(const Vector& ratios, std::optional<double>& greatest, std::o
   beyond = (ratios.array() > 1).count();
 }
 
+// What `share` of the area does not exceed, each facet counting with its own.
+double area_percentile(const Vector& values, const Vector& areas, double share) {
+  std::vector<int> order(static_cast<size_t>(values.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return values[a] < values[b]; });
+  const double wanted = share * areas.sum();
+  double below = 0;
+  for (const int facet : order)
+    if ((below += areas[facet]) >= wanted) return values[facet];
+  return values[order.back()];
+}
+
+void measure_strains(const Model& model, const Fields& fields, Metrics& metrics) {
+  const Vector strains = fields.principal_strain.row(0);
+  metrics.max_principal_strain = strains.maxCoeff();
+  if (!strains.allFinite()) return;
+  Vector areas(strains.size());
+  for (int t = 0; t < areas.size(); ++t)
+    areas[t] = 0.5 * area_vector(model.X, model.mesh.triangles.col(t)).norm();
+  metrics.p95_principal_strain = area_percentile(strains, areas, 0.95);
+  metrics.p99_principal_strain = area_percentile(strains, areas, 0.99);
+}
+
 std::optional<double> counted(std::optional<long> value) {
   return value ? std::optional<double>(static_cast<double>(*value)) : std::nullopt;
 }
@@ -92,6 +116,10 @@ std::vector<MetricRow> strength_rows(const Metrics& m) {
   return {
       {"max_principal_strain", "", "greatest principal engineering strain, stretch - 1", false,
        m.max_principal_strain},
+      {"p95_principal_strain", "", "the same, not exceeded on 95 % of the area", false,
+       m.p95_principal_strain},
+      {"p99_principal_strain", "", "the same, not exceeded on 99 % of the area", false,
+       m.p99_principal_strain},
       {"max_cauchy_stress_kpa", "kPa", "greatest principal Cauchy stress of the membrane", false,
        m.max_cauchy_stress_kpa},
       {"max_von_mises_stress_kpa", "kPa", "greatest von Mises stress in the plane of the membrane", false,
@@ -127,7 +155,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
   const bool is_finite = fields.x.allFinite();
   if (triangles.cols() > 0 && is_finite)
     metrics.intersections = std::ssize(membrane_intersections(fields.x, model, checker));
-  if (triangles.cols() > 0) metrics.max_principal_strain = fields.principal_strain.row(0).maxCoeff();
+  if (triangles.cols() > 0) measure_strains(model, fields, metrics);
   measure_lines(model, fields, metrics);
   measure_stress(fields, metrics);
   measure_regimes(model, fields, metrics);

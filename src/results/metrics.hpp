@@ -31,8 +31,9 @@ struct Metrics {
   double leaflet_area_change_mm2 = 0;  // of the closed mesh against the reference
   std::optional<double> taut_area_mm2, wrinkled_area_mm2, slack_area_mm2;  // of the reference mesh, by regime
   std::optional<double> max_principal_strain;                              // stretch - 1
-  std::optional<double> max_cauchy_stress_kpa;                             // greatest principal value
-  std::optional<double> max_von_mises_stress_kpa;  // of the Cauchy stress, in the plane
+  std::optional<double> p95_principal_strain, p99_principal_strain;  // not exceeded on that share of the area
+  std::optional<double> max_cauchy_stress_kpa;                       // greatest principal value
+  std::optional<double> max_von_mises_stress_kpa;                    // of the Cauchy stress, in the plane
   std::optional<double> max_chord_force_n;
   std::optional<double> max_chord_stress_kpa;  // Cauchy, of those with a known cross-section
   std::optional<double> max_chord_strain;      // length over rest length, less 1

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <tuple>
 
 namespace coapt {
 namespace {
@@ -159,6 +160,26 @@ TEST(Metrics, CountFacetsThatPassThroughEachOther) {
   append(mesh, upright);
   const Model model = model_of(std::move(mesh));
   EXPECT_GT(measure_at(model, model.X).intersections, 10);
+}
+
+// 93 % of the area stretched by a tenth, 5 % by a fifth, 2 % by a half: in facets of very unequal size, the
+// small ones far more.
+TEST(Metrics, WeighTheStrainsThatAShareOfTheAreaDoesNotExceed) {
+  TriangleMesh mesh;
+  std::vector<double> stretches;
+  for (const auto& [area, triangles, stretch] :
+       {std::tuple{0.93, 2, 1.1}, std::tuple{0.05, 200, 1.2}, std::tuple{0.02, 800, 1.5}}) {
+    const TriangleMesh part = square(std::sqrt(area), triangles);
+    append(mesh, part);
+    stretches.resize(static_cast<size_t>(mesh.vertices.cols()), stretch);
+  }
+  const Model model = model_of(std::move(mesh));
+  Points x = model.X;
+  for (int node = 0; node < x.cols(); ++node) x(0, node) *= stretches[static_cast<size_t>(node)];
+  const Metrics metrics = measure_at(model, x);
+  EXPECT_NEAR(*metrics.max_principal_strain, 0.5, 1e-12);
+  EXPECT_NEAR(*metrics.p99_principal_strain, 0.5, 1e-12);
+  EXPECT_NEAR(*metrics.p95_principal_strain, 0.2, 1e-12);
 }
 
 // All triangles, E = 1000, nu = 0.3, h = 1.

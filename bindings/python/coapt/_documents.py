@@ -34,6 +34,8 @@ class Metrics(TypedDict):
     wrinkled_area_mm2: float | None  #: reference area of the membrane in tension one way [mm2]
     slack_area_mm2: float | None  #: reference area of the membrane without tension [mm2]
     max_principal_strain: float | None  #: greatest principal engineering strain, stretch - 1
+    p95_principal_strain: float | None  #: the same, not exceeded on 95 % of the area
+    p99_principal_strain: float | None  #: the same, not exceeded on 99 % of the area
     max_cauchy_stress_kpa: float | None  #: greatest principal Cauchy stress of the membrane [kPa]
     max_von_mises_stress_kpa: float | None  #: greatest von Mises stress in the plane of the membrane [kPa]
     max_chord_force_n: float | None  #: greatest tension of a chord or cable [N]

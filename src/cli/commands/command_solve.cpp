@@ -118,6 +118,7 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
     std::printf("\n");
   }
   print("greatest strain", m.max_principal_strain, "", "%.4f", "max_principal_strain");
+  print("strain on 95 % below", m.p95_principal_strain, "", "%.4f", "p95_principal_strain");
   print("greatest chord force", m.max_chord_force_n, "N", "%.4g", "max_chord_force_n");
   print("greatest chord strain", m.max_chord_strain, "", "%.4f", "max_chord_strain");
   print("greatest displacement", m.max_displacement_mm, "mm", "%.4g", "max_displacement_mm");
