@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+
+// The whole of Eigen before ITK, which brings an older one with it that skips what is there already.
+#include <Eigen/Dense>
+
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>

@@ -6,6 +6,10 @@
 #include "image/detail/stated_geometry.hpp"
 
 #include <algorithm>
+
+// The whole of Eigen before ITK, which brings an older one with it that skips what is there already.
+#include <Eigen/Dense>
+
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaDataObject.h>
