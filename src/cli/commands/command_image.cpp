@@ -1,0 +1,164 @@
+#include "cli/command_line.hpp"
+#include "cli/commands.hpp"
+#include "cli/length_argument.hpp"
+#include "core/error.hpp"
+#include "core/number_text.hpp"
+#include "formats/json/json_text.hpp"
+#include "image/read_volume.hpp"
+#include "image/write_volume.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coapt::cli {
+namespace {
+
+struct ImageArguments {
+  std::string file, output, kind;
+  std::optional<int> frame;
+  std::vector<std::string> spacing;  // with units: one for all axes, or three
+  bool json = false;
+};
+
+VolumeReadOptions read_options(const ImageArguments& arguments) {
+  VolumeReadOptions options{arguments.frame, {}};
+  if (arguments.spacing.empty()) return options;
+  if (arguments.spacing.size() == 2) throw InputError("--spacing: give one length for all axes, or three");
+  Vec3 spacing;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& text = arguments.spacing[std::min(axis, arguments.spacing.size() - 1)];
+    spacing[static_cast<Eigen::Index>(axis)] = length_argument("--spacing", text);
+  }
+  options.spacing = spacing;
+  return options;
+}
+
+// The box around the centres of all voxels [mm].
+struct CentreBox {
+  Vec3 low, high;
+};
+
+CentreBox centre_box(const Volume& volume) {
+  const Vec3 last(volume.size[0] - 1, volume.size[1] - 1, volume.size[2] - 1);
+  CentreBox box{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at =
+        position_of(volume, last.cwiseProduct(Vec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1)));
+    box.low = box.low.cwiseMin(at);
+    box.high = box.high.cwiseMax(at);
+  }
+  return box;
+}
+
+nlohmann::ordered_json triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::ordered_json image_json(const std::string& path, const VolumeFile& file) {
+  const Volume& volume = file.volume;
+  const CentreBox box = centre_box(volume);
+  nlohmann::ordered_json json = {{"file", path},
+                                 {"format", file.format},
+                                 {"voxel_kind", voxel_kind_name(file.kind)},
+                                 {"size", volume.size},
+                                 {"frames", file.frames},
+                                 {"spacing_mm", nullptr},
+                                 {"origin_mm", triple(volume.origin)},
+                                 {"direction", nlohmann::ordered_json::array()},
+                                 {"box_mm", {{"low", triple(box.low)}, {"high", triple(box.high)}}},
+                                 {"range", nullptr},
+                                 {"warnings", file.warnings}};
+  if (file.states_spacing) json["spacing_mm"] = triple(volume.spacing);
+  for (int axis = 0; axis < 3; ++axis) json["direction"].push_back(triple(volume.direction.col(axis)));
+  if (!volume.values.empty()) {
+    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+    json["range"] = {*low, *high};
+  }
+  return json;
+}
+
+std::string triple_text(const Vec3& v) {
+  return number_text(v.x(), 6) + ", " + number_text(v.y(), 6) + ", " + number_text(v.z(), 6);
+}
+
+void print_image(const std::string& path, const VolumeFile& file) {
+  const Volume& volume = file.volume;
+  std::printf("%s: %s, %d x %d x %d voxels of %s", path.c_str(), file.format.c_str(), volume.size[0],
+              volume.size[1], volume.size[2], voxel_kind_name(file.kind).c_str());
+  if (file.frames > 1) std::printf(", %d frames", file.frames);
+  std::printf("\n  spacing     %s\n",
+              file.states_spacing ? (triple_text(volume.spacing) + " mm").c_str() : "not stated");
+  std::printf("  origin      %s mm (LPS, centre of the first voxel)\n", triple_text(volume.origin).c_str());
+  for (int axis = 0; axis < 3; ++axis)
+    std::printf("  axis %c      %s\n", "ijk"[axis], triple_text(volume.direction.col(axis)).c_str());
+  const CentreBox box = centre_box(volume);
+  std::printf("  lies from   %s to %s mm\n", triple_text(box.low).c_str(), triple_text(box.high).c_str());
+  if (!volume.values.empty()) {
+    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+    std::printf("  range       %s to %s\n", number_text(*low, 6).c_str(), number_text(*high, 6).c_str());
+  }
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+}
+
+void show_image(const ImageArguments& arguments) {
+  const VolumeReadOptions options = read_options(arguments);
+  VolumeFile file = read_volume_header(arguments.file, options);
+  // Of a series without a frame chosen, and where lengths are not known, the header says all that can be
+  // said.
+  if (file.states_spacing && (file.frames == 1 || arguments.frame))
+    file = read_volume(arguments.file, options);
+  if (arguments.json)
+    std::printf("%s\n", image_json(arguments.file, file).dump(2).c_str());
+  else
+    print_image(arguments.file, file);
+}
+
+void convert_image(const ImageArguments& arguments) {
+  const VolumeFile file = read_volume(arguments.file, read_options(arguments));
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+  const VoxelKind kind = arguments.kind.empty() ? file.kind : voxel_kind(arguments.kind).value();
+  write_volume(arguments.output, file.volume, kind);
+  std::printf("written to %s (%s)\n", arguments.output.c_str(), voxel_kind_name(kind).c_str());
+}
+
+void add_reading_options(CLI::App& command, ImageArguments& arguments) {
+  command
+      .add_option("FILE", arguments.file,
+                  "Volume: .nrrd, .seq.nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd, or a folder "
+                  "with a DICOM series")
+      ->required();
+  command.add_option("--frame", arguments.frame, "Frame of a time series, from 0");
+  command
+      .add_option("--spacing", arguments.spacing,
+                  "Edge lengths of the voxels in place of the file's, one or three: 0.5mm")
+      ->expected(1, 3);
+}
+
+}  // namespace
+
+void add_image_command(CLI::App& app, int& /*exit_code*/) {
+  CLI::App* command =
+      app.add_subcommand("image", "Say what a volume image holds, or write it in another format");
+  command->require_subcommand(1);
+  const auto arguments = std::make_shared<ImageArguments>();
+  CLI::App* info = command->add_subcommand(
+      "info", "Size, spacing, origin, direction, range, kind of voxel, frames, place");
+  add_reading_options(*info, *arguments);
+  info->add_flag("--json", arguments->json, "As JSON");
+  info->callback([arguments] { show_image(*arguments); });
+
+  CLI::App* convert =
+      command->add_subcommand("convert", "Write a volume, or one frame of a series, to another file");
+  add_reading_options(*convert, *arguments);
+  convert->add_option("-o,--output", arguments->output, "File to write: .nrrd, .nii, .nii.gz or .mha")
+      ->required();
+  convert
+      ->add_option("--kind", arguments->kind,
+                   "Kind of its voxels (default: as in FILE); whole numbers are rounded")
+      ->check(CLI::IsMember({"uint8", "int16", "uint16", "float32"}));
+  convert->callback([arguments] { convert_image(*arguments); });
+}
+
+}  // namespace coapt::cli
