@@ -33,6 +33,7 @@ TriangleMesh sheet(int cells, double height, double shift) {
 TriangleMesh mesh_of(Scene scene, int triangles) {
   if (scene == Scene::Valve) {
     MitralOptions options;
+    options.preset = MitralPreset::Benchmark;
     options.triangles = triangles;
     return mitral_valve(options).leaflets;
   }

@@ -38,7 +38,7 @@ def main() -> None:
         if triangles > options.largest:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([options.coapt, "generate", "mitral", "--triangles", str(triangles), "--contact",
+            subprocess.run([options.coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", str(triangles), "--contact",
                             contact, "--pressure", pressure, "--membrane", "stvk", "-o", folder], check=True, stdout=subprocess.DEVNULL)
             baseline = None
             for solver in solvers:

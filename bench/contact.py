@@ -31,7 +31,7 @@ def best(coapt: str, scene: pathlib.Path, runs: int, seconds: float) -> dict:
 
 
 def generated(coapt: str, folder: pathlib.Path, triangles: int, seed: int, contact: str) -> pathlib.Path:
-    subprocess.run([coapt, "generate", "mitral", "--triangles", str(triangles), "--seed", str(seed), "--contact",
+    subprocess.run([coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", str(triangles), "--seed", str(seed), "--contact",
                     contact, "-o", str(folder)], check=True, stdout=subprocess.DEVNULL)
     return folder / "scene.json"
 

@@ -27,7 +27,7 @@ METHODS = {
 
 
 def scene_of(coapt: str, folder: pathlib.Path, model: str, triangles: int, contact: str) -> dict:
-    subprocess.run([coapt, "generate", "mitral", "--model", model, "--triangles", str(triangles), "--contact", contact,
+    subprocess.run([coapt, "generate", "mitral", "--preset", "benchmark", "--model", model, "--triangles", str(triangles), "--contact", contact,
                     "-o", str(folder)], check=True, stdout=subprocess.DEVNULL)
     text = (folder / "scene.json").read_text()
     return json.loads("\n".join(line.split("//")[0] for line in text.splitlines()))

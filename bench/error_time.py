@@ -20,10 +20,10 @@ from runs import print_header
 METHODS = "newton,lbfgs,bfgs,ceres,nlopt,dynamic,xpbd,mass-spring"
 CASES = {
     "generated valve, 630 triangles, no contact": (
-        ["generate", "mitral", "--triangles", "625", "--contact", "none"],
+        ["generate", "mitral", "--preset", "benchmark", "--triangles", "625", "--contact", "none"],
         ["--methods", METHODS, "--repeats", "1", "--max-seconds", "40"]),
     "generated valve, 630 triangles, contact": (
-        ["generate", "mitral", "--triangles", "625"],
+        ["generate", "mitral", "--preset", "benchmark", "--triangles", "625"],
         ["--methods", METHODS, "--repeats", "1", "--max-seconds", "60", "--truth-seconds", "600"]),
     "human tricuspid valve, coarse": (
         ["import", "valve_coarse.json"],

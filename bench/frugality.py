@@ -160,7 +160,7 @@ def main() -> int:
         scene = pathlib.Path(folder) / "scene.json"
         starts = {name: instructions([program, "--version"], scene.parent)[0] if options.instructions else 0
                   for name, program in programs.items()}
-        subprocess.run([options.full, "generate", "mitral", "--triangles", str(options.triangles), "-o", folder],
+        subprocess.run([options.full, "generate", "mitral", "--preset", "benchmark", "--triangles", str(options.triangles), "-o", folder],
                        check=True, stdout=subprocess.DEVNULL)
         known = subprocess.run([options.full, "solve", "--help"], capture_output=True, text=True, check=True).stdout
         for case in cases(known):

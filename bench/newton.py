@@ -19,7 +19,8 @@ OTHERS = [("disc", 10086), ("disc", 40344), ("airbag", 2450), ("airbag", 10082)]
 
 
 def scene_of(coapt: str, shape: str, triangles: int, folder: pathlib.Path) -> pathlib.Path:
-    subprocess.run([coapt, "generate", shape, "--triangles", str(triangles), "--contact", "none", "-o",
+    preset = ["--preset", "benchmark"] if shape == "mitral" else []
+    subprocess.run([coapt, "generate", shape, *preset, "--triangles", str(triangles), "--contact", "none", "-o",
                     str(folder)], check=True,
                    stdout=subprocess.DEVNULL)
     return folder / "scene.json"

@@ -176,7 +176,7 @@ def main() -> None:
                 continue
             name = valve.removesuffix(".json").replace("/valve_", " ")
             made.append((name, ["import", str(arguments.data / valve)]))
-        made.append(("generated mitral", ["generate", "mitral"]))
+        made.append(("generated mitral", ["generate", "mitral", "--preset", "benchmark"]))
         for kind in ("mitral", "tricuspid"):
             for seed in range(1, arguments.seeds + 1):
                 made.append((f"rough {kind} {seed}",

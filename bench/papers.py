@@ -33,7 +33,7 @@ class Bench:
 
     def scene(self, triangles: int, *arguments: str) -> dict:
         """The generated scene; its files lie in the folder."""
-        subprocess.run([self.options.coapt, "generate", "mitral", "--model", self.model, "--triangles", str(triangles),
+        subprocess.run([self.options.coapt, "generate", "mitral", "--preset", "benchmark", "--model", self.model, "--triangles", str(triangles),
                         *arguments, "-o", str(self.folder)], check=True, stdout=subprocess.DEVNULL)
         text = (self.folder / "scene.json").read_text()
         return json.loads("\n".join(line.split("//")[0] for line in text.splitlines()))

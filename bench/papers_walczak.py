@@ -70,7 +70,7 @@ def called(coapt: str, *arguments: object) -> None:
 
 def valve(coapt: str, folder: pathlib.Path, faces: int, seed: int) -> pathlib.Path:
     """A generated valve with chords by the paper's rule, as a scene of the paper's model."""
-    called(coapt, "generate", "mitral", "--triangles", faces, "--seed", seed, "-o", folder / "shape")
+    called(coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", faces, "--seed", seed, "-o", folder / "shape")
     called(coapt, "chords", folder / "shape/valve.json", *CHORDS, "-o", folder / "chords/valve.json")
     called(coapt, "import", folder / "chords/valve.json", "--model", "walczak-2019", "--no-repair", "-o", folder / "scene")
     return folder / "scene/scene.json"

@@ -33,7 +33,7 @@ def main() -> None:
                  "outside / solver")
     for triangles in (625, 2500):
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([options.coapt, "generate", "mitral", "--triangles", str(triangles), "-o", folder], check=True,
+            subprocess.run([options.coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", str(triangles), "-o", folder], check=True,
                            stdout=subprocess.DEVNULL)
             scene = pathlib.Path(folder) / "scene.json"
             command, plain, seen = [], [], []

@@ -98,7 +98,7 @@ def rms(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def measured(coapt: str, name: str, triangles: int, seed: int, folder: pathlib.Path) -> dict[str, float]:
-    subprocess.run([coapt, "generate", "mitral", "--triangles", str(triangles), "--seed", str(seed), "-o", str(folder)], check=True,
+    subprocess.run([coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", str(triangles), "--seed", str(seed), "-o", str(folder)], check=True,
                    capture_output=True)
     points, faces = read_obj(folder / "leaflets.obj")
     random = np.random.default_rng(1000 * triangles + seed)

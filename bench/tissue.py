@@ -38,7 +38,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         for size in (size for size in SIZES if size <= arguments.largest):
             folder = pathlib.Path(name) / str(size)
-            subprocess.run([arguments.coapt, "generate", "mitral", "--triangles", str(size), "-o", str(folder)],
+            subprocess.run([arguments.coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", str(size), "-o", str(folder)],
                            check=True, stdout=subprocess.DEVNULL)
             text, linear = (folder / "scene.json").read_text(), None
             for law, keys in LAWS.items():

@@ -80,7 +80,7 @@ def spread(values: list[float], form: str) -> str:
 def print_case(coapt: str, folder: pathlib.Path, case: tuple[int, str, float, int],
                options: argparse.Namespace) -> None:
     triangles, what, noise, targets = case
-    called(coapt, "generate", "mitral", "--triangles", triangles, "-o", folder)
+    called(coapt, "generate", "mitral", "--preset", "benchmark", "--triangles", triangles, "-o", folder)
     chords = json.loads((folder / "valve.json").read_text())["chords"]
     chosen = [k for k, chord in enumerate(chords) if what != "trunks" or "papillary" in chord["from"]]
     tunings, errors, ratios = [], [], []

@@ -10,6 +10,7 @@ namespace coapt::bench {
 struct ValveSheet {
   explicit ValveSheet(int wanted) {
     MitralOptions options;
+    options.preset = MitralPreset::Benchmark;
     options.triangles = wanted;
     const Valve valve = mitral_valve(options);
     X = valve.leaflets.vertices;

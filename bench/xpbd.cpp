@@ -18,7 +18,7 @@ constexpr int kSteps = 200;
 
 struct ClosingValve {
   explicit ClosingValve(int triangles, bool has_contact) {
-    const Valve valve = mitral_valve({.triangles = triangles});
+    const Valve valve = mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark});
     const ChordNetwork& network = valve.chords;
     const int first_tip = valve.leaflets.vertex_count(),
               first_junction = first_tip + static_cast<int>(network.papillary.cols());

@@ -60,8 +60,9 @@ std::vector<std::string> method_names() {
   return names;
 }
 
-void generate_mitral(const std::string& folder, int triangles, unsigned seed) {
-  write_valve_scene(mitral_valve({.triangles = triangles, .seed = seed}), folder);
+void generate_mitral(const std::string& folder, int triangles, unsigned seed, const std::string& preset) {
+  write_valve_scene(mitral_valve({.triangles = triangles, .seed = seed, .preset = mitral_preset(preset)}),
+                    folder);
 }
 
 }  // namespace
@@ -70,7 +71,8 @@ void define_scene(py::module_& module) {
   define_input(module);
   define_solution(module);
   module.def("generate_mitral", &generate_mitral, py::kw_only(), py::arg("folder"), py::arg("triangles"),
-             py::arg("seed"), "Writes the generated mitral valve with a scene into a folder.");
+             py::arg("seed"), py::arg("preset"),
+             "Writes the generated mitral valve with a scene into a folder.");
   module.def("methods", &method_names, "Names of the solvers of this build.");
   module.def("scene_schema", &json_schema, "JSON Schema of the scene file, as text.");
   module.def("run", &run, py::arg("input"), py::kw_only(), py::arg("callback"), py::arg("solver"),

@@ -15,7 +15,7 @@ from matplotlib import pyplot
 import coapt
 
 folder = pathlib.Path(tempfile.mkdtemp())
-coapt.generate_mitral(folder, triangles=600)
+coapt.generate_mitral(folder, triangles=600, preset="benchmark")
 scene = {
     "mesh": {"file": folder / "leaflets.obj", "sets": folder / "valve.json"},
     "boundary": [

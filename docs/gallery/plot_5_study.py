@@ -16,7 +16,7 @@ from matplotlib import pyplot
 import coapt
 
 folder = pathlib.Path(tempfile.mkdtemp())
-eq = coapt.Equilibrium(coapt.generate_mitral(folder, triangles=600), ["chords.length"])
+eq = coapt.Equilibrium(coapt.generate_mitral(folder, triangles=600, preset="benchmark"), ["chords.length"])
 first = eq.solve()
 print(first.message)
 eq

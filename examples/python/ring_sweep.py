@@ -6,7 +6,7 @@ from matplotlib import pyplot
 import coapt
 from coapt import metrics
 
-scene = coapt.generate_mitral("valve", triangles=200)
+scene = coapt.generate_mitral("valve", triangles=200, preset="benchmark")
 eq = coapt.Equilibrium(scene, ["annulus.ring"], tol=1e-10)
 assert eq.solve().success
 ring = eq.x[eq.sets["annulus"]]

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 import coapt
 from coapt import metrics
 
-scene = coapt.generate_mitral("valve", triangles=200)
+scene = coapt.generate_mitral("valve", triangles=200, preset="benchmark")
 imaged = coapt.Equilibrium(scene, ["chords.lengths"])
 first = imaged["chords.lengths"]
 

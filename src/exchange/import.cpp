@@ -76,8 +76,7 @@ std::string pressure_text(const Valve& valve, const ImportOptions& options) {
   return exact_text(valve.pressure) + " MPa";
 }
 
-// The line that a field load points to: the commissures, or the longest chord of the annulus from its
-// first vertex, which needs no name.
+// What a field load points to: the commissures, or the longest chord of the annulus from its first vertex.
 std::string line_set(const Valve& valve) { return valve.commissures.size() >= 2 ? "commissures" : "annulus"; }
 
 std::string load_text(const Valve& valve, const ImportOptions& options) {
@@ -194,8 +193,8 @@ bool has_compression(const TermType& type) {
 }
 
 // Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
-// are springs. A law that a valve JSON states as a term stays what it says, but where the
-// options say that leaflets resist compression it resists too.
+// are springs. A law that a valve JSON states as a term stays what it says, or resists where the options say
+// so.
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
   const TermType* type = find_term_type(law.type);
   if (type == nullptr) return;
@@ -245,8 +244,7 @@ void take_moduli(const ImportOptions& options, Valve& valve) {
   if (!options.chord_young.empty()) valve.cables.clear();
 }
 
-// Gives laws of membranes the thickness that the file does not state. True where there was one to give, also
-// to leaflets without a law.
+// Gives membranes the thickness that the file does not state. True where one, with a law or none, lacked it.
 bool complete_thickness(const ImportOptions& options, Valve& valve) {
   if (valve.thickness > 0) return false;
   bool is_missing = valve.leaflets.region_names.empty();
@@ -276,7 +274,7 @@ Valve read_any(const std::filesystem::path& file, ImportOptions& options,
       options.contact = "none";
       warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
     }
-    for (auto& [region, law] : model.valve.membranes) take_membrane_option(options, false, law);
+    apply_membrane_option(options, model.valve);
     return std::move(model.valve);
   }
   if (formats::lower_extension(file) != ".json") return valve_of_mesh(file, warnings);
@@ -310,8 +308,7 @@ void complete_valve(const std::string& file, const ImportOptions& options, Valve
     warnings.push_back(file + ": states no pressure; the scene has " + kUsualPressure + ".");
 }
 
-// What closes a valve presses on the side that the normals point to; the sign of a number would say
-// otherwise, or nothing.
+// What closes a valve presses on the side that the normals point to, whatever the sign of a number.
 void refuse_negative_pressure(const std::string& file, const ImportOptions& options, const Valve& valve) {
   if (!(valve.pressure < 0) || !options.pressure.empty()) return;
   throw InputError(file + ": pressure.value: is negative (" + exact_text(valve.pressure) +
@@ -349,6 +346,10 @@ std::optional<LinearLeaflets> linear_leaflets(const std::string& name) {
   if (name == "stvk") return LinearLeaflets::ResistsCompression;
   if (name == "spring") return LinearLeaflets::Springs;
   return std::nullopt;
+}
+
+void apply_membrane_option(const ImportOptions& options, Valve& valve) {
+  for (auto& [region, law] : valve.membranes) take_membrane_option(options, false, law);
 }
 
 void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,

@@ -46,6 +46,10 @@ struct ImportOptions {
   std::string notes = "";          // README.md beside the scene
 };
 
+// The laws of a valve that other sheets than those of the options were chosen for: linear ones become those
+// of options.membrane, others resist compression where it says so and they can.
+void apply_membrane_option(const ImportOptions& options, Valve& valve);
+
 // Reads a valve JSON with the meshes beside it, a finite-element model (.inp, .feb) or a mesh, and writes the
 // folder. Returns warnings, whole sentences. Of a mesh the rim nearest to annulus_closed, or else the
 // longest, is the annulus; its vertices go to the points of the curve at the same part of the length.

@@ -82,9 +82,12 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   valve.annulus = annulus->second;
   valve.chords = joined_networks(geometry);
   valve.pressure = model.applied_pressure;
-  for (const MembraneProperties& membrane : model.membrane)
+  double greatest_thickness = 0;
+  for (const MembraneProperties& membrane : model.membrane) {
+    greatest_thickness = std::max(greatest_thickness, membrane.thickness);
     if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))
       valve.thickness = membrane.thickness;
+  }
   std::vector<std::string> doubts;
   const auto add = [&](const std::string& place, const std::vector<std::string>& list) {
     for (const std::string& doubt : list) doubts.push_back(place + ": " + doubt);
@@ -94,7 +97,11 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
     add(file, chord_doubts(valve, detail::chord_limits(scene), names_repeated));
     if (geometry.networks.empty()) find_unused_chords(scene, doubts);
   }
-  add(file, size_doubts(valve));
+  std::vector<std::string> sizes = size_doubts(valve);
+  valve.thickness = greatest_thickness;
+  for (const std::string& doubt : size_doubts(valve))
+    if (std::find(sizes.begin(), sizes.end(), doubt) == sizes.end()) sizes.push_back(doubt);
+  add(file, sizes);
   if (presses_front(scene)) add(file, pressure_side_doubts(valve));
   for (const std::string& doubt : detail::load_doubts(scene)) doubts.push_back(doubt);
   add(file, detail::law_doubts(scene, model));

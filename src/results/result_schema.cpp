@@ -23,6 +23,9 @@ OrderedJson described(OrderedJson schema, std::string_view meaning) {
 }
 
 OrderedJson text(std::string_view meaning) { return described({{"type", "string"}}, meaning); }
+OrderedJson text_or_null(std::string_view meaning) {
+  return described({{"type", OrderedJson::array({"string", "null"})}}, meaning);
+}
 OrderedJson flag(std::string_view meaning) { return described({{"type", "boolean"}}, meaning); }
 OrderedJson count(std::string_view meaning) {
   return described({{"type", "integer"}, {"minimum", 0}}, meaning);
@@ -83,6 +86,12 @@ OrderedJson leaflets() {
   std::vector<Property> properties = properties_of(leaflet_rows({}));
   properties.insert(properties.begin(), {"name", text("of the mesh region")});
   return list(object(properties, "one leaflet"), "the regions of the mesh, of a scene with an annulus");
+}
+
+OrderedJson stands_open() {
+  return text_or_null(
+      "why a valve stands open: its leaflets meet nowhere, or its orifice is that of severe regurgitation; "
+      "null: it closes, or the scene has no annulus");
 }
 
 OrderedJson healthy_closure() {
@@ -163,8 +172,7 @@ OrderedJson certificate() {
        {"conservative",
         flag("all loads have a potential; else the Hessian is the symmetric part of the tangent")},
        {"smallest_pivot_ratio", number("of the Cholesky factor of a strict minimum, smallest over largest")},
-       {"doubt", described({{"type", OrderedJson::array({"string", "null"})}},
-                           "why a converged state may not be stable; null: it is, or was not checked")},
+       {"doubt", text_or_null("why a converged state may not be stable; null: it is, or was not checked")},
        {"zero_modes", count_or_null("zero-energy modes, free directions of single nodes left out")},
        {"negative_modes", count_or_null("modes along which the energy falls, or the work of the symmetric "
                                         "part of the tangent")},
@@ -360,6 +368,7 @@ std::string result_schema() {
               {"metrics", metrics()},
               {"judge", text("who counted the intersections: cgal, or own exact predicates")},
               {"leaflets", leaflets(), Need::Optional},
+              {"stands_open", stands_open()},
               {"healthy_closure", healthy_closure(), Need::Optional},
               {"distance_to_reference", reference_distance(), Need::Optional},
               {"accuracy", accuracy(statuses), Need::Optional},

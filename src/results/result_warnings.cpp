@@ -5,6 +5,7 @@
 namespace coapt {
 namespace {
 
+constexpr double kSevereOrifice = 40;                          // effective, of severe regurgitation [mm2]
 constexpr double kMostFacetStrain = 1, kMostLineStrain = 0.2;  // beyond which they are named
 
 // "3 of 630 facets (12, 45, 300)": those above `most`; empty where none is.
@@ -71,6 +72,15 @@ std::vector<std::string> result_warnings(const Report& report) {
   return warnings;
 }
 
+std::string standing_open(const Metrics& metrics) {
+  const double area = metrics.regurgitant_area_mm2.value_or(0);
+  const bool meets = metrics.coaptation_length_mm.value_or(0) > 0, is_severe = area >= kSevereOrifice;
+  if (!(area > 0) || (meets && !is_severe)) return "";
+  std::string text = "the valve stands open: " + number_text(area, 3) + " mm2 of orifice";
+  if (is_severe) text += ", as in severe regurgitation (" + number_text(kSevereOrifice) + " and more)";
+  return meets ? text : text + "; its leaflets meet nowhere";
+}
+
 bool is_in_doubt(const Report& report) { return !stability_doubt(report.result.certificate).empty(); }
 
 void withdraw_penetrated(Report& report) {
@@ -91,6 +101,10 @@ Headline headline(const Report& report) {
   if (const long pairs = report.metrics.intersections; pairs > 0)
     line.text += "; " + std::to_string(pairs) +
                  (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") + " through each other";
+  if (const std::string reason = standing_open(report.metrics); !reason.empty()) {
+    line.is_in_doubt = true;
+    line.text += "; " + reason;
+  }
   const bool has_others = report.branches && report.branches->equilibria.size() > 1;
   if (!has_others && (report.branches || !report.neighbours.is_suspected)) return line;
   line.is_in_doubt = true;

@@ -19,6 +19,11 @@ std::string stretch_warning(const Fields& fields);
 // Which facets and chords have fibres beyond their yield, one sentence; empty where none has.
 std::string yield_warning(const Fields& fields);
 
+// Why a closed valve stands open, in one clause; empty where it closes, and for a scene without an annulus:
+// its leaflets meet nowhere, or the orifice is as large as the effective orifice of severe regurgitation, 40
+// mm2 (Lancellotti et al. 2013, of mitral and tricuspid valves alike).
+std::string standing_open(const Metrics& metrics);
+
 // Of an equilibrium: whether it is not stable or that could not be decided.
 bool is_in_doubt(const Report& report);
 
@@ -28,10 +33,11 @@ void withdraw_penetrated(Report& report);
 
 // The first line of a result.
 struct Headline {
-  // The message of the solve and, of an equilibrium, facets that pass through each other and whether it may
-  // not be the only one.
+  // The message of the solve and, of an equilibrium, facets that pass through each other, a valve that stands
+  // open and whether it may not be the only one.
   std::string text;
-  // Of an equilibrium: see is_in_doubt(); any facets that pass through each other, or others near by.
+  // Of an equilibrium: see is_in_doubt(); any facets that pass through each other, a valve that stands open,
+  // or others near by.
   bool is_in_doubt = false;
 };
 

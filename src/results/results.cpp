@@ -10,6 +10,7 @@
 #include "results/branches_json.hpp"
 #include "results/reference/reference_results.hpp"
 #include "results/result_surfaces.hpp"
+#include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
 
 #include <cmath>
@@ -304,6 +305,8 @@ std::string result_json(const Model& model, const Report& report) {
                       {"metrics", rows_json(metric_rows(report.metrics))},
                       {"judge", report.metrics.intersection_checker}};
   if (has_leaflets(report)) json["leaflets"] = leaflets_json(report.metrics.closure->leaflets);
+  const std::string stands_open = standing_open(report.metrics);
+  json["stands_open"] = stands_open.empty() ? OrderedJson(nullptr) : OrderedJson(stands_open);
   if (!report.metrics.healthy_closure.empty())
     json["healthy_closure"] = criteria_json(report.metrics.healthy_closure);
   if (report.reference) json["distance_to_reference"] = reference_json(*report.reference);

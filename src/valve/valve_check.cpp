@@ -15,6 +15,7 @@ namespace {
 // Generous: from the valves of mice to those of whales, and what a heart can do to them.
 constexpr std::array<double, 2> kLeafletSize = {0.5, 500};   // largest extent [mm]
 constexpr std::array<double, 2> kThickness = {0.001, 20};    // [mm]
+constexpr double kThickest = 0.25;                           // thickness over the largest extent
 constexpr std::array<double, 2> kChordArea = {1e-6, 300};    // [mm2]
 constexpr std::array<double, 2> kPressure = {1.3e-6, 0.13};  // 0.01 to 1000 mmHg [MPa]
 constexpr double kMpaPerMmhg = 133.322387415e-6;             // conventional mmHg, BIPM SI brochure
@@ -84,9 +85,10 @@ std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
 
 std::vector<std::string> size_doubts(const Valve& valve) {
   std::vector<std::string> doubts;
+  double size = std::numeric_limits<double>::infinity();
   if (valve.leaflets.triangle_count() > 0) {
     const Points& x = valve.leaflets.vertices;
-    const double size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
+    size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
     if (!is_within(size, kLeafletSize))
       doubts.push_back("the leaflets are " + number_text(size) + " mm across; valves have " +
                        range_text(kLeafletSize) +
@@ -95,6 +97,10 @@ std::vector<std::string> size_doubts(const Valve& valve) {
   if (valve.thickness > 0 && !is_within(valve.thickness, kThickness))
     doubts.push_back("the leaflets are " + number_text(valve.thickness) + " mm thick; valves have " +
                      range_text(kThickness) + " mm. Check the unit of the thickness.");
+  else if (valve.thickness > kThickest * size)
+    doubts.push_back("the leaflets are " + number_text(valve.thickness) + " mm thick and only " +
+                     number_text(size) + " mm across; a membrane is thinner than a quarter of its extent. " +
+                     "Check the units of mesh and thickness.");
   if (valve.pressure > 0 && !is_within(valve.pressure, kPressure))
     doubts.push_back("the pressure is " + number_text(valve.pressure / kMpaPerMmhg) + " mmHg; hearts have " +
                      range_text({0.01, 1000}) + " mmHg. Check the unit of the pressure.");

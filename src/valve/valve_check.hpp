@@ -38,8 +38,9 @@ inline constexpr double kOverstretched =
 inline constexpr double kOverstretchedClosed = 0.3;  // strain; chords tear at some 0.2 to 0.4, rough valves
                                                      // have up to 0.2 before their leaflets move
 
-// Leaflets, thickness, chords and pressure of a size that no heart valve has (a unit misread). Values of 0
-// are not stated. Lengths in mm, pressure in MPa.
+// Leaflets, thickness, chords and pressure of a size that no heart valve has (a unit misread), and a
+// thickness that is no membrane's, above a quarter of the largest extent. Values of 0 are not stated. Lengths
+// in mm, pressure in MPa.
 std::vector<std::string> size_doubts(const Valve& valve);
 
 // Leaflets whose normals point to the lumen: the pressure is on their other side, that of the papillary tips.

@@ -83,7 +83,7 @@ class RepairTest(CommandCase):
         self.assertFalse((self.folder / "none").exists())
 
     def test_import_refuses_a_valve_of_impossible_size_but_no_tent(self):
-        scene = coapt("generate", "mitral", "--triangles", 300, "-o", self.folder / "valve")
+        scene = coapt("generate", "mitral", "--preset", "benchmark", "--triangles", 300, "-o", self.folder / "valve")
         self.assertEqual(scene.returncode, 0, scene.stderr)
         valve = json.loads((self.folder / "valve/valve.json").read_text())
         file, out = self.folder / "valve/misread.json", self.folder / "out"

@@ -33,7 +33,7 @@ class StudyTest(unittest.TestCase):
         return self.folder / "scene.json"
 
     def valve(self, triangles=300):
-        scene = self.generate("mitral", "--triangles", triangles, "--contact", "none")
+        scene = self.generate("mitral", "--preset", "benchmark", "--triangles", triangles, "--contact", "none")
         scene.write_text(scene.read_text().replace('"damped_steps": 20', '"damped_steps": 0'))  # solved at once: time
         return scene
 
@@ -81,7 +81,7 @@ class StudyTest(unittest.TestCase):
 
     def test_derivatives_are_the_limit_of_small_changes(self):
         for contact in ["none", "barrier"]:
-            scene = self.generate("mitral", "--triangles", 300, "--contact", contact)
+            scene = self.generate("mitral", "--preset", "benchmark", "--triangles", 300, "--contact", contact)
             derived = self.movements(scene, "--tolerance", 1e-10)
             solved = self.movements(scene, "--tolerance", 1e-11, "--perturb", "0.02%")
             self.assertEqual(set(derived), set(solved))
@@ -90,7 +90,7 @@ class StudyTest(unittest.TestCase):
             self.assertGreater(derived["chords.length_scale"], 5)
 
     def test_loads_and_contact_have_derivatives_too(self):
-        scene = self.generate("mitral", "--triangles", 300, "--contact", "barrier")
+        scene = self.generate("mitral", "--preset", "benchmark", "--triangles", 300, "--contact", "barrier")
         scene.write_text(scene.read_text().replace('"contact_barrier"', '"contact_barrier", "gap": "0.3 mm"'))
         wanted = ["--parameters", "load_pressure.value", "contact_barrier.gap"]
         derived, solved = self.movements(scene, *wanted), self.movements(scene, *wanted, "--perturb", "0.1%")
@@ -228,7 +228,7 @@ class StudyTest(unittest.TestCase):
         self.assertIn("triangles", text)
 
     def test_says_before_the_first_solve_what_finer_meshes_cannot_have(self):
-        scene = self.generate("mitral", "--triangles", 300, "--contact", "barrier")
+        scene = self.generate("mitral", "--preset", "benchmark", "--triangles", 300, "--contact", "barrier")
         (self.folder / "pairs.csv").write_text("0,1\n")
         scene.write_text(scene.read_text().replace('"contact_barrier"', '"contact_barrier", "exclude": "pairs.csv"'))
         run = coapt("mesh-study", scene, "-o", self.out)

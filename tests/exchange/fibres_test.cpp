@@ -155,7 +155,8 @@ class MitralFibresTest : public testing::Test {
   // The scene of the generated valve with some of its text replaced, and keys added in front.
   Scene scene(int triangles, const std::string& keys,
               const std::vector<std::pair<std::string, std::string>>& changes = {}) {
-    write_valve_scene(mitral_valve({.triangles = triangles}), folder_.path());
+    write_valve_scene(mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark}),
+                      folder_.path());
     std::ifstream file(folder_.path() / "scene.json");
     std::stringstream buffer;
     buffer << file.rdbuf();

@@ -49,7 +49,8 @@ class ImportDoubts : public testing::Test {
 
   // Of the scene that was written for the mean valve, with a piece of its text replaced.
   std::vector<std::string> checked(const std::string& old, const std::string& fresh) {
-    write_valve_scene(mitral_valve({.triangles = 400}), folder_.path() / "a");
+    write_valve_scene(mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark}),
+                      folder_.path() / "a");
     const std::filesystem::path file = folder_.path() / "a" / "scene.json";
     const std::string text = with_piece(formats::read_whole(file), old, fresh);
     formats::write_whole(file, text);
@@ -60,7 +61,8 @@ class ImportDoubts : public testing::Test {
 };
 
 TEST_F(ImportDoubts, RefuseANegativePressure) {
-  write_valve_scene(mitral_valve({.triangles = 400}), folder_.path() / "a");
+  write_valve_scene(mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark}),
+                    folder_.path() / "a");
   const std::filesystem::path file = folder_.path() / "a" / "valve.json";
   const std::string text = formats::read_whole(file);
   const size_t pressure = text.find("\"pressure\""), value = text.find("\"value\"", pressure);
@@ -95,12 +97,23 @@ TEST_F(ImportDoubts, NameModuliOfAnotherUnit) {
     EXPECT_TRUE(tells(checked("\"40 MPa\"", young), "\"chords\": chords whose law at a strain of 2 %"))
         << young;
   EXPECT_FALSE(tells(checked("\"40 MPa\"", "\"400 MPa\""), "Check the unit"));
-  const auto warnings = imported(mitral_valve({.triangles = 400}), {.young = "1e6 MPa"});
+  const auto warnings =
+      imported(mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark}), {.young = "1e6 MPa"});
   EXPECT_TRUE(tells(warnings, "Check the unit of its moduli"));
 }
 
+// Of meshes alone: a valve of these sizes is refused by import and can only be written by hand.
+TEST_F(ImportDoubts, NameSizesThatNoValveHasInACheckedScene) {
+  const std::string mesh = R"("mesh": { )";
+  for (const char* unit : {"um", "m"})
+    EXPECT_TRUE(tells(checked(mesh, mesh + "\"unit\": \"" + unit + "\", "), "mm across")) << unit;
+  EXPECT_TRUE(tells(checked("\"0.8 mm\"", "\"15 mm\""), "15 mm thick and only"));
+  EXPECT_TRUE(tells(checked("\"0.8 mm\"", "\"0.8 m\""), "800 mm thick"));
+  EXPECT_FALSE(tells(checked(mesh, mesh), "mm across"));
+}
+
 TEST_F(ImportDoubts, WriteASceneOfAValveWithoutChordsThatBuilds) {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   valve.chords.chords.clear();
   valve.chords.junctions.resize(3, 0);
   EXPECT_TRUE(tells(imported(valve), "has 8 papillary tips and no chords"));
@@ -110,7 +123,7 @@ TEST_F(ImportDoubts, WriteASceneOfAValveWithoutChordsThatBuilds) {
 }
 
 TEST_F(ImportDoubts, JudgeChordsByTheirLaw) {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   valve.chords.papillary_closed.resize(3, 0);  // tips that stay
   std::set<std::string> materials;
   for (Chord& chord : valve.chords.chords) {
@@ -126,7 +139,7 @@ TEST_F(ImportDoubts, JudgeChordsByTheirLaw) {
 
 // An inner vertex, away from rims and chords, reflected over the edge of its first triangle.
 Valve valve_with_folded_fan() {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   std::vector<bool> named(static_cast<size_t>(valve.leaflets.vertex_count()), false);
   for (const auto& loop : boundary_loops(valve.leaflets.triangles))
     for (const int v : loop) named[static_cast<size_t>(v)] = true;
@@ -161,7 +174,7 @@ TEST_F(ImportDoubts, RefuseWhatContactCannotStartFrom) {
 
 // A vertex of one sheet just through another one.
 TEST_F(ImportDoubts, PushApartWhatTouchesOnAShortWay) {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   TriangleMesh& mesh = valve.leaflets;
   const int n = mesh.vertex_count(), t = mesh.triangle_count() / 2;
   const Vec3 normal = area_vector(mesh.vertices, mesh.triangles.col(t)).normalized();

@@ -94,7 +94,7 @@ bool says(const std::vector<std::string>& sentences, const std::string& part) {
 
 // Without chords of a fan that end at one vertex, which would be named.
 Valve generated_valve() {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   std::set<std::array<int, 4>> seen;
   std::erase_if(valve.chords.chords, [&](const Chord& c) {
     return !seen.insert({int(c.from.kind), c.from.index, int(c.to.kind), c.to.index}).second;

@@ -193,7 +193,8 @@ TEST(Markups, NamesThatAreNotUtf8ComeThroughAnImport) {
 TEST(Markups, RefusesCurvesWhereTheyDoNotFit) {
   const TemporaryFolder folder;
   write_markups(folder.path() / "tips.mrk.json", {{"tips", "Fiducial", Points::Ones(3, 2), {}}});
-  write_valve(folder.path() / "valve.json", mitral_valve({.triangles = 300}));
+  write_valve(folder.path() / "valve.json",
+              mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}));
   const auto valve = folder.path() / "valve.json", tips = folder.path() / "tips.mrk.json";
   const auto message = [&](const ImportOptions& options, const std::filesystem::path& file) {
     try {
@@ -212,7 +213,7 @@ TEST(Markups, RefusesCurvesWhereTheyDoNotFit) {
 
 TEST(Markups, AreExportedFromAScene) {
   const TemporaryFolder folder;
-  const Valve valve = mitral_valve({.triangles = 300});
+  const Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {});
   const auto scene = folder.path() / "scene.json", out = folder.path() / "points.mrk.json";
   export_file(scene, out);
@@ -228,7 +229,7 @@ TEST(Markups, AreExportedFromAScene) {
 
 TEST(ExportedMeshes, SayTheirSpaceAndKeepTheirPlaces) {
   const TemporaryFolder folder;
-  const Valve valve = mitral_valve({.triangles = 300});
+  const Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {});
   for (const char* name : {"a.obj", "a.ply", "a.off", "a.vtp"}) {
     const auto path = folder.path() / name;
@@ -249,7 +250,7 @@ TEST(ExportedMeshes, SayTheirSpaceAndKeepTheirPlaces) {
 
 TEST(ValveLaws, AreReadBackAndWrittenIntoTheScene) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   valve.leaflets.region_names = {"front", "rest"};
   valve.leaflets.regions.assign(static_cast<size_t>(valve.leaflets.triangle_count()), 1);
   valve.leaflets.regions[0] = 0;

@@ -222,7 +222,7 @@ bool has_pugixml() {
 TEST(FebioModel, GivesAGeneratedValveBack) {
   if (!has_pugixml()) GTEST_SKIP() << "skipped: built without pugixml";
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   std::set<std::string> materials;
   for (const Chord& chord : valve.chords.chords) materials.insert(chord.material);
   for (const std::string& material : materials) valve.cables[material] = {"cable", {{"young", "\"40 MPa\""}}};
@@ -249,7 +249,7 @@ TEST(FebioModel, GivesAGeneratedValveBack) {
 TEST(FebioModel, GivesLawsAndSupportsBack) {
   if (!has_pugixml()) GTEST_SKIP() << "skipped: built without pugixml";
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   TriangleMesh& mesh = valve.leaflets;
   mesh.region_names = {"one", "two", "three"};
   mesh.regions.assign(static_cast<size_t>(mesh.triangle_count()), 0);
@@ -299,7 +299,7 @@ TEST(FebioModel, GivesLawsAndSupportsBack) {
 TEST(FebioModel, SpringsHaveTheForcesOfTheChords) {
   if (!has_pugixml()) GTEST_SKIP() << "skipped: built without pugixml";
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {});
   export_file(folder.path() / "scene.json", folder.path() / "model.feb");
   const std::string text = file_text(folder.path() / "model.feb");
@@ -332,7 +332,7 @@ TEST(FebioModel, SpringsHaveTheForcesOfTheChords) {
 TEST(FebioModel, KeepsTheLengthsOfChordsWhoseLawItCannotRead) {
   if (!has_pugixml()) GTEST_SKIP() << "skipped: built without pugixml";
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   for (Chord& chord : valve.chords.chords) chord.material = "tendon";
   valve.cables["tendon"] = {"cable_ogden", {{"mu", "[\"4 MPa\", \"2 MPa\"]"}, {"alpha", "[30, 60]"}}};
   const RoundTrip trip = round_trip(folder, valve, {});
@@ -347,7 +347,7 @@ TEST(FebioModel, KeepsTheLengthsOfChordsWhoseLawItCannotRead) {
 
 TEST(FebioModel, RefusesWhatFebioHasNoLikeOf) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {.pressure_model = "field"});
   try {
     export_file(folder.path() / "scene.json", folder.path() / "model.feb");

@@ -19,7 +19,8 @@ namespace {
 class RefinedValve : public testing::Test {
  protected:
   RefinedValve() {
-    write_valve_scene(mitral_valve({.triangles = 400}), folder_.path(), {});
+    write_valve_scene(mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark}), folder_.path(),
+                      {});
     scene_ = load_scene(folder_.path() / "scene.json");
     geometry_ = scene_geometry(scene_);
     fine_ = refined(geometry_);

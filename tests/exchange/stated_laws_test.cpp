@@ -35,7 +35,7 @@ Json chord_tissue() {
 class StatedLaws : public testing::Test {
  protected:
   std::filesystem::path valve(const Json& more, double thickness = 0.65) {
-    Valve made = mitral_valve({.triangles = 300});
+    Valve made = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
     made.thickness = thickness;
     std::vector<Chord>& chords = made.chords.chords;
     for (size_t k = 0; k < chords.size(); ++k) chords[k].material = k % 2 == 0 ? "anterior" : "posterior";
@@ -93,7 +93,8 @@ TEST_F(StatedLaws, BecomeTermsOfTheirRegionsAndSections) {
   EXPECT_NE(warnings_.find("chord_materials: names no law for \"posterior\""), std::string::npos)
       << warnings_;
   const Model model = build(scene_);
-  EXPECT_EQ(model.lines.size(), mitral_valve({.triangles = 300}).chords.chords.size());
+  EXPECT_EQ(model.lines.size(),
+            mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}).chords.chords.size());
 }
 
 TEST_F(StatedLaws, TakeTheOptionsOfOtherModels) {

@@ -43,6 +43,7 @@ std::vector<Backend> backends() {
 struct Stiffness {
   explicit Stiffness(int triangles, double stretch = 1.1) {
     MitralOptions options;
+    options.preset = MitralPreset::Benchmark;
     options.triangles = triangles;
     const Valve valve = mitral_valve(options);
     const Points& X = valve.leaflets.vertices;

@@ -239,7 +239,7 @@ def test_what_a_metric_raises_reaches_the_caller(eq):
 
 
 def test_ctrl_c_ends_a_solve_that_may_go_on(tmp_path):
-    scene = coapt.generate_mitral(tmp_path / "valve", triangles=2500)
+    scene = coapt.generate_mitral(tmp_path / "valve", triangles=2500, preset="benchmark")
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     start = time.monotonic()
     timer.start()

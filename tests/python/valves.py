@@ -14,7 +14,7 @@ _FOLDER = tempfile.TemporaryDirectory()
 
 @functools.lru_cache
 def scene_file(triangles=TRIANGLES) -> pathlib.Path:
-    return coapt.generate_mitral(pathlib.Path(_FOLDER.name) / f"valve{triangles}", triangles=triangles)
+    return coapt.generate_mitral(pathlib.Path(_FOLDER.name) / f"valve{triangles}", triangles=triangles, preset="benchmark")
 
 
 def followed(parameters=PARAMETERS, tol=2e-11, triangles=TRIANGLES) -> coapt.Equilibrium:

@@ -42,7 +42,7 @@ class BurlinaModel : public testing::Test {
 };
 
 TEST_F(BurlinaModel, HasTheEnergiesOfThePaperAndNoOther) {
-  const Scene written = scene(mitral_valve({.triangles = 500}));
+  const Scene written = scene(mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark}));
   std::vector<std::string> types;
   for (const TermSpec& term : written.terms) types.push_back(term.type);
   EXPECT_EQ(types, (std::vector<std::string>{"cst_stvk", "tether_cubic", "load_field", "contact_facet"}));
@@ -50,7 +50,7 @@ TEST_F(BurlinaModel, HasTheEnergiesOfThePaperAndNoOther) {
 }
 
 TEST_F(BurlinaModel, HoldsTheAnnulusAndAllThatIsBeyondItsPlane) {
-  Valve valve = mitral_valve({.triangles = 500});
+  Valve valve = mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark});
   const std::set<int> annulus(valve.annulus.begin(), valve.annulus.end());
   int lifted = 0;  // the generator's leaflets all hang below: one vertex beside the annulus is put above
   while (annulus.contains(lifted)) ++lifted;
@@ -72,7 +72,7 @@ TEST_F(BurlinaModel, HoldsTheAnnulusAndAllThatIsBeyondItsPlane) {
 
 // A constant force whose potential is linear: its gradient is the force, wherever the nodes are.
 TEST_F(BurlinaModel, PullsEveryNodeTowardTheCommissureLine) {
-  const Valve valve = mitral_valve({.triangles = 500});
+  const Valve valve = mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark});
   const Model model = build(scene(valve));
   const Points& X = model.X;
   const Vec3 a = X.col(valve.commissures[0]), along = (X.col(valve.commissures[1]) - a).normalized();
@@ -94,7 +94,7 @@ TEST_F(BurlinaModel, PullsEveryNodeTowardTheCommissureLine) {
 }
 
 TEST_F(BurlinaModel, TethersTheRimAloneAndByTheLengthAlongTheChords) {
-  const Valve valve = mitral_valve({.triangles = 500});
+  const Valve valve = mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark});
   Valve modelled = valve;
   ImportOptions options;
   apply_valve_model("burlina-2010", modelled, options);
@@ -130,7 +130,8 @@ TEST_F(BurlinaModel, TakesTheRangeOfContactFromTheMesh) {
       length = std::min(length, (mesh.vertices.col(edge.a) - mesh.vertices.col(edge.b)).norm());
     return length;
   };
-  const Valve even = mitral_valve({.triangles = 500}), rough = rough_valve({.seed = 1, .triangles = 400});
+  const Valve even = mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark}),
+              rough = rough_valve({.seed = 1, .triangles = 400});
   EXPECT_NEAR(range_of(scene(even)), shortest(even.leaflets), 1e-5);
   const double mean = mean_edge_length(rough.leaflets.vertices, rough.leaflets.triangles);
   EXPECT_LT(shortest(rough.leaflets), 0.1 * mean);
@@ -140,13 +141,14 @@ TEST_F(BurlinaModel, TakesTheRangeOfContactFromTheMesh) {
 TEST_F(BurlinaModel, ComesToRest) {
   RunOptions how;
   how.writes = false;
-  const RunReport done = run(scene(mitral_valve({.triangles = 300})), scene_solvers(), how);
+  const RunReport done =
+      run(scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark})), scene_solvers(), how);
   EXPECT_EQ(done.report.result.status, Status::Converged) << done.report.result.message;
   EXPECT_LT(done.report.metrics.orifice_area_mm2.value(), 0.3 * done.report.metrics.annulus_area_mm2.value());
 }
 
 TEST_F(BurlinaModel, SaysWhatThePaperLeavesOpenBesideTheScene) {
-  scene(mitral_valve({.triangles = 500}));
+  scene(mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark}));
   const std::string text = read_text(folder_.path() / "README.md");
   for (const char* part :
        {"eq. 15", "leaves open", "Young's modulus", "120 mmHg", "Where it is not followed"})
@@ -156,7 +158,7 @@ TEST_F(BurlinaModel, SaysWhatThePaperLeavesOpenBesideTheScene) {
 
 TEST_F(BurlinaModel, NamesAllThatAValveLacksWithTheRemedy) {
   Valve bare;
-  bare.leaflets = mitral_valve({.triangles = 300}).leaflets;
+  bare.leaflets = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}).leaflets;
   bare.leaflets.regions.clear();
   bare.leaflets.region_names.clear();
   const std::string lacks = refusal(bare);
@@ -164,13 +166,14 @@ TEST_F(BurlinaModel, NamesAllThatAValveLacksWithTheRemedy) {
     EXPECT_NE(lacks.find(part), std::string::npos) << part << " in " << lacks;
   ImportOptions follower;
   follower.pressure_model = "follower";
-  EXPECT_NE(refusal(mitral_valve({.triangles = 300}), follower).find("leave --pressure out"),
+  EXPECT_NE(refusal(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), follower)
+                .find("leave --pressure out"),
             std::string::npos);
 }
 
 // Where the commissures are not named they are where two regions meet.
 TEST_F(BurlinaModel, FindsTheCommissuresWhereRegionsMeet) {
-  Valve valve = mitral_valve({.triangles = 500});
+  Valve valve = mitral_valve({.triangles = 500, .preset = MitralPreset::Benchmark});
   const std::set<int> named(valve.commissures.begin(), valve.commissures.end());
   valve.commissures.clear();
   ImportOptions options;
@@ -179,7 +182,7 @@ TEST_F(BurlinaModel, FindsTheCommissuresWhereRegionsMeet) {
 }
 
 TEST_F(BurlinaModel, IsImportedInThePlaceOfTheLawsOfAFile) {
-  const Valve valve = mitral_valve({.triangles = 300});
+  const Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder_.path() / "usual");
   ImportOptions options;
   options.model = "burlina-2010";

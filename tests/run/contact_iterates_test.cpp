@@ -18,8 +18,8 @@ TEST_F(ContactSceneTest, AValveClosesInTimeWithoutAnIntersectionAtAnyStep) {
   for (const char* integration : {"backward_differences", "semi_implicit_euler"}) {
     const bool is_explicit = integration[0] == 's';
     if (is_explicit && is_sanitized()) continue;  // tens of thousands of steps
-    write_valve_scene(mitral_valve({.triangles = is_explicit ? 150 : 300}), folder_.path(),
-                      {.contact = "barrier", .tolerance = is_explicit ? 1e-4 : 1e-6});
+    write_valve_scene(mitral_valve({.triangles = is_explicit ? 150 : 300, .preset = MitralPreset::Benchmark}),
+                      folder_.path(), {.contact = "barrier", .tolerance = is_explicit ? 1e-4 : 1e-6});
     Scene scene = load_scene(folder_.path() / "scene.json");
     scene.solver.type = "dynamic";
     if (is_explicit) scene.solver.dynamic.integration = TimeIntegration::SemiImplicitEuler;
@@ -32,8 +32,9 @@ TEST_F(ContactSceneTest, AValveClosesInTimeWithoutAnIntersectionAtAnyStep) {
 class ContactCascadeTest : public ContactSceneTest {
  protected:
   Scene valve(const std::string& contact) const {
-    write_valve_scene(mitral_valve({.triangles = is_sanitized() ? 2200 : 2500}), folder_.path(),
-                      {.contact = contact, .tolerance = is_sanitized() ? 1e-3 : 1e-8});
+    write_valve_scene(
+        mitral_valve({.triangles = is_sanitized() ? 2200 : 2500, .preset = MitralPreset::Benchmark}),
+        folder_.path(), {.contact = contact, .tolerance = is_sanitized() ? 1e-3 : 1e-8});
     Scene scene = load_scene(folder_.path() / "scene.json");
     scene.solver.cascade = true;
     return scene;

@@ -62,6 +62,7 @@ class TissueValve : public testing::TestWithParam<Tissue> {};
 TEST_P(TissueValve, Closes) {
   const TemporaryFolder folder;
   MitralOptions valve;
+  valve.preset = MitralPreset::Benchmark;
   valve.triangles = 400;
   write_valve_scene(mitral_valve(valve), folder.path());
   const std::string text =

@@ -32,7 +32,7 @@ class ValveModels : public testing::TestWithParam<std::string> {
  protected:
   // The generated valve with the springs of the model.
   Scene valve(const std::string& contact, const std::string& solver, double tolerance, int triangles = 625) {
-    Valve valve = mitral_valve({.triangles = triangles});
+    Valve valve = mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark});
     ImportOptions options;
     options.contact = contact;
     options.tolerance = tolerance;
@@ -107,7 +107,7 @@ TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
     for (const int triangles : {625, 2500, 10000})
       for (const char* solver : {"newton", "dynamic", "xpbd"}) {
         const TemporaryFolder folder;
-        Valve valve = mitral_valve({.triangles = triangles});
+        Valve valve = mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark});
         ImportOptions options;
         options.contact = "barrier";
         options.tolerance = 1e-6;
@@ -135,7 +135,7 @@ TEST(Nightly, HammersValvesCloseInEveryFamilyAtEverySize) {
 // Generated and imported alike: xpbd by the paper, on the valve as it is.
 TEST(ValveModels, OfWalczakIsAMethodAndLeavesTheValveAsItIs) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path() / "usual", {});
   ImportOptions options;
   apply_valve_model("walczak-2019", valve, options);
@@ -163,7 +163,7 @@ TEST(ValveModels, OfWalczakIsAMethodAndLeavesTheValveAsItIs) {
 TEST(ValveModels, WriteTheirNotesBesideTheScene) {
   for (const std::string& name : valve_model_names()) {
     const TemporaryFolder folder;
-    Valve valve = mitral_valve({.triangles = 300});
+    Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
     ImportOptions options;
     apply_valve_model(name, valve, options);
     write_valve_scene(valve, folder.path(), options);
@@ -179,7 +179,7 @@ TEST(ValveModels, WriteTheirNotesBesideTheScene) {
 // Section 2.5: H0/r0 and R0/r0, of which the scene has H0/R0 and R0/r0.
 TEST(ValveModels, TomasFibresHaveTheNumbersOfThePaper) {
   const TemporaryFolder folder;
-  const Valve valve = mitral_valve({.triangles = 300});
+  const Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   Valve modelled = valve;
   ImportOptions options;
   apply_valve_model("toma-2016", modelled, options);
@@ -220,7 +220,7 @@ TEST(ValveModels, TomasFibresHaveTheNumbersOfThePaper) {
 }
 
 TEST(ValveModels, NamesThoseThereAre) {
-  Valve valve = mitral_valve({.triangles = 300});
+  Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   ImportOptions options;
   try {
     apply_valve_model("hamer-2008", valve, options);
@@ -234,7 +234,7 @@ TEST(ValveModels, NamesThoseThereAre) {
 // Linear springs in the place of the usual membrane, and of another program's linear shells.
 TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
   const TemporaryFolder folder;
-  const Valve valve = mitral_valve({.triangles = 300});
+  const Valve valve = mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {.membrane = LinearLeaflets::Springs});
   const Scene scene = load_scene(folder.path() / "scene.json");
   EXPECT_EQ(scene.terms[0].type, "spring");

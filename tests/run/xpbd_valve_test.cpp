@@ -44,7 +44,7 @@ class XpbdClosing : public testing::TestWithParam<std::string> {};
 // Nothing passes through anything at any accepted state, and yet it closes.
 TEST_P(XpbdClosing, ClosesAgainstTheBarrier) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = kTriangles});
+  Valve valve = mitral_valve({.triangles = kTriangles, .preset = MitralPreset::Benchmark});
   ImportOptions import;
   import.contact = "barrier";
   if (GetParam() != "membrane") apply_valve_model(GetParam(), valve, import);
@@ -77,7 +77,10 @@ INSTANTIATE_TEST_SUITE_P(All, XpbdClosing, testing::Values("membrane", "hammer-2
 
 class XpbdValve : public testing::Test {
  protected:
-  XpbdValve() { write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"}); }
+  XpbdValve() {
+    write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder_.path(),
+                      {.contact = "none"});
+  }
   TemporaryFolder folder_;
 };
 
@@ -139,7 +142,7 @@ XpbdOptions paper_options(int steps) {
 // steps, and a leaflet area within 4 mm2 of the first, mostly within 2.
 TEST(XpbdPaperModel, ClosesAValveToRestAndKeepsTheAreaOfItsLeaflets) {
   const TemporaryFolder folder;
-  Valve valve = mitral_valve({.triangles = 1600});
+  Valve valve = mitral_valve({.triangles = 1600, .preset = MitralPreset::Benchmark});
   ImportOptions import;
   apply_valve_model("walczak-2019", valve, import);
   write_valve_scene(valve, folder.path(), import);
@@ -158,7 +161,8 @@ TEST(XpbdPaperModel, ClosesAValveToRestAndKeepsTheAreaOfItsLeaflets) {
 
 // With Coapt's barrier nothing passes through anything, in both phases.
 TEST_F(XpbdValve, MovesByThePapersNumbersInBothPhases) {
-  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "barrier"});
+  write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder_.path(),
+                    {.contact = "barrier"});
   XpbdOptions options = paper_options(300);
   const Scene scene = xpbd_scene(folder_, options);
   const auto has = [&](const char* type) {
@@ -186,7 +190,8 @@ TEST_F(XpbdValve, MovesByThePapersNumbersInBothPhases) {
 
 // Without hinges, to rest: leaflets keep their area. So coarse a valve stays open by 31.5 mm2.
 TEST_F(XpbdValve, KeepsTheAreaOfLeafletsByThePapersNumbers) {
-  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "barrier", .bends = false});
+  write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder_.path(),
+                    {.contact = "barrier", .bends = false});
   const JudgedScene closed = solve_judged(xpbd_scene(folder_, paper_options(1500)));
   std::printf("without hinges: orifice %.1f of %.1f mm2; %s\n", closed.metrics.orifice_area_mm2.value(),
               closed.metrics.annulus_area_mm2.value(), closed.outcome.result.message.c_str());
@@ -200,7 +205,7 @@ TEST_F(XpbdValve, KeepsTheAreaOfLeafletsByThePapersNumbers) {
 
 // The paper's model of a valve with chords by its rule (section 3.5).
 void write_paper_valve(const TemporaryFolder& folder) {
-  Valve valve = mitral_valve({.triangles = 630});
+  Valve valve = mitral_valve({.triangles = 630, .preset = MitralPreset::Benchmark});
   valve.chords = {};
   LeafletChordOptions chords;
   chords.zones = {chord_zone("free_edge"), chord_zone("rough")};

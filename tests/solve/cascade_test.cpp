@@ -143,7 +143,7 @@ TEST_F(CascadeTest, SaysThatASmallMeshIsSolvedDirectly) {
 
 TEST(Thinning, CarriesChordsSetsAndMotionOfAValveOver) {
   TemporaryFolder folder;
-  const Valve valve = mitral_valve({2500, 0, 3});
+  const Valve valve = mitral_valve({.triangles = 2500, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path(), {});
   const Scene scene = load_scene(folder.path() / "scene.json");
   const SceneGeometry fine = scene_geometry(scene);

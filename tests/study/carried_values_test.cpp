@@ -207,7 +207,7 @@ TEST_F(CarriedValues, StayWithinTheirLimitsUnderAFactor) {
 // Tissue is tuned like any other membrane, numbers from triangle to triangle included.
 TEST(TunedTissue, HasTheFactorsOfItsRegions) {
   const TemporaryFolder folder;
-  const Valve valve = mitral_valve({.triangles = 400});
+  const Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   write_valve_scene(valve, folder.path());
   std::ostringstream stiff;
   stiff.precision(17);

@@ -423,7 +423,8 @@ TEST_F(ComparisonTest, ShowsTheHistoryOfEveryMethodOnOneScale) {
 // below, and nothing keeps the valve off it.
 TEST_F(ComparisonTest, LeadsFromTheOpenValveToTheOrificeOfEachMethod) {
   if (!has_shape_view()) GTEST_SKIP() << "this build has no three.js";
-  write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
+  write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder_.path(),
+                    {.contact = "none"});
   folder_.write("floor.obj", "v -90 -90 -80\nv 90 -90 -80\nv 0 90 -80\nf 1 2 3\n");
   nlohmann::json text = nlohmann::json::parse(scene_text(folder_.path() / "scene.json"), nullptr, true, true);
   text["obstacles"] = {{{"name", "floor"}, {"file", "floor.obj"}}};

@@ -15,7 +15,8 @@ namespace {
 
 TEST(SharedParts, AreWhatEachMethodHasOfNewton) {
   const TemporaryFolder folder;
-  write_valve_scene(mitral_valve({.triangles = 300}), folder.path(), {.contact = "none"});
+  write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder.path(),
+                    {.contact = "none"});
   const std::map<std::string, std::string> shared = {{"newton", "all"},
                                                      {"lbfgs", "energy"},
                                                      {"dynamic", "energy + factorisation"},

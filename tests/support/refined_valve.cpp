@@ -22,8 +22,8 @@ Eigen::Vector2d halfway(const Eigen::Vector2d& a, Eigen::Vector2d b) {
 }  // namespace
 
 Valve refined_mitral_valve(int triangles, int refinements) {
-  Valve valve = mitral_valve({.triangles = triangles});
-  const MitralShape shape = mitral_shape(mitral_dimensions(0));
+  Valve valve = mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark});
+  const MitralShape shape = mitral_shape(mitral_dimensions(0, MitralPreset::Benchmark));
   const MitralMesh mesh = mitral_mesh(shape, triangles);
   std::vector<Eigen::Vector2d> coordinates(mesh.coordinates.colwise().begin(),
                                            mesh.coordinates.colwise().end());

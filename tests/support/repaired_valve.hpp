@@ -18,7 +18,8 @@ namespace coapt {
 class RepairedValve : public testing::Test {
  protected:
   RepairedValve() {
-    write_valve_scene(mitral_valve({.triangles = 300}), folder_.path(), {.contact = "none"});
+    write_valve_scene(mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark}), folder_.path(),
+                      {.contact = "none"});
     text_ = scene_text(file_);
   }
 

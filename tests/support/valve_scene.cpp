@@ -16,9 +16,11 @@ constexpr double kPressure = -120 * 133.322e-6;      // 120 mmHg against the nor
 }  // namespace
 
 ValveScene::ValveScene(const ValveOptions& wanted) : options(wanted) {
-  const Valve valve = wanted.refinements > 0
-                          ? refined_mitral_valve(wanted.triangles, wanted.refinements)
-                          : mitral_valve({.triangles = wanted.triangles, .seed = wanted.seed});
+  const Valve valve =
+      wanted.refinements > 0
+          ? refined_mitral_valve(wanted.triangles, wanted.refinements)
+          : mitral_valve(
+                {.triangles = wanted.triangles, .seed = wanted.seed, .preset = MitralPreset::Benchmark});
   const ChordNetwork& network = valve.chords;
   const int first_tip = valve.leaflets.vertex_count(),
             first_junction = first_tip + static_cast<int>(network.papillary.cols());

@@ -31,7 +31,7 @@ class ChordTuningTest : public testing::Test {
   ChordTuningTest() {
     ImportOptions import;
     import.tolerance = 1e-9;
-    const auto valve = mitral_valve({.triangles = 250});
+    const auto valve = mitral_valve({.triangles = 250, .preset = MitralPreset::Benchmark});
     network_ = valve.chords;
     write_valve_scene(valve, folder_.path(), import);
     run_.writes_page = false;

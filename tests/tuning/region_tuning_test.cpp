@@ -28,7 +28,8 @@ class RegionTuningTest : public testing::Test {
   Scene scene(const std::string& contact, const std::string& membrane = "") {
     ImportOptions import;
     import.contact = contact;
-    write_valve_scene(mitral_valve({.triangles = 250}), folder_.path(), import);
+    write_valve_scene(mitral_valve({.triangles = 250, .preset = MitralPreset::Benchmark}), folder_.path(),
+                      import);
     std::stringstream file;
     file << std::ifstream(folder_.path() / "scene.json").rdbuf();
     std::string text = file.str();

@@ -73,8 +73,8 @@ TEST(RealAnnulus, CarriesAGeneratedValve) {
   const ValveFile skeleton = read_valve(data / "ct_skeleton.json", ValveMeshes::Skip);
   const Points& annulus = skeleton.points.at("annulus");
   const Points& tips = skeleton.points.at("papillary");
-  const Valve valve =
-      mitral_valve({.triangles = 2500}, {.name = "ct", .annulus = annulus, .papillary = tips});
+  const Valve valve = mitral_valve({.triangles = 2500, .preset = MitralPreset::Benchmark},
+                                   {.name = "ct", .annulus = annulus, .papillary = tips});
   EXPECT_LT(mean_distance(valve.leaflets.vertices(Eigen::all, valve.annulus), annulus), 1e-9);
   EXPECT_TRUE(intersections(valve.leaflets.vertices, valve.leaflets.triangles).empty());
   EXPECT_EQ(valve.chords.papillary.cols(), 8);

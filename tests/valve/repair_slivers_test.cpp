@@ -195,7 +195,7 @@ TEST(RepairSlivers, RepairsSpoiltSheetsWithinItsBound) {
 
 TEST(RepairSlivers, LeavesGeneratedAndGivenValvesAsTheyAre) {
   for (const unsigned seed : {0u, 3u, 7u}) {
-    Valve valve = mitral_valve({.triangles = 600, .seed = seed});
+    Valve valve = mitral_valve({.triangles = 600, .seed = seed, .preset = MitralPreset::Benchmark});
     EXPECT_FALSE(repair_valve(valve, kSliverAspect).leaflets.is_changed()) << seed;
   }
   int missing = 0;

@@ -30,7 +30,7 @@ std::vector<bool> named_vertices(const Valve& valve) {
 
 // A generated valve whose reference is itself, pushed aside.
 Valve sample() {
-  Valve valve = mitral_valve({.triangles = 600});
+  Valve valve = mitral_valve({.triangles = 600, .preset = MitralPreset::Benchmark});
   valve.closed_reference = valve.leaflets;
   valve.closed_reference->vertices.row(2).array() += 5;
   valve.sets["all of it"] = {};
@@ -140,7 +140,7 @@ bool says(const std::vector<std::string>& doubts, const std::string& part) {
 
 // On a coarse mesh several strands of a fan end at one vertex: one of them is left.
 Valve without_copies(unsigned seed = 0) {
-  Valve valve = mitral_valve({.triangles = 400, .seed = seed});
+  Valve valve = mitral_valve({.triangles = 400, .seed = seed, .preset = MitralPreset::Benchmark});
   std::set<std::array<int, 4>> seen;
   std::erase_if(valve.chords.chords, [&](const Chord& c) {
     return !seen.insert({int(c.from.kind), c.from.index, int(c.to.kind), c.to.index}).second;
@@ -215,6 +215,12 @@ TEST(ValveCheck, NamesUnitsThatWereMisread) {
   Valve thick = valve;
   thick.thickness = 650;
   EXPECT_TRUE(says(size_doubts(thick), "650 mm thick"));
+  Valve stout = valve;  // 3 mm across, and as thick as a human valve may be
+  stout.leaflets.vertices *= 0.1;
+  stout.thickness = 1.5;
+  EXPECT_TRUE(says(size_doubts(stout), "1.5 mm thick and only"));
+  stout.thickness = 0.1;
+  EXPECT_TRUE(size_doubts(stout).empty());
   Valve wide = valve;
   for (Chord& chord : wide.chords.chords) chord.area *= 1e6;
   EXPECT_TRUE(says(size_doubts(wide), "cross-section"));

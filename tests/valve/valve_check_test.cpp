@@ -107,7 +107,7 @@ TEST(PressureSide, IsLeftOpenWhereNothingTellsIt) {
 }
 
 Valve without_regions() {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   valve.leaflets.region_names.clear();
   valve.leaflets.regions.clear();
   return valve;
@@ -151,17 +151,17 @@ TEST(BareLeaflets, AreNamedByPieces) {
 
 TEST(ChordLengths, AreAllSlackInAnotherUnit) {
   for (const double unit : {10.0, 25.4, 1000.0}) {
-    Valve valve = mitral_valve({.triangles = 400});
+    Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
     for (Chord& chord : valve.chords.chords) chord.rest_length *= unit;
     EXPECT_TRUE(names(chord_doubts(valve), "all chords are slack")) << unit;
   }
-  Valve loose = mitral_valve({.triangles = 400});
+  Valve loose = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   for (Chord& chord : loose.chords.chords) chord.rest_length *= 1.5;
   EXPECT_FALSE(names(chord_doubts(loose), "slack"));
 }
 
 TEST(ChordLengths, AreJudgedByTheClosedPositionAlone) {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   const Vec3 middle = valve.leaflets.vertices.rowwise().mean();
   const Vec3 away = (valve.chords.papillary.rowwise().mean() - middle).normalized();
   EXPECT_FALSE(names(chord_doubts(valve), "farther"));
@@ -170,7 +170,7 @@ TEST(ChordLengths, AreJudgedByTheClosedPositionAlone) {
 }
 
 TEST(ChordLengths, AreJudgedByWhatTheLawBears) {
-  Valve valve = mitral_valve({.triangles = 400});
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   valve.chords.papillary_closed.resize(3, 0);                          // tips that stay
   for (Chord& chord : valve.chords.chords) chord.rest_length *= 0.87;  // 15 %
   EXPECT_FALSE(names(chord_doubts(valve), "farther"));

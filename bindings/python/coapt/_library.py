@@ -4,29 +4,31 @@ from __future__ import annotations
 import json
 import os
 import pathlib
-from typing import Any
+from typing import Any, Literal
 
 from . import _core
 from ._errors import InputError
 
 
-def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0) -> pathlib.Path:
+def generate_mitral(folder: str | os.PathLike[str], *, triangles: int = 2500, seed: int = 0,
+                    preset: Literal["closed", "benchmark"] = "closed") -> pathlib.Path:
     """Writes the generated mitral valve into a folder, as `coapt generate mitral` does; returns the path of its scene.
 
     Args:
         folder: it is made where it does not exist; files of that name are replaced.
         triangles: wanted number of triangles, at least 100; the mesh has within 5 % of it.
         seed: 0 for the mean valve; any other draws its dimensions from published ranges.
+        preset: a valve that closes, or the one that leaks a little, on which tables of the documentation were made.
 
     Raises:
-        InputError: too few triangles, or a folder that cannot be written.
+        InputError: too few triangles, another preset, or a folder that cannot be written.
     """
     defects = [f"{name}: is {value!r}; expected a whole number from {least} to {2**31 - 1}"
                for name, value, least in (("triangles", triangles, 100), ("seed", seed, 0))
                if not isinstance(value, int) or not least <= value < 2**31]
     if defects:
         raise InputError(*defects)
-    _core.generate_mitral(folder=os.fsencode(folder), triangles=triangles, seed=seed)
+    _core.generate_mitral(folder=os.fsencode(folder), triangles=triangles, seed=seed, preset=preset)
     return pathlib.Path(folder) / "scene.json"
 
 

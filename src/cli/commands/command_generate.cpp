@@ -23,7 +23,7 @@ struct GenerateArguments : SceneArguments {
   std::string what;
   int triangles = 2500;
   unsigned seed = 0, rough = 0;
-  std::string annulus, papillary, model;
+  std::string annulus, papillary, model, preset = "closed";
   std::vector<double> anterior, ventricle;  // three numbers, or none
   std::vector<std::string> given;           // options on the command line
 };
@@ -34,7 +34,8 @@ std::optional<Vec3> position_of(const std::vector<double>& numbers) {
 }
 
 Valve generated_mitral(const GenerateArguments& arguments) {
-  const MitralOptions options{.triangles = arguments.triangles, .seed = arguments.seed};
+  const MitralOptions options{
+      .triangles = arguments.triangles, .seed = arguments.seed, .preset = mitral_preset(arguments.preset)};
   if (arguments.annulus.empty()) return mitral_valve(options);
   MeasuredMitral measured;
   measured.name = arguments.annulus;
@@ -62,7 +63,7 @@ void write_shape(const GenerateArguments& arguments) {
   std::vector<std::string> defects;
   const std::vector<std::string> shapes = shape_names();
   const bool is_known = std::find(shapes.begin(), shapes.end(), arguments.what) != shapes.end();
-  for (const char* option : {"--seed", "--membrane", "--model"})
+  for (const char* option : {"--seed", "--membrane", "--model", "--preset"})
     if (is_known && is_given(arguments, option))
       defects.push_back(std::string(option) + ": belongs to the shape mitral; a " + arguments.what +
                         " has no such choice");
@@ -78,7 +79,7 @@ void write_rough(const GenerateArguments& arguments) {
   if (!is_mitral && arguments.what != "tricuspid")
     defects.push_back("--rough: belongs to the shapes mitral and tricuspid; there is no rough " +
                       arguments.what);
-  for (const char* option : {"--seed", "--model", "--membrane", "--annulus"})
+  for (const char* option : {"--seed", "--model", "--membrane", "--annulus", "--preset"})
     if (is_given(arguments, option))
       defects.push_back(std::string(option) + ": has no meaning beside --rough, which draws the whole valve");
   if (!defects.empty()) throw InputError(defects);
@@ -96,6 +97,7 @@ void write_mitral(const GenerateArguments& arguments) {
         "one out");
   Valve valve = generated_mitral(arguments);
   ImportOptions options = import_options(arguments);
+  apply_membrane_option(options, valve);
   if (!arguments.model.empty()) apply_valve_model(arguments.model, valve, options);
   write_valve_scene(valve, arguments.folder, options);
 }
@@ -130,6 +132,12 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
       ->capture_default_str();
   command
       ->add_option("--seed", arguments->seed, "Mitral: 0 is the mean valve, any other draws its dimensions")
+      ->capture_default_str();
+  command
+      ->add_option("--preset", arguments->preset,
+                   "Mitral: a valve within published ranges that closes, or the softer one with fewer chords "
+                   "that tables of the documentation were made on")
+      ->check(CLI::IsMember({"closed", "benchmark"}))
       ->capture_default_str();
   command->add_option(
       "--rough", arguments->rough,

@@ -9,7 +9,8 @@ StressScene written_valve(const std::filesystem::path& folder, int triangles, co
   ImportOptions options;
   options.contact = contact;
   options.tolerance = 1e-10;
-  write_valve_scene(mitral_valve({.triangles = triangles}), folder, options);
+  write_valve_scene(mitral_valve({.triangles = triangles, .preset = MitralPreset::Benchmark}), folder,
+                    options);
   return stress_scene(load_scene(folder / "scene.json"));
 }
 

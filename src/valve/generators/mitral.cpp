@@ -1,6 +1,7 @@
 #include "valve/generators/mitral.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "mesh/distance/intersections.hpp"
 #include "valve/generators/mitral_chords.hpp"
 #include "valve/generators/mitral_mesh.hpp"
@@ -21,6 +22,13 @@ void check(int triangles, int branches) {
   if (!defects.empty()) throw InputError(defects);
 }
 
+// A sheet that wrinkles.
+Material linear_membrane(double young, double thickness) {
+  const auto quoted = [](double value, const char* unit) { return "\"" + exact_text(value) + unit + "\""; };
+  return {"cst_tension_field",
+          {{"young", quoted(young, " MPa")}, {"poisson", "0.45"}, {"thickness", quoted(thickness, " mm")}}};
+}
+
 // Tips in the frame of the shape; none: those of the dimensions.
 Valve valve_on(const MitralShape& shape, int triangles, int branches, const Points& tips = Points(3, 0)) {
   constexpr double kSystolicPressure = 0.0159986842;  // 120 mmHg [MPa]
@@ -38,6 +46,10 @@ Valve valve_on(const MitralShape& shape, int triangles, int branches, const Poin
   valve.commissures = std::move(mesh.commissures);
   valve.pressure = kSystolicPressure;
   valve.thickness = shape.dimensions.thickness;
+  const MitralDimensions& d = shape.dimensions;
+  if (d.young > 0)
+    for (const std::string& region : valve.leaflets.region_names)
+      valve.membranes[region] = linear_membrane(d.young, d.thickness);
   return valve;
 }
 
@@ -46,8 +58,7 @@ MitralDimensions fitted(MitralDimensions d, const MitralAnnulus& annulus) {
   d.commissural_diameter = annulus.commissural_diameter;
   d.anteroposterior_ratio = annulus.anteroposterior_diameter / annulus.commissural_diameter;
   d.flatness = annulus.flatness;
-  for (double* length : {&d.tenting_height, &d.papillary_depth, &d.papillary_distance, &d.papillary_offset})
-    *length *= scale;
+  scale_depths(scale, d);
   return d;
 }
 
@@ -72,8 +83,15 @@ void turn_back(const MitralAnnulus& annulus, Valve& valve) {
 
 }  // namespace
 
+MitralPreset mitral_preset(const std::string& name) {
+  if (name == "closed") return MitralPreset::Closed;
+  if (name == "benchmark") return MitralPreset::Benchmark;
+  throw InputError("mitral valve: preset is \"" + name + "\"; there are closed, benchmark");
+}
+
 Valve mitral_valve(const MitralOptions& options) {
-  Valve valve = mitral_valve(mitral_dimensions(options.seed), options.triangles, options.branches);
+  Valve valve =
+      mitral_valve(mitral_dimensions(options.seed, options.preset), options.triangles, options.branches);
   if (options.seed != 0) valve.name += ", seed " + std::to_string(options.seed);
   return valve;
 }
@@ -85,7 +103,7 @@ Valve mitral_valve(const MitralDimensions& dimensions, int triangles, int branch
 
 Valve mitral_valve(const MitralOptions& options, const MeasuredMitral& measured) {
   check(options.triangles, options.branches);
-  const MitralDimensions dimensions = mitral_dimensions(options.seed);
+  const MitralDimensions dimensions = mitral_dimensions(options.seed, options.preset);
   AnnulusSides sides = measured.sides;
   if (!sides.ventricle && measured.papillary.cols() > 0)
     sides.ventricle = measured.papillary.rowwise().mean();

@@ -8,10 +8,14 @@
 
 namespace coapt {
 
+// "closed", "benchmark". Throws InputError for another name.
+MitralPreset mitral_preset(const std::string& name);
+
 struct MitralOptions {
   int triangles = 2500;  // wanted; the result has within 5 % of it
   unsigned seed = 0;     // 0: the mean valve; any other: dimensions drawn from published ranges
-  int branches = 3;      // leaflet insertions of a chord (five at the commissures), 2 to 5
+  int branches = 3;      // insertions of a chord on the free edge (five at the commissures), 2 to 5
+  MitralPreset preset = MitralPreset::Closed;
 };
 
 // The valve in its open, stress-free, end-diastolic shape:
@@ -19,6 +23,7 @@ struct MitralOptions {
 //                   to the ventricle (the outside of the funnel, the high-pressure side when closed)
 //   annulus, free_edge, commissures (anterolateral, posteromedial), annulus_closed: the systolic annulus
 //   chords          two papillary muscles with four tips each, see mitral_chords.hpp
+//   membranes       linear ones that wrinkle, of the preset `Closed`; none of the other
 //   pressure        120 mmHg, the systolic pressure of a healthy adult
 // The chords, their tips, insertions and start shape are the same at every mesh size, up to the distance from
 // an insertion to the nearest vertex. The dimensions and their sources: MitralDimensions and

@@ -1,6 +1,7 @@
 #include "valve/generators/mitral_chords.hpp"
 
 #include "valve/generators/chord_junctions.hpp"
+#include "valve/generators/mitral_chord_plan.hpp"
 
 #include <Eigen/Geometry>
 
@@ -14,57 +15,6 @@ namespace {
 constexpr int kTips = 4;               // per muscle
 constexpr int kMuscles = 2;            // anterolateral, posteromedial
 constexpr double kSystolicMotion = 1;  // of the tips towards the mid-anterior annulus [mm]
-
-struct Insertion {
-  double u, t;
-};
-
-// One chord: a trunk and its fan.
-struct Fan {
-  std::string material;
-  double area;  // of the trunk [mm^2]
-  std::vector<Insertion> insertions;
-};
-
-// `count` insertions at equal steps inside (from, to); the fractions run from the anterolateral commissure
-// along either leaflet, and are mirrored for the posteromedial muscle.
-Fan spread(const MitralShape& shape, int muscle, MitralLeaflet leaflet, Fan fan, double from, double to,
-           double t, int count) {
-  for (int i = 0; i < count; ++i) {
-    double fraction = from + (to - from) * (i + 0.5) / count;
-    if ((leaflet == MitralLeaflet::Posterior) != (muscle == 1)) fraction = 1 - fraction;
-    fan.insertions.push_back({mitral_coordinate(shape, leaflet, fraction), t});
-  }
-  return fan;
-}
-
-// The chords of one muscle in the order of the header.
-std::vector<Fan> fans_of_muscle(const MitralShape& shape, int muscle, int branches) {
-  constexpr double kEdgeFrom = 0.05, kMiddle = 0.5;  // the commissural chord holds the rest
-  const double scale = shape.dimensions.chord_area_scale;
-  const Fan primary = {"primary", 0.4 * scale, {}}, secondary = {"secondary", 0.8 * scale, {}};
-  const Fan strut = {"strut", 1.2 * scale, {}};
-  const MitralLeaflet anterior = MitralLeaflet::Anterior, posterior = MitralLeaflet::Posterior;
-  std::vector<Fan> fans;
-  auto add_primary = [&](MitralLeaflet leaflet, int chords) {
-    const double width = (kMiddle - kEdgeFrom) / chords;
-    for (int i = 0; i < chords; ++i)
-      fans.push_back(spread(shape, muscle, leaflet, primary, kEdgeFrom + i * width,
-                            kEdgeFrom + (i + 1) * width, 1, branches));
-  };
-  add_primary(anterior, 3);
-  fans.push_back(spread(shape, muscle, anterior, secondary, 0.12, 0.28, 0.7, branches));
-  fans.push_back(spread(shape, muscle, anterior, strut, 0.26, 0.40, 0.6, branches));
-  add_primary(posterior, 4);
-  fans.push_back(spread(shape, muscle, posterior, secondary, 0.08, 0.22, 0.65, branches));
-  fans.push_back(spread(shape, muscle, posterior, secondary, 0.26, 0.40, 0.65, branches));
-  Fan commissural = spread(shape, muscle, anterior, primary, 0, kEdgeFrom, 1, 2);
-  for (const Insertion& insertion : spread(shape, muscle, posterior, primary, 0, kEdgeFrom, 1, 2).insertions)
-    commissural.insertions.push_back(insertion);
-  commissural.insertions.push_back({muscle == 0 ? 0 : shape.anterior_share, 1});
-  fans.push_back(commissural);
-  return fans;
-}
 
 Points papillary_tips(const MitralDimensions& d) {
   Points tips(3, kMuscles * kTips);
@@ -110,7 +60,7 @@ InsertionSites insertion_sites(const MitralMesh& mesh) {
 }
 
 int nearest_vertex(const MitralShape& shape, const MitralMesh& mesh, const std::vector<int>& sites,
-                   const Insertion& insertion) {
+                   const ChordInsertion& insertion) {
   const Vec3 point = mitral_open_point(shape, insertion.u, insertion.t);
   return *std::min_element(sites.begin(), sites.end(), [&](int a, int b) {
     return (mesh.leaflets.vertices.col(a) - point).squaredNorm() <
@@ -127,14 +77,14 @@ struct MitralChordBuilder {
   ChordNetwork network = {};
   std::vector<Vec3> junctions = {};
 
-  Vec3 middle(const Fan& fan, bool is_closed) const {
+  Vec3 middle(const ChordFan& fan, bool is_closed) const {
     Vec3 sum = Vec3::Zero();
-    for (const Insertion& i : fan.insertions)
+    for (const ChordInsertion& i : fan.insertions)
       sum += is_closed ? mitral_closed_point(shape, i.u, i.t) : mitral_open_point(shape, i.u, i.t);
     return sum / static_cast<double>(fan.insertions.size());
   }
 
-  void add(const Fan& fan, int muscle) {
+  void add(const ChordFan& fan, int muscle) {
     const Vec3 closed_middle = middle(fan, true), open_middle = middle(fan, false);
     const int tip =
         nearest_tip(network.papillary, muscle == 0 ? 0 : first_count,
@@ -149,7 +99,7 @@ struct MitralChordBuilder {
     limits.rest_lengths = {(closed_junction - closed_tip).norm()};
     std::vector<int> vertices;
     for (int i = 0; i < count; ++i) {
-      const Insertion& insertion = fan.insertions[i];
+      const ChordInsertion& insertion = fan.insertions[i];
       const bool is_inside = insertion.t < 1;
       const int v = nearest_vertex(shape, mesh, is_inside ? sites.inside : sites.free_edge, insertion);
       const double u = mesh.coordinates(0, v), t = mesh.coordinates(1, v);
@@ -193,7 +143,7 @@ ChordNetwork mitral_chords(const MitralShape& shape, const MitralMesh& mesh, int
   for (int i = 0; i < network.papillary.cols(); ++i)
     network.papillary_closed.col(i) += kSystolicMotion * (target - network.papillary.col(i)).normalized();
   for (int muscle = 0; muscle < kMuscles; ++muscle)
-    for (const Fan& fan : fans_of_muscle(shape, muscle, branches)) builder.add(fan, muscle);
+    for (const ChordFan& fan : mitral_chord_plan(shape, muscle, branches)) builder.add(fan, muscle);
   network.junctions.resize(3, static_cast<int>(builder.junctions.size()));
   for (size_t i = 0; i < builder.junctions.size(); ++i)
     network.junctions.col(static_cast<int>(i)) = builder.junctions[i];

@@ -17,8 +17,6 @@ constexpr int kCoaptationSteps = 512;  // of the coaptation line
 constexpr double kBumpExponent = 1.3;
 constexpr double kSlopeExponent = 0.5;       // how much denser the mesh is where the free edge is steep
 constexpr double kCommissureSteepness = 12;  // of the open leaflets, more than at mid-leaflet [degrees]
-constexpr double kDome = 0.08;               // rise of the closed leaflet's dome over its chord line
-constexpr double kDomeLength = 1 + 8.0 / 3 * kDome * kDome;  // of a shallow arc over its chord line
 
 double radians(double degrees) { return degrees * kPi / 180; }
 
@@ -99,21 +97,24 @@ Vec3 coaptation_point(const MitralShape& shape, double w) {
   return shape.coaptation.col(i) + (position - i) * (shape.coaptation.col(i + 1) - shape.coaptation.col(i));
 }
 
-double domed_length(const Vec3& from, const Vec3& to) { return kDomeLength * (to - from).norm(); }
+// Of a shallow arc.
+double domed_length(const MitralDimensions& d, const Vec3& from, const Vec3& to) {
+  return (1 + 8.0 / 3 * d.dome * d.dome) * (to - from).norm();
+}
 
 // Where two opposite meridians meet: between their annulus points, lowered by the tenting, straight
 // across from the anterior one (whose leaflet neither narrows nor widens) and as far along y as leaves
 // both the same length.
-Vec3 meeting_point(const Vec3& anterior, const Vec3& posterior, double drop, double anterior_height,
-                   double posterior_height) {
+Vec3 meeting_point(const MitralDimensions& d, const Vec3& anterior, const Vec3& posterior, double drop,
+                   double anterior_height, double posterior_height) {
   double low = 0, high = 1;
   Vec3 point = anterior;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     point = anterior + middle * (posterior - anterior) - drop * Vec3::UnitZ();
     point.x() = anterior.x();
-    const double anterior_left = anterior_height - domed_length(anterior, point);
-    const double posterior_left = posterior_height - domed_length(posterior, point);
+    const double anterior_left = anterior_height - domed_length(d, anterior, point);
+    const double posterior_left = posterior_height - domed_length(d, posterior, point);
     (anterior_left > posterior_left ? low : high) = middle;
   }
   return point;
@@ -150,10 +151,29 @@ void fill_annulus_tables(MitralShape& shape) {
   shape.anterior_share /= shape.annulus_over_height;
 }
 
+// What differs from the valve of the defaults: more leaflet, tips below the posterior leaflet as computed
+// tomography sees them, chords to the line of coaptation, and tissue.
+MitralDimensions closed_dimensions() {
+  MitralDimensions d;
+  d.anterior_height_ratio = 0.92;
+  d.posterior_height_ratio = 0.58;
+  d.commissural_height_ratio = 0.40;
+  d.papillary_offset = -9;
+  d.dome = 0.2;
+  d.chords = MitralChords::RoughZone;
+  d.young = 3;
+  return d;
+}
+
 }  // namespace
 
-MitralDimensions mitral_dimensions(unsigned seed) {
-  MitralDimensions d;
+void scale_depths(double scale, MitralDimensions& d) {
+  for (double* length : {&d.tenting_height, &d.papillary_depth, &d.papillary_distance, &d.papillary_offset})
+    *length *= scale;
+}
+
+MitralDimensions mitral_dimensions(unsigned seed, MitralPreset preset) {
+  MitralDimensions d = preset == MitralPreset::Closed ? closed_dimensions() : MitralDimensions();
   if (seed == 0) return d;
   std::mt19937 random(seed);
   auto vary = [&random](double& value, double half_range) {  // the standard's distributions are not portable
@@ -177,6 +197,8 @@ MitralDimensions mitral_dimensions(unsigned seed) {
   vary(d.papillary_offset, 1);
   vary(d.chord_area_scale, 0.2);
   vary(d.thickness, 0.15);
+  if (preset == MitralPreset::Closed)
+    scale_depths(d.commissural_diameter / MitralDimensions().commissural_diameter, d);
   return d;
 }
 
@@ -191,9 +213,9 @@ MitralShape mitral_shape(const MitralDimensions& dimensions, std::optional<Mitra
     const double front = mitral_coordinate(shape, MitralLeaflet::Anterior, w);
     const double back = mitral_coordinate(shape, MitralLeaflet::Posterior, 1 - w);
     const AnnulusPosition anterior = position_at(shape, front), posterior = position_at(shape, back);
-    shape.coaptation.col(i) =
-        meeting_point(annulus_at(shape, front, anterior, true), annulus_at(shape, back, posterior, true),
-                      dimensions.tenting_height * std::sin(kPi * w), anterior.height, posterior.height);
+    shape.coaptation.col(i) = meeting_point(
+        dimensions, annulus_at(shape, front, anterior, true), annulus_at(shape, back, posterior, true),
+        dimensions.tenting_height * std::sin(kPi * w), anterior.height, posterior.height);
   }
   return shape;
 }
@@ -237,16 +259,21 @@ Vec3 mitral_closed_point(const MitralShape& shape, double u, double t) {
   const Vec3 start = annulus_at(shape, u, at, true);
   const double w = line_parameter(shape, u, at.fraction);
   const Vec3 meeting = coaptation_point(shape, w), line = meeting - start;
-  const double reach = domed_length(start, meeting), length = t * at.height;
+  const double reach = domed_length(shape.dimensions, start, meeting), length = t * at.height;
   if (length >= reach) return meeting - (length - reach) * Vec3::UnitZ();
   const double s = length / reach;
-  return start + s * line + 4 * kDome * line.norm() * s * (1 - s) * Vec3::UnitZ();
+  return start + s * line + 4 * shape.dimensions.dome * line.norm() * s * (1 - s) * Vec3::UnitZ();
+}
+
+double mitral_line_place(const MitralShape& shape, double u) {
+  return 1 - mitral_coaptation_height(shape, u) / position_at(shape, u).height;
 }
 
 double mitral_coaptation_height(const MitralShape& shape, double u) {
   const AnnulusPosition at = position_at(shape, u);
   const Vec3 start = annulus_at(shape, u, at, true);
-  return at.height - domed_length(start, coaptation_point(shape, line_parameter(shape, u, at.fraction)));
+  return at.height - domed_length(shape.dimensions, start,
+                                  coaptation_point(shape, line_parameter(shape, u, at.fraction)));
 }
 
 }  // namespace coapt

@@ -12,6 +12,11 @@
 
 namespace coapt {
 
+// Where chords end. Even: fans along the free edge and a few to the belly, the network that comparisons and
+// tables of the documentation were made on. RoughZone: as in anatomy, every fan to the free edge has branches
+// to the line of coaptation too, and a few chords go farther to the belly.
+enum class MitralChords { Even, RoughZone };
+
 // Dimensions of a valve. The defaults are the mean valve; docs/generators.md gives the source of each
 // number and the range over which a seed varies it. What must fit together for the valve to close is given
 // as a ratio, so that a large annulus gets large leaflets.
@@ -34,11 +39,22 @@ struct MitralDimensions {
   double papillary_offset = 2;     // of the tips from the annulus centre towards anterior [mm]
   double chord_area_scale = 1;     // factor on all cross-sections of chords
   double thickness = 0.8;          // of the leaflets [mm]
+  double dome = 0.08;              // rise of a closed leaflet over its chord line / length of that line
+  MitralChords chords = MitralChords::Even;
+  double young = 0;  // of the leaflets [MPa]; 0: the valve states none
 };
 
-// Seed 0: the mean valve. Any other seed draws each dimension uniformly from its range; the same seed gives
-// the same valve on every platform.
-MitralDimensions mitral_dimensions(unsigned seed);
+// Closed: dimensions, tissue and chords within published ranges, of a valve that closes (docs/generators.md).
+// Benchmark: a valve without tissue of its own that leaks by some 9 mm2 under the usual one; comparisons,
+// tests and tables of the documentation were made on it.
+enum class MitralPreset { Closed, Benchmark };
+
+// What is a length below the annulus, times `scale`: the tenting and the places of the papillary muscles.
+void scale_depths(double scale, MitralDimensions& dimensions);
+
+// Seed 0: the mean valve. Any other seed draws each dimension uniformly from its range, of the preset Closed
+// the depths in parts of the diameter; the same seed gives the same valve on every platform.
+MitralDimensions mitral_dimensions(unsigned seed, MitralPreset preset = MitralPreset::Closed);
 
 enum class MitralLeaflet { Anterior, Posterior };
 
@@ -77,6 +93,9 @@ Vec3 mitral_open_normal(const MitralShape& shape, double u, double t);
 // to the coaptation line in a slight dome towards the atrium and hangs straight down from there. The line is
 // placed where both leaflets have the same length left. Used for rest lengths of chords and as a picture.
 Vec3 mitral_closed_point(const MitralShape& shape, double u, double t);  // [mm]
+
+// t of the coaptation line at the meridian u, above 1 where the leaflet does not reach it.
+double mitral_line_place(const MitralShape& shape, double u);
 
 // The length that hangs below the coaptation line at the meridian u, negative if it does not reach [mm].
 double mitral_coaptation_height(const MitralShape& shape, double u);

@@ -66,7 +66,7 @@ TEST(LeafletChordsTest, FindsTheRims) {
 }
 
 TEST(LeafletChordsTest, FindsTheRimsOfAMitralValve) {
-  const Valve known = mitral_valve({.triangles = 625});
+  const Valve known = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark});
   Valve valve;
   valve.leaflets = known.leaflets;
   valve.chords.papillary = known.chords.papillary;

@@ -16,7 +16,7 @@ namespace {
 
 // Corners on the annulus of the generated valve, anticlockwise.
 Points own_annulus(int count) {
-  const MitralShape shape = mitral_shape(mitral_dimensions(0));
+  const MitralShape shape = mitral_shape(mitral_dimensions(0, MitralPreset::Benchmark));
   Points points(3, count);
   for (int k = 0; k < count; ++k) points.col(k) = mitral_open_point(shape, double(k) / count, 0);
   return points;
@@ -39,8 +39,9 @@ double distance_from_polygon(const Vec3& x, const Points& polygon) {
 Points annulus_of(const Valve& valve) { return valve.leaflets.vertices(Eigen::all, valve.annulus); }
 
 TEST(MeasuredAnnulus, OfTheGeneratorItselfGivesItsOwnValve) {
-  const Valve usual = mitral_valve({.triangles = 625});
-  const Valve valve = mitral_valve({.triangles = 625}, {.name = "own", .annulus = own_annulus(4000)});
+  const Valve usual = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark});
+  const Valve valve = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                   {.name = "own", .annulus = own_annulus(4000)});
   const double tolerance = 1e-3;  // [mm]: a polygon of 4000 sides lies 6e-6 inside, its extents likewise
   ASSERT_EQ(valve.leaflets.triangles, usual.leaflets.triangles);
   EXPECT_LT((valve.leaflets.vertices - usual.leaflets.vertices).colwise().norm().maxCoeff(), tolerance);
@@ -63,9 +64,11 @@ TEST(MeasuredAnnulus, IsFollowedByTheVerticesWhereverItLies) {
   const Points placed = (turn * own_annulus(333)).colwise() + shift;
   Points reversed(3, 334);  // the other way round, from elsewhere, and closed by its first point
   for (int k = 0; k < 334; ++k) reversed.col(k) = placed.col((2 * 333 + 100 - k) % 333);
-  const Valve usual = mitral_valve({.triangles = 625}, {.name = "own", .annulus = own_annulus(333)});
+  const Valve usual = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                   {.name = "own", .annulus = own_annulus(333)});
   for (const Points& points : {placed, reversed}) {
-    const Valve valve = mitral_valve({.triangles = 625}, {.name = "placed", .annulus = points});
+    const Valve valve = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                     {.name = "placed", .annulus = points});
     const Points expected = (turn * usual.leaflets.vertices).colwise() + shift;
     EXPECT_LT((valve.leaflets.vertices - expected).colwise().norm().maxCoeff(), 1e-9);
     for (const int v : valve.annulus)
@@ -78,7 +81,8 @@ TEST(MeasuredAnnulus, OfEveryCoarseOrUnevenCurveHasItsVerticesOnIt) {
   for (int k = 0; k < 60; ++k)
     uneven.col(k) += 0.4 * Vec3(std::sin(5.0 * k), std::sin(9.0 * k), std::cos(7.0 * k));
   for (const Points& points : {own_annulus(8), own_annulus(24), uneven}) {
-    const Valve valve = mitral_valve({.triangles = 2500}, {.name = "curve", .annulus = points});
+    const Valve valve = mitral_valve({.triangles = 2500, .preset = MitralPreset::Benchmark},
+                                     {.name = "curve", .annulus = points});
     for (const int v : valve.annulus)
       EXPECT_LT(distance_from_polygon(valve.leaflets.vertices.col(v), points), 1e-9);
     EXPECT_TRUE(valve.leaflets.vertices.allFinite());
@@ -87,8 +91,10 @@ TEST(MeasuredAnnulus, OfEveryCoarseOrUnevenCurveHasItsVerticesOnIt) {
 }
 
 TEST(MeasuredAnnulus, ScalesTheValve) {
-  const Valve usual = mitral_valve({.triangles = 625}, {.name = "own", .annulus = own_annulus(400)});
-  const Valve large = mitral_valve({.triangles = 625}, {.name = "large", .annulus = 1.25 * own_annulus(400)});
+  const Valve usual = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                   {.name = "own", .annulus = own_annulus(400)});
+  const Valve large = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                   {.name = "large", .annulus = 1.25 * own_annulus(400)});
   EXPECT_LT((large.leaflets.vertices - 1.25 * usual.leaflets.vertices).colwise().norm().maxCoeff(), 1e-9);
   EXPECT_EQ(large.thickness, usual.thickness);
   const auto depth = [](const Valve& valve) {
@@ -117,7 +123,8 @@ TEST(MeasuredAnnulus, TakesItsPapillaryTips) {
   Points tips(3, 5);
   tips << -16, 15, 17, -14, 16, 3, 2, -1, 0, 4, -24, -25, -23, -24, -22;
   const Points own = own_annulus(400);
-  const Valve valve = mitral_valve({.triangles = 625}, {.name = "own", .annulus = own, .papillary = tips});
+  const Valve valve = mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark},
+                                   {.name = "own", .annulus = own, .papillary = tips});
   ASSERT_EQ(valve.chords.papillary.cols(), 5);
   EXPECT_LT((valve.chords.papillary - tips(Eigen::all, std::vector<int>{1, 2, 4, 0, 3})).norm(), 1e-9)
       << "muscle by muscle";
@@ -143,7 +150,8 @@ TEST(MeasuredAnnulus, TakesItsPapillaryTips) {
 
 std::string refusal(const Points& points, const AnnulusSides& sides = {}) {
   try {
-    mitral_valve({.triangles = 300}, {.name = "ring.csv", .annulus = points, .sides = sides});
+    mitral_valve({.triangles = 300, .preset = MitralPreset::Benchmark},
+                 {.name = "ring.csv", .annulus = points, .sides = sides});
   } catch (const InputError& error) {
     return error.what();
   }

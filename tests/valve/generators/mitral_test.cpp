@@ -122,7 +122,7 @@ void expect_sound_chords(const Valve& valve) {
 TEST(MitralValve, MeetsEachCountWithinATwentiethAndIsSound) {
   for (const int wanted : kSizes) {
     SCOPED_TRACE(wanted);
-    const Valve valve = mitral_valve({.triangles = wanted});
+    const Valve valve = mitral_valve({.triangles = wanted, .preset = MitralPreset::Benchmark});
     EXPECT_NEAR(valve.leaflets.triangle_count(), wanted, 0.05 * wanted);
     expect_sound_leaflets(valve);
     expect_sound_chords(valve);
@@ -130,7 +130,7 @@ TEST(MitralValve, MeetsEachCountWithinATwentiethAndIsSound) {
 }
 
 TEST(MitralValve, HasTheDimensionsOfTheMeanValve) {
-  const Valve valve = mitral_valve({.triangles = 10000});
+  const Valve valve = mitral_valve({.triangles = 10000, .preset = MitralPreset::Benchmark});
   const Points ring = points_of(valve, valve.annulus);
   EXPECT_NEAR(ring.row(0).maxCoeff() - ring.row(0).minCoeff(), 36, 0.05);
   EXPECT_NEAR(ring.row(1).maxCoeff() - ring.row(1).minCoeff(), 0.81 * 36, 0.3);
@@ -148,7 +148,7 @@ TEST(MitralValve, HasTheDimensionsOfTheMeanValve) {
 }
 
 TEST(MitralValve, FacesTheVentricleWithItsOutside) {
-  const Valve valve = mitral_valve({.triangles = 2500});
+  const Valve valve = mitral_valve({.triangles = 2500, .preset = MitralPreset::Benchmark});
   for (int t = 0; t < valve.leaflets.triangle_count(); ++t) {
     const Vec3 normal = area_vector(valve.leaflets.vertices, valve.leaflets.triangles.col(t));
     const Vec3 at = valve.leaflets.vertices.col(valve.leaflets.triangles(0, t));
@@ -158,7 +158,7 @@ TEST(MitralValve, FacesTheVentricleWithItsOutside) {
 }
 
 TEST(MitralValve, HasTwoConnectedLeafletsThatMeetAtTheCommissures) {
-  const Valve valve = mitral_valve({.triangles = 2500});
+  const Valve valve = mitral_valve({.triangles = 2500, .preset = MitralPreset::Benchmark});
   ASSERT_EQ(valve.leaflets.region_names, (std::vector<std::string>{"anterior", "posterior"}));
   ASSERT_EQ(valve.leaflets.regions.size(), static_cast<size_t>(valve.leaflets.triangle_count()));
   for (const int commissure : valve.commissures) {
@@ -181,10 +181,10 @@ TEST(MitralValve, HasTwoConnectedLeafletsThatMeetAtTheCommissures) {
 }
 
 TEST(MitralValve, HasTheSameChordsAtEveryMeshSize) {
-  const Valve fine = mitral_valve({.triangles = kSizes[4]});
+  const Valve fine = mitral_valve({.triangles = kSizes[4], .preset = MitralPreset::Benchmark});
   for (const int wanted : kSizes) {
     SCOPED_TRACE(wanted);
-    const Valve valve = mitral_valve({.triangles = wanted});
+    const Valve valve = mitral_valve({.triangles = wanted, .preset = MitralPreset::Benchmark});
     EXPECT_EQ(valve.chords.papillary, fine.chords.papillary);
     ASSERT_EQ(valve.chords.chords.size(), fine.chords.chords.size());
     const double cell = mean_edge_length(valve.leaflets.vertices, valve.leaflets.triangles);
@@ -206,7 +206,7 @@ TEST(MitralValve, IsValidAndDifferentForEachOfTwentySeeds) {
   std::set<double> areas;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Valve valve = mitral_valve({.triangles = 625, .seed = seed});
+    const Valve valve = mitral_valve({.triangles = 625, .seed = seed, .preset = MitralPreset::Benchmark});
     EXPECT_NEAR(valve.leaflets.triangle_count(), 625, 0.05 * 625);
     expect_sound_leaflets(valve);
     expect_sound_chords(valve);
@@ -217,7 +217,7 @@ TEST(MitralValve, IsValidAndDifferentForEachOfTwentySeeds) {
     EXPECT_GT(ratio, 1.4);
     EXPECT_LT(ratio, 1.9);
     areas.insert(area);
-    const MitralShape shape = mitral_shape(mitral_dimensions(seed));
+    const MitralShape shape = mitral_shape(mitral_dimensions(seed, MitralPreset::Benchmark));
     for (int i = 0; i < 200; ++i) EXPECT_GT(mitral_coaptation_height(shape, i / 200.0), 2) << i;
   }
   EXPECT_EQ(areas.size(), 20u);
@@ -225,24 +225,68 @@ TEST(MitralValve, IsValidAndDifferentForEachOfTwentySeeds) {
 
 TEST(MitralValve, NeitherMeshNorChordsPassThroughTheLeafletsOfTheMeanValve) {
   for (const int wanted : {625, 2500}) {
-    const Valve valve = mitral_valve({.triangles = wanted});
+    const Valve valve = mitral_valve({.triangles = wanted, .preset = MitralPreset::Benchmark});
     EXPECT_FALSE(intersects_itself(valve.leaflets));
     EXPECT_EQ(chords_through_the_leaflets(valve), 0);
   }
 }
 
 TEST(MitralValve, IsReproducedBitByBitFromItsSeed) {
-  const Valve a = mitral_valve({.triangles = 625, .seed = 7}),
-              b = mitral_valve({.triangles = 625, .seed = 7});
+  const Valve a = mitral_valve({.triangles = 625, .seed = 7, .preset = MitralPreset::Benchmark}),
+              b = mitral_valve({.triangles = 625, .seed = 7, .preset = MitralPreset::Benchmark});
   EXPECT_EQ(a.leaflets.vertices, b.leaflets.vertices);
   EXPECT_EQ(a.chords.junctions, b.chords.junctions);
   // The generator's output is fixed by the C++ standard: this number must not depend on the platform.
-  EXPECT_NEAR(mitral_dimensions(1).commissural_diameter, 36 + 4 * (2 * (1791095845 / 4294967296.0) - 1),
-              1e-12);
+  EXPECT_NEAR(mitral_dimensions(1, MitralPreset::Benchmark).commissural_diameter,
+              36 + 4 * (2 * (1791095845 / 4294967296.0) - 1), 1e-12);
+}
+
+TEST(ClosedPreset, IsTheDefaultAndSoundForEachOfTwentySeeds) {
+  for (unsigned seed = 0; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const Valve valve = mitral_valve({.triangles = 625, .seed = seed});
+    expect_sound_leaflets(valve);
+    expect_sound_chords(valve);
+    EXPECT_FALSE(intersects_itself(valve.leaflets));
+    EXPECT_EQ(chords_through_the_leaflets(valve), 0);
+    const double area = surface_area(valve.leaflets.vertices, valve.leaflets.triangles);
+    const double ratio = area / loop_area(points_of(valve, valve.annulus));
+    EXPECT_GT(ratio, 1.95 - 0.40);  // Chaput et al. 2008
+    EXPECT_LT(ratio, 1.95 + 0.40);
+  }
+}
+
+TEST(ClosedPreset, HasTissueAndTrunksAtEveryMeshSize) {
+  const Valve fine = mitral_valve({.triangles = 10000});
+  for (const int wanted : {625, 2500}) {
+    const Valve valve = mitral_valve({.triangles = wanted});
+    EXPECT_EQ(valve.chords.papillary, fine.chords.papillary);
+    EXPECT_EQ(valve.chords.chords.size(), fine.chords.chords.size());
+    for (const std::string& region : valve.leaflets.region_names) {
+      ASSERT_TRUE(valve.membranes.contains(region));
+      EXPECT_EQ(valve.membranes.at(region).type, "cst_tension_field");
+    }
+  }
+  EXPECT_TRUE(mitral_valve({.triangles = 625, .preset = MitralPreset::Benchmark}).membranes.empty());
+}
+
+TEST(ClosedPreset, HoldsTheRoughZoneAtTheLineOfCoaptation) {
+  const MitralDimensions dimensions = mitral_dimensions(0);
+  const MitralShape shape = mitral_shape(dimensions);
+  const Valve valve = mitral_valve({.triangles = 2500});
+  const MitralMesh mesh = mitral_mesh(shape, 2500);
+  int below = 0;  // chords that end between the line and the free edge
+  for (const Chord& chord : valve.chords.chords) {
+    if (chord.to.kind != ChordEnd::Kind::Leaflet) continue;
+    const Eigen::Vector2d at = mesh.coordinates.col(chord.to.index);
+    below += at[1] < 1 && at[1] > mitral_line_place(shape, at[0]);
+  }
+  EXPECT_GT(below, 2 * 9);  // a pair for each fan of the rough zone, less where two share a vertex
+  EXPECT_THROW(mitral_preset("healthy"), InputError);
 }
 
 TEST(MitralValve, MeridiansKeepTheirLengthInBothShapes) {
-  const MitralShape shape = mitral_shape(mitral_dimensions(0));
+  const MitralShape shape = mitral_shape(mitral_dimensions(0, MitralPreset::Benchmark));
   constexpr int kSteps = 2000;
   for (const double u : {0.05, 0.2, 0.5, 0.7, 0.9}) {
     double open = 0, closed = 0;
@@ -256,7 +300,7 @@ TEST(MitralValve, MeridiansKeepTheirLengthInBothShapes) {
 }
 
 TEST(MitralValve, MeetsInTheClosedShape) {
-  const MitralShape shape = mitral_shape(mitral_dimensions(0));
+  const MitralShape shape = mitral_shape(mitral_dimensions(0, MitralPreset::Benchmark));
   for (const double fraction : {0.2, 0.4, 0.5, 0.7}) {
     const double anterior = mitral_coordinate(shape, MitralLeaflet::Anterior, fraction);
     const double posterior = mitral_coordinate(shape, MitralLeaflet::Posterior, 1 - fraction);
@@ -268,7 +312,7 @@ TEST(MitralValve, MeetsInTheClosedShape) {
 
 TEST(MitralValve, RefusesTooFewTrianglesAndBranchesOutOfRangeTogether) {
   try {
-    mitral_valve({.triangles = 50, .branches = 9});
+    mitral_valve({.triangles = 50, .branches = 9, .preset = MitralPreset::Benchmark});
     FAIL() << "an impossible valve was made";
   } catch (const InputError& error) {
     EXPECT_EQ(error.defects().size(), 2u);
