@@ -99,6 +99,12 @@ install(FILES ${PROJECT_BINARY_DIR}/coaptConfig.cmake ${PROJECT_BINARY_DIR}/coap
         DESTINATION ${coapt_config_dir} COMPONENT core)
 if(TARGET coapt_command)
   install(TARGETS coapt_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
+  get_target_property(coapt_pages coapt_command COAPT_PAGES)
+  install(DIRECTORY ${coapt_pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT command
+          FILES_MATCHING PATTERN "*.1")
+  install(FILES ${coapt_pages}/coapt.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME coapt COMPONENT command)
+  install(FILES ${coapt_pages}/_coapt DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT command)
   install(FILES ${PROJECT_SOURCE_DIR}/schema/scene.schema.json ${PROJECT_SOURCE_DIR}/schema/result.schema.json
           DESTINATION ${CMAKE_INSTALL_DATADIR}/coapt/schema COMPONENT command)
 endif()

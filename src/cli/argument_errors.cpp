@@ -1,6 +1,7 @@
 #include "cli/argument_errors.hpp"
 
 #include "cli/command_line.hpp"
+#include "cli/option_words.hpp"
 #include "formats/json/suggestion.hpp"
 
 #include <algorithm>
@@ -10,8 +11,7 @@ namespace {
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
+  for (const CLI::App* command : shown_commands(app)) names.push_back(command->get_name());
   return names;
 }
 
@@ -22,10 +22,10 @@ std::vector<const CLI::App*> named_commands(const CLI::App& app) {
   return named;
 }
 
-std::vector<std::string> option_names(const CLI::App& command) {
+std::vector<std::string> all_option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option_names(*option)) names.push_back(name);
   return names;
 }
 
@@ -58,7 +58,7 @@ std::string argument_error(const CLI::App& app, const CLI::ParseError& error,
     return "coapt" + path + ": there is no \"" + word + "\"" + suggestion(word, known) +
            "; there are: " + listed(known) + help;
   }
-  const std::vector<std::string> options = option_names(command);
+  const std::vector<std::string> options = all_option_names(command);
   for (const std::string& argument : arguments) {
     const std::string name = name_of(argument);
     if (name.starts_with("--") && std::find(options.begin(), options.end(), name) == options.end())

@@ -31,10 +31,14 @@ CLI::Option* add_checkpoint_arguments(CLI::App& command, CheckpointArguments& ar
 CheckpointFile::CheckpointFile(const CheckpointArguments& arguments, std::string work, std::string command)
     : path_(arguments.file.empty() ? arguments.resumed : arguments.file),
       resumed_(arguments.resumed),
+      lock_(path_.empty() ? std::nullopt : formats::FileLock::taken(fs::path(path_) += ".lock")),
       work_(std::move(work)),
       command_(std::move(command)) {}
 
 std::optional<std::string> CheckpointFile::defect() const {
+  if (!lock_)
+    return path_.string() + ": another process keeps its " + work_ +
+           " in this file; wait for its end, or name another file with --checkpoint";
   std::error_code error;
   const bool is_same = !resumed_.empty() && (path_ == resumed_ || fs::equivalent(path_, resumed_, error));
   if (is_same || !fs::exists(path_, error)) return std::nullopt;

@@ -1,6 +1,8 @@
 // --checkpoint, --checkpoint-every and --resume: the file of work that outlives its process.
 #pragma once
 
+#include "formats/file_lock.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -24,13 +26,15 @@ struct CheckpointArguments {
 CLI::Option* add_checkpoint_arguments(CLI::App& command, CheckpointArguments& arguments,
                                       const std::string& work, double every);
 
-// What cannot be written on the way is said at the end and does not stop the work.
+// What cannot be written on the way is said at the end and does not stop the work. No other process keeps its
+// work in the file meanwhile.
 class CheckpointFile {
  public:
+  // Throws InputError for a file in a folder that is not there or cannot be written.
   CheckpointFile(const CheckpointArguments& arguments, std::string work, std::string command);
 
   const std::filesystem::path& path() const { return path_; }
-  // A file is there already that is not the one to resume.
+  // A file is there already that is not the one to resume, or another process has it.
   std::optional<std::string> defect() const;
 
   void keep(const std::function<void(const std::filesystem::path&)>& write);
@@ -39,6 +43,7 @@ class CheckpointFile {
 
  private:
   std::filesystem::path path_, resumed_;
+  std::optional<formats::FileLock> lock_;  // empty: another process has it
   std::string work_, command_;
   std::string failure_;  // of the last time that it was written
 };

@@ -1,83 +1,76 @@
 // The command `coapt`: arguments in, exit code out.
-#include "cli/argument_errors.hpp"
-#include "cli/command_line.hpp"
-#include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
-#include "core/components.hpp"
-#include "core/error.hpp"
+#include "cli/application.hpp"
+#include "cli/text_output.hpp"
+#include "core/output_error.hpp"
 
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
-#include <iostream>
+#include <cstdlib>
+#include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
 namespace {
 
-std::string version_text() {
-  std::string text = "coapt " + coapt::version() + "\n";
-  for (const coapt::Component& component : coapt::components())
-    text += "  " + std::string(component.present ? "with    " : "without ") + component.name + " (" +
-            component.licence + "): " + component.gives + "\n";
-  return text + "Licence: " + coapt::combined_licence();
+using namespace coapt::cli;
+
+struct Failure {
+  int exit_code;
+  std::string kind;  // "error", "internal error"
+  std::vector<std::string> defects;
+};
+
+int print_failure(const Failure& failure, bool prints_json, TextOutput& text) {
+  text.restore();
+  for (const std::string& defect : failure.defects)
+    std::fprintf(stderr, "coapt: %s: %s\n", failure.kind.c_str(), defect.c_str());
+  if (prints_json) print_document(error_document(failure.defects));
+  return failure.exit_code;
 }
 
-int run_command(int argc, char** argv) {
-  using namespace coapt::cli;
-  CLI::App app("Closed, loaded equilibria of thin membranes by direct energy minimisation", "coapt");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", version_text, "Version, components and licence");
-  int exit_code = kConverged;
-  add_solve_command(app, exit_code);
-  add_check_command(app, exit_code);
-  add_generate_command(app, exit_code);
-  add_import_command(app, exit_code);
-  add_chords_command(app, exit_code);
-  add_export_command(app, exit_code);
-  add_schema_command(app, exit_code);
-  add_mesh_study_command(app, exit_code);
-  add_sensitivity_command(app, exit_code);
-  add_tune_command(app, exit_code);
-  add_tune_regions_command(app, exit_code);
-  add_intervene_command(app, exit_code);
-  add_study_command(app, exit_code);
-  add_compare_command(app, exit_code);
-  add_register_command(app, exit_code);
-  add_bench_command(app, exit_code);
-  add_stress_command(app, exit_code);
-  add_image_command(app, exit_code);
-  add_phantom_command(app, exit_code);
-  app.footer(
-      "Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error, 4 converged "
-      "(result written) but its stability is in doubt.");
-  const std::vector<std::string> arguments = with_help_option({argv + 1, argv + argc});
+int run(const std::vector<std::string>& arguments, Session& session, TextOutput& text) {
+  run_application(arguments, session, text);
+  const bool has_arrived = text.restore() && (!session.prints_json || session.document.empty() ||
+                                              print_document(session.document));
+  if (has_arrived) return session.exit_code;
+  return print_failure({kUnwritten, "error", {"the standard output cannot be written; is the disk full?"}},
+                       false, text);
+}
+
+// Ends the process at once: where memory is short a thread of OpenBLAS waits for some forever, and so would
+// the end of the libraries that waits for it.
+[[noreturn]] void leave(int exit_code) {
+  std::fflush(nullptr);
+  std::_Exit(exit_code);
+}
+
+int exit_code_of(int argc, char** argv) {
+  // A file beyond a limit of size is an error of writing like a full disk, and ends no run.
+  std::signal(SIGXFSZ, SIG_IGN);
+  TextOutput text;
+  Session session;
+  bool prints_json = false;
   try {
-    app.parse(std::vector<std::string>(arguments.rbegin(),
-                                       arguments.rend()));  // from the last on, as CLI11 wants them
-  } catch (const CLI::Success& wanted) {                    // help or version
-    return app.exit(wanted);
-  } catch (const CLI::ParseError& error) {
-    std::cerr << "coapt: error: " << argument_error(app, error, arguments) << "\n";
-    return kBadInput;
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    prints_json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+    return run(arguments, session, text);
+  } catch (const coapt::OutputError& error) {
+    return print_failure({kUnwritten, "error", error.defects()}, prints_json, text);
+  } catch (const coapt::InputError& error) {
+    return print_failure({kBadInput, "error", error.defects()}, prints_json, text);
+  } catch (const std::bad_alloc&) {
+    return print_failure({kInternal,
+                          "error",
+                          {"there is not enough memory; take a coarser mesh, or raise the limit "
+                           "of memory (ulimit -v)"}},
+                         prints_json, text);
+  } catch (const std::exception& error) {
+    return print_failure({kInternal, "internal error", {error.what()}}, prints_json, text);
   }
-  return exit_code;
 }
-
-// Whether all that was printed has arrived: a full disk shows only when the buffers are emptied.
-bool is_printed() { return std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    const int exit_code = run_command(argc, argv);
-    if (is_printed()) return exit_code;
-    std::cerr << "coapt: error: the standard output cannot be written; is the disk full?\n";
-    return coapt::cli::kBadInput;
-  } catch (const coapt::InputError& error) {
-    for (const std::string& defect : error.defects()) std::cerr << "coapt: error: " << defect << "\n";
-    return coapt::cli::kBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "coapt: internal error: " << error.what() << "\n";
-    return coapt::cli::kInternal;
-  }
-}
+int main(int argc, char** argv) { leave(exit_code_of(argc, argv)); }

@@ -1,8 +1,12 @@
 #include "cli/progress.hpp"
 
+#include "cli/progress_estimate.hpp"
+#include "core/timing.hpp"
+
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <unistd.h>
 
 namespace coapt::cli {
@@ -12,7 +16,21 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 volatile std::sig_atomic_t interrupted = 0;
 
-void on_interrupt(int) { interrupted = 1; }
+constexpr double kLogPause = 5;  // [s] between lines where nobody watches
+
+// What a run of make_observer() has shown.
+struct ShownProgress {
+  double start = wall_seconds(), last = start;
+  ProgressEstimate estimate;
+};
+
+constexpr unsigned kIterateTime = 120;  // [s] that an iterate may still take after a signal
+
+// A library that waits for memory may never come back to an iterate: then the alarm ends the process.
+void on_interrupt(int) {
+  interrupted = 1;
+  alarm(kIterateTime);
+}
 
 }  // namespace
 
@@ -29,16 +47,25 @@ void listen_for_interrupts() {
   }
 }
 
-bool is_interrupted() { return interrupted != 0; }
+bool is_interrupted() {
+  if (interrupted == 0) return false;
+  alarm(0);
+  return true;
+}
 
-Observer make_observer() {
-  const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  const auto last_shown = std::make_shared<double>(-1.0);
-  return [is_terminal, last_shown](const Iteration& it, const Vector&) {
-    if (is_terminal && it.seconds - *last_shown > 0.1) {
-      *last_shown = it.seconds;
-      std::fprintf(stderr, "\r  iteration %d   residual %.2e   energy %.8g mJ   %.1f s\033[K", it.iteration,
-                   it.residual, it.energy, it.seconds);
+Observer make_observer(const Session& session, std::optional<double> wanted) {
+  if (session.is_quiet && !session.is_verbose)
+    return [](const Iteration&, const Vector&) { return !is_interrupted(); };
+  const bool is_terminal = isatty(STDERR_FILENO) == 1 && !session.is_verbose;
+  const double pause = session.is_verbose ? 0 : is_terminal ? 0.1 : kLogPause;
+  const auto shown = std::make_shared<ShownProgress>();
+  return [=](const Iteration& now, const Vector& q) {
+    shown->estimate.see(now);
+    if (wall_seconds() - shown->last >= pause) {
+      shown->last = wall_seconds();
+      const std::string line = progress_line(now, q.size() / 3, wanted, shown->last - shown->start,
+                                             wanted ? shown->estimate.seconds_left(*wanted) : std::nullopt);
+      std::fprintf(stderr, is_terminal ? "\r  %s\033[K" : "  %s\n", line.c_str());
       std::fflush(stderr);
     }
     return !is_interrupted();

@@ -1,24 +1,29 @@
-// What a user sees and can do while a solve runs: a progress line on a terminal, and Ctrl-C.
+// What a user sees and can do while a solve runs: its progress, and Ctrl-C.
 #pragma once
 
+#include "cli/session.hpp"
 #include "optim/solver.hpp"
+
+#include <optional>
 
 namespace coapt::cli {
 
 // From now on SIGINT and SIGTERM ask the run to stop; a second one ends the process at once. One that whoever
 // started the process had it ignore stays ignored: a shell without job control starts `coapt ... &` that way
 // with SIGINT. Such a signal is otherwise lost or heeded depending on whether it comes before or after this
-// call.
+// call. A run that does not ask is_interrupted() within two minutes of the signal is ended all the same.
 void listen_for_interrupts();
 
-// Whether such a signal has come.
+// Whether such a signal has come; whoever asks is about to stop.
 bool is_interrupted();
 
-// Writes a progress line to the standard error stream when that is a terminal, and cancels the run after
-// an interrupt.
-Observer make_observer();
+// Shows on the standard error how far a solve is: step, iterations, residual and the one that is wanted,
+// where that is known, time since this call, and what is left by estimate. On a terminal in one line,
+// elsewhere as a line every five seconds, none for --quiet, for --verbose a line at every iterate. Asks the
+// run to stop after an interrupt.
+Observer make_observer(const Session& session, std::optional<double> wanted = std::nullopt);
 
-// Clears the progress line.
+// Takes the line of a terminal away.
 void end_progress();
 
 }  // namespace coapt::cli

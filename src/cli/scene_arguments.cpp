@@ -1,6 +1,7 @@
 #include "cli/scene_arguments.hpp"
 
 #include "cli/command_line.hpp"
+#include "cli/written_document.hpp"
 
 #include <cstdio>
 
@@ -32,9 +33,10 @@ ImportOptions import_options(const SceneArguments& arguments) {
   return options;
 }
 
-void announce_scene(const std::string& folder) {
+std::string announce_scene(const std::string& folder, const std::vector<std::string>& warnings) {
   const std::string scene = (std::filesystem::path(folder) / "scene.json").string();
   std::printf("written: %s\nnext:    coapt solve %s\n", scene.c_str(), scene.c_str());
+  return written_document({scene}, warnings);
 }
 
 }  // namespace coapt::cli

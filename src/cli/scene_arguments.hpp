@@ -21,7 +21,7 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments,
                        const std::vector<std::string>& pressures);
 ImportOptions import_options(const SceneArguments& arguments);
 
-// Says where the scene is and how to solve it.
-void announce_scene(const std::string& folder);
+// Says where the scene is and how to solve it. Returns the document of the command.
+std::string announce_scene(const std::string& folder, const std::vector<std::string>& warnings = {});
 
 }  // namespace coapt::cli

@@ -47,12 +47,12 @@ void SolveCheckpoint::keep(const RunRecord& record) {
   file_.keep([&](const std::filesystem::path& path) { write_checkpoint(path, identity_, record); });
 }
 
-void SolveCheckpoint::finish(const std::string& scene) {
+void SolveCheckpoint::finish(const std::string& scene, bool is_written) {
   is_finished_ = true;
   if (recorder_->has_left_history())
     std::printf(
         "  warning: the run departed from the history in its checkpoint, and was solved anew from there\n");
-  if (!recorder_->is_cut_short()) return file_.remove();
+  if (!recorder_->is_cut_short() && is_written) return file_.remove();
   keep(recorder_->record());
   file_.print_how_to_go_on(scene);
 }

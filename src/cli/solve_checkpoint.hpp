@@ -30,8 +30,8 @@ class SolveCheckpoint {
   Observer recorded(Observer next) { return recorder_->recorded(std::move(next)); }
 
   // Call it when the results are written: removes the file of a run that went to its end, and says on the
-  // standard output how one that was cut short goes on.
-  void finish(const std::string& scene);
+  // standard output how one that was cut short, or whose results are not all written, goes on.
+  void finish(const std::string& scene, bool is_written = true);
 
  private:
   void keep(const RunRecord& record);

@@ -4,6 +4,7 @@
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
 #include "formats/text.hpp"
+#include "run/replaced_inputs.hpp"
 
 #include <charconv>
 
@@ -24,7 +25,7 @@ std::string steps_defect(const std::string& text) {
 
 }  // namespace
 
-RunOptions StudyArguments::options() const {
+RunOptions StudyArguments::options(const Session& session) const {
   RunOptions options;
   options.solver = solver;
   if (tolerance > 0) options.tolerance = tolerance;
@@ -32,13 +33,14 @@ RunOptions StudyArguments::options() const {
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer();
+  options.observer = make_observer(session, options.tolerance);
   return options;
 }
 
-std::filesystem::path StudyArguments::prepared_folder(const Scene& read) const {
+std::filesystem::path StudyArguments::folder_for(const Scene& read,
+                                                 const std::vector<std::string>& names) const {
   std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
-  prepare_result_folder(path);
+  refuse_replaced_inputs(read, path, names);
   return path;
 }
 

@@ -1,6 +1,7 @@
 // Options that every command with many solves has.
 #pragma once
 
+#include "cli/session.hpp"
 #include "run/branches.hpp"
 
 #include <optional>
@@ -18,9 +19,10 @@ struct StudyArguments {
   double tolerance = 0, max_seconds = 0;  // 0: not given
   std::optional<int> damped_steps;
 
-  RunOptions options() const;
-  // Where the files go: `-o`, or the scene's result folder. Made if it is missing. Throws InputError.
-  std::filesystem::path prepared_folder(const Scene& read) const;
+  RunOptions options(const Session& session) const;
+  // Where the files go: `-o`, or the scene's result folder. Throws InputError where that is not allowed, and
+  // where a file of one of these names, see refuse_replaced_inputs(), would take the place of an input.
+  std::filesystem::path folder_for(const Scene& read, const std::vector<std::string>& names) const;
 };
 
 // For a number given as an option: empty, or what is wrong with it. CLI11's own checks let NaN pass.

@@ -1,6 +1,6 @@
 #include "formats/durable_file.hpp"
 
-#include "core/error.hpp"
+#include "core/output_error.hpp"
 
 #include <fcntl.h>
 #include <fstream>
@@ -37,7 +37,7 @@ void write_beside(const fs::path& path, const fs::path& beside, std::string_view
   stream.close();
   if (!stream || !reaches_the_disk(beside)) {
     fs::remove(beside, error);
-    throw InputError(path.string() + ": writing failed; is the disk full?");
+    throw OutputError(path.string() + ": writing failed; is the disk full?");
   }
 }
 
@@ -52,7 +52,7 @@ void write_durable(const fs::path& path, std::string_view bytes) {
   if (error) {
     const std::string reason = error.message();
     fs::remove(beside, error);
-    throw InputError(path.string() + ": cannot be written (" + reason + ")");
+    throw OutputError(path.string() + ": cannot be written (" + reason + ")");
   }
   reaches_the_disk(fs::absolute(path).parent_path());
 }

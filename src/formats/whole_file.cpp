@@ -1,6 +1,6 @@
 #include "formats/whole_file.hpp"
 
-#include "core/error.hpp"
+#include "core/output_error.hpp"
 
 #include <chrono>
 #include <fstream>
@@ -51,14 +51,14 @@ void write_whole(const std::filesystem::path& path, std::initializer_list<std::s
     stream.close();
     if (!stream) {
       std::filesystem::remove(part, error);
-      throw InputError(path.string() + ": writing failed; is the disk full?");
+      throw OutputError(path.string() + ": writing failed; is the disk full?");
     }
   }
   std::filesystem::rename(part, path, error);
   if (error) {
     const std::string reason = error.message();
     std::filesystem::remove(part, error);
-    throw InputError(path.string() + ": cannot be written (" + reason + ")");
+    throw OutputError(path.string() + ": cannot be written (" + reason + ")");
   }
 }
 

@@ -16,7 +16,8 @@ std::string read_whole(const std::filesystem::path& path,
                        std::uintmax_t greatest = std::numeric_limits<std::uintmax_t>::max());
 
 // Writes the parts one after the other to a file beside the target and renames it: the target is whole or
-// untouched, and nothing else is left behind. Throws InputError when that fails, and where the target is
+// untouched, and nothing else is left behind. Throws InputError when that fails (OutputError where
+// the file was begun: a full disk), and where the target is
 // there and no regular file (a folder, a device): it would take its place.
 void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
 inline void write_whole(const std::filesystem::path& path, std::string_view bytes) {

@@ -1,5 +1,6 @@
 #include "mesh/projected_area.hpp"
 
+#include "core/bounded_int.hpp"
 #include "core/error.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -130,7 +131,7 @@ class Sweep {
     next_ = 0;
     for (size_t i = 0; i + 1 < breaks_.size(); ++i) {
       const double height = breaks_[i + 1] - breaks_[i];
-      const int rows = refinement * std::max(1, static_cast<int>(std::ceil(height / highest)));
+      const int rows = refinement * bounded_int(std::ceil(height / highest), 1, kCoarsest);
       result.row_height = std::max(result.row_height, height / rows);
       result.row_count += rows;
       for (int row = 0; row < rows; ++row)

@@ -1,5 +1,6 @@
 #include "mesh/seams.hpp"
 
+#include "core/bounded_int.hpp"
 #include "mesh/seam_graph.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "mesh/vertex_graph.hpp"
@@ -152,7 +153,7 @@ double length_of(const Seam& seam) {
 
 std::vector<Seam> seams(const TopView& view, const ClosedView& closed, const Points& x,
                         const Triangles& triangles, const SeamRules& rules) {
-  const int shortest = std::max(2, static_cast<int>(std::ceil(rules.shortest / view.cell)));
+  const int shortest = bounded_int(std::ceil(rules.shortest / view.cell), 2, std::max(2, view.node_count()));
   const int reach = std::max(6, 2 * rules.radius);
   std::vector<Seam> found;
   for (const SeamChain& chain :

@@ -1,14 +1,19 @@
 #include "mesh/top_view.hpp"
 
+#include "core/bounded_int.hpp"
 #include "core/error.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace coapt {
 namespace {
+
+constexpr int kMostLines = 1 << 14;  // of a view, each way: the number of its nodes is an int
 
 struct Crossing {
   double x = 0, height = 0;
@@ -29,15 +34,21 @@ struct Lines {
   int count = 0;
 };
 
+// The first and the last of the places 0 .. count - 1 from `low` to `high`; the last below the first where
+// there are none. What has run away lies beyond any int.
+std::pair<int, int> places_between(double low, double high, int count) {
+  return {bounded_int(std::ceil(low), 0, count), bounded_int(std::floor(high), -1, count - 1)};
+}
+
 // Calls visit(line, triangle, strip) for every line that crosses a triangle.
 template <typename Visit>
 void cross_triangles(const Points& plan, const Triangles& triangles, const Lines& lines, const Visit& visit) {
   for (int t = 0; t < triangles.cols(); ++t) {
     const Vec3 corner[3] = {plan.col(triangles(0, t)), plan.col(triangles(1, t)), plan.col(triangles(2, t))};
     const auto [low, high] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
-    const double first = std::max(0.0, std::ceil((low - lines.origin) / lines.spacing));
-    const double last = std::min(lines.count - 1.0, std::floor((high - lines.origin) / lines.spacing));
-    for (int line = static_cast<int>(first); line <= last; ++line) {
+    const auto [first, last] = places_between((low - lines.origin) / lines.spacing,
+                                              (high - lines.origin) / lines.spacing, lines.count);
+    for (int line = first; line <= last; ++line) {
       const double y = lines.origin + line * lines.spacing;
       Crossing ends[3];
       int found = 0;
@@ -54,10 +65,10 @@ void add_outside(const Points& polygon, const Lines& lines, std::vector<std::vec
   std::vector<std::vector<Crossing>> crossings(blocked.size());
   for (Eigen::Index c = 0; c < polygon.cols(); ++c) {
     const Vec3 a = polygon.col(c), b = polygon.col((c + 1) % polygon.cols());
-    const double first = std::max(0.0, std::ceil((std::min(a[1], b[1]) - lines.origin) / lines.spacing));
-    const double last =
-        std::min(lines.count - 1.0, std::floor((std::max(a[1], b[1]) - lines.origin) / lines.spacing));
-    for (int line = static_cast<int>(first); line <= last; ++line)
+    const auto [first, last] =
+        places_between((std::min(a[1], b[1]) - lines.origin) / lines.spacing,
+                       (std::max(a[1], b[1]) - lines.origin) / lines.spacing, lines.count);
+    for (int line = first; line <= last; ++line)
       if (Crossing at; crosses(a, b, lines.origin + line * lines.spacing, at))
         crossings[static_cast<size_t>(line)].push_back(at);
   }
@@ -113,11 +124,11 @@ std::vector<char> between(const TopView& view, const std::vector<std::vector<Str
 }
 
 void raise_nodes(TopView& view, int row, int triangle, const Strip& strip) {
-  const double first = std::max(0.0, std::ceil((strip.begin - view.x0) / view.cell));
-  const double last = std::min(view.columns - 1.0, std::floor((strip.end - view.x0) / view.cell));
+  const auto [first, last] =
+      places_between((strip.begin - view.x0) / view.cell, (strip.end - view.x0) / view.cell, view.columns);
   const double slope =
       strip.end > strip.begin ? (strip.end_height - strip.begin_height) / (strip.end - strip.begin) : 0;
-  for (int i = static_cast<int>(first); i <= last; ++i) {
+  for (int i = first; i <= last; ++i) {
     const double height = strip.begin_height + slope * (view.x0 + i * view.cell - strip.begin);
     const auto node = static_cast<size_t>(row * view.columns + i);
     if (height <= view.height[node]) continue;
@@ -158,8 +169,10 @@ TopView top_view(const Points& points, const Triangles& triangles, const Points&
   view.cell = cell;
   view.x0 = low[0] - (margin + 0.5) * cell;
   view.y0 = low[1] - (margin + 0.5) * cell;
-  view.columns = static_cast<int>(std::ceil(extent[0] / cell)) + 2 * margin + 2;
-  view.rows = static_cast<int>(std::ceil(extent[1] / cell)) + 2 * margin + 2;
+  if (!(extent.head<2>().maxCoeff() / cell + 2.0 * margin < kMostLines))
+    throw InputError("a view of more than " + std::to_string(kMostLines) + " lines; choose larger cells");
+  view.columns = bounded_int(std::ceil(extent[0] / cell), 0, kMostLines) + 2 * margin + 2;
+  view.rows = bounded_int(std::ceil(extent[1] / cell), 0, kMostLines) + 2 * margin + 2;
   view.height.assign(static_cast<size_t>(view.node_count()), -kInfinity);
   view.triangle.assign(static_cast<size_t>(view.node_count()), -1);
   view.blocked_rows.resize(static_cast<size_t>(view.rows));

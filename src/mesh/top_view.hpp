@@ -45,8 +45,8 @@ struct TopView {
 // The grid covers the closed polygon with at least `margin` cells around it; what of the surface lies beyond
 // is not seen. Heights and strips are exact at the nodes and along the grid lines, whatever the cell; only
 // what is narrower than a cell can escape. O(n + lengths of the triangles over the cell + nodes).
-// Throws InputError for fewer than three corners. Pre: positions are finite, corner indices in range; cell >
-// 0.
+// Throws InputError for fewer than three corners, and for more than 2^14 lines. Pre: positions are finite,
+// corner indices in range; cell > 0.
 TopView top_view(const Points& points, const Triangles& triangles, const Points& polygon,
                  const ViewFrame& frame, double cell, int margin = 1);
 

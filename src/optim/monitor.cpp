@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <exception>
+#include <new>
 
 namespace coapt {
 namespace {
@@ -19,6 +20,8 @@ template <typename Evaluate>
 double guarded(Vector& g, Eigen::Index size, const Evaluate& evaluate) {
   try {
     return evaluate();
+  } catch (const std::bad_alloc&) {
+    throw;  // too little memory says nothing about the shape
   } catch (const std::exception&) {
     g.setConstant(size, kNaN);
     return kInfinity;

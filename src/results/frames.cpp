@@ -1,6 +1,5 @@
 #include "results/frames.hpp"
 
-#include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/vtk/vtp_writer.hpp"
 #include "formats/whole_file.hpp"
@@ -54,11 +53,19 @@ void FrameWriter::see(const Iteration& iteration, const Vector& q) {
   last_time_ = time;
   char name[32];
   std::snprintf(name, sizeof name, "frames/frame_%06d.vtp", count_++);
-  write_vtp(folder_ / name, frame(model_, model_.objective->positions(q)));
+  // A frame that is lost, as on a full disk, does not end the run that it shows.
+  if (failure_) return;
+  try {
+    write_vtp(folder_ / name, frame(model_, model_.objective->positions(q)));
+  } catch (const OutputError& error) {
+    failure_ = error;
+    return;
+  }
   entries_ += "    <DataSet timestep=\"" + number_text(time, 9) + "\" file=\"" + name + "\"/>\n";
 }
 
 void FrameWriter::finish() const {
+  if (failure_) throw OutputError(*failure_);
   formats::write_whole(
       folder_ / "frames.pvd",
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n" + entries_ +

@@ -2,10 +2,12 @@
 // `frames.pvd`.
 #pragma once
 
+#include "core/output_error.hpp"
 #include "optim/solver.hpp"
 #include "scene/build/model.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace coapt {
@@ -22,10 +24,10 @@ class FrameWriter {
   // every: at least 1. The model must outlive the writer. Throws InputError where nothing can be written.
   FrameWriter(const std::filesystem::path& folder, int every, const Model& model);
 
-  // Call it at each accepted iterate. Throws InputError where a frame cannot be written.
+  // Call it at each accepted iterate. Once a frame cannot be written no more are.
   void see(const Iteration& iteration, const Vector& q);
 
-  // Writes frames.pvd. Throws InputError.
+  // Writes frames.pvd. Throws OutputError where it, or a frame before, cannot be written.
   void finish() const;
 
  private:
@@ -36,6 +38,7 @@ class FrameWriter {
   int count_ = 0;
   double last_time_ = 0;
   std::string entries_;
+  std::optional<OutputError> failure_;
 };
 
 }  // namespace coapt

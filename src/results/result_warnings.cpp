@@ -105,6 +105,10 @@ Headline headline(const Report& report) {
     line.is_in_doubt = true;
     line.text += "; " + reason;
   }
+  if (2 * report.metrics.slack_chords.value_or(0) > report.fields.line_strain.size()) {
+    line.is_in_doubt = true;
+    line.text += "; most chords are slack";
+  }
   const bool has_others = report.branches && report.branches->equilibria.size() > 1;
   if (!has_others && (report.branches || !report.neighbours.is_suspected)) return line;
   line.is_in_doubt = true;

@@ -34,10 +34,9 @@ void withdraw_penetrated(Report& report);
 // The first line of a result.
 struct Headline {
   // The message of the solve and, of an equilibrium, facets that pass through each other, a valve that stands
-  // open and whether it may not be the only one.
+  // open, chords of which most are slack, and whether it may not be the only one.
   std::string text;
-  // Of an equilibrium: see is_in_doubt(); any facets that pass through each other, a valve that stands open,
-  // or others near by.
+  // Of an equilibrium: see is_in_doubt(); any of these.
   bool is_in_doubt = false;
 };
 

@@ -12,6 +12,7 @@
 #include "results/result_surfaces.hpp"
 #include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
+#include "results/write_attempts.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -244,15 +245,6 @@ bool has_orifice(const Report& report) {
   return report.metrics.closure && !report.metrics.closure->orifices.empty();
 }
 
-// One that an earlier solve left would be taken for this one's.
-void write_or_remove(bool is_there, const fs::path& file, const std::function<void()>& write) {
-  std::error_code ignored;
-  if (is_there)
-    write();
-  else
-    fs::remove(file, ignored);
-}
-
 }  // namespace
 
 std::string pressure_route(const Model& model, const Result& result) {
@@ -357,12 +349,21 @@ void prepare_result_folder(const fs::path& folder) {
 
 void write_results(const fs::path& folder, const Model& model, const Report& report) {
   prepare_result_folder(folder);
-  formats::write_whole(folder / "result.json", result_json(model, report));
-  formats::write_whole(folder / "metrics.csv", metrics_csv(report));
-  formats::write_whole(folder / "trace.csv", trace_csv(report.result));
-  write_vtp(folder / "closed.vtp", closed_surface(model, report.fields));
+  WriteAttempts attempt;
+  attempt([&] { formats::write_whole(folder / "result.json", result_json(model, report)); });
+  attempt([&] { formats::write_whole(folder / "metrics.csv", metrics_csv(report)); });
+  attempt([&] { formats::write_whole(folder / "trace.csv", trace_csv(report.result)); });
+  attempt([&] { write_vtp(folder / "closed.vtp", closed_surface(model, report.fields)); });
   const fs::path line = folder / "coaptation_line.vtp", orifice = folder / "orifice.vtp",
                  mesh = folder / "closed.obj", reference = folder / "reference.vtp";
+  // One that an earlier solve left would be taken for this one's.
+  const auto write_or_remove = [&](bool is_there, const fs::path& file, const std::function<void()>& write) {
+    std::error_code ignored;
+    if (is_there)
+      attempt(write);
+    else
+      fs::remove(file, ignored);
+  };
   write_or_remove(has_line(report), line,
                   [&] { write_vtp(line, coaptation_line(model, *report.metrics.closure)); });
   write_or_remove(has_orifice(report), orifice,
@@ -374,6 +375,7 @@ void write_results(const fs::path& folder, const Model& model, const Report& rep
     closed.vertices = report.fields.x.leftCols(model.mesh.vertex_count()).colwise() + model.origin;
     write_mesh(mesh, closed);
   });
+  attempt.finish();
 }
 
 }  // namespace coapt

@@ -1,5 +1,6 @@
 #include "run/run.hpp"
 
+#include "core/error.hpp"
 #include "formats/whole_file.hpp"
 #include "optim/dynamic/dynamic.hpp"
 #include "optim/stability/smallest_modes.hpp"
@@ -7,7 +8,10 @@
 #include "report/solve_page.hpp"
 #include "results/frames.hpp"
 #include "results/result_warnings.hpp"
+#include "results/write_attempts.hpp"
+#include "run/replaced_inputs.hpp"
 #include "run/run_parts.hpp"
+#include "run/unwritten.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
@@ -17,8 +21,26 @@
 
 namespace coapt {
 
+namespace {
+
+// Whether `path` is the folder or lies in it, where links lead.
+bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const auto inner = std::filesystem::weakly_canonical(std::filesystem::absolute(path)),
+             outer = std::filesystem::weakly_canonical(std::filesystem::absolute(folder));
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+}  // namespace
+
 std::filesystem::path result_folder(const Scene& scene) {
-  return scene.output_folder ? *scene.output_folder : scene.file.parent_path() / "result";
+  const std::filesystem::path own = scene.file.parent_path();
+  if (!scene.output_folder) return own / "result";
+  // A scene may come from anywhere: it does not choose among all the files of whoever solves it.
+  if (!lies_in(*scene.output_folder, own) && !lies_in(*scene.output_folder, std::filesystem::current_path()))
+    throw InputError(
+        scene.file.string() + ": output.folder: " + scene.output_folder->string() +
+        " lies outside the folder of the scene and the working directory; give a folder with -o");
+  return *scene.output_folder;
 }
 
 bool wants_page(const Scene& scene, const RunOptions& options) {
@@ -92,18 +114,25 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
 }
 
 void write_run(const std::filesystem::path& folder, const Model& model, const Report& report) {
-  write_results(folder, model, report);
   const std::filesystem::path page = folder / "report.html";
   std::error_code ignored;
-  if (report.has_page)
-    formats::write_whole(page, solve_page(model, report));
-  else
-    std::filesystem::remove(page, ignored);  // of an earlier solve
+  try {
+    WriteAttempts attempt;
+    attempt([&] { write_results(folder, model, report); });
+    if (report.has_page)
+      attempt([&] { formats::write_whole(page, solve_page(model, report)); });
+    else
+      std::filesystem::remove(page, ignored);  // of an earlier solve
+    attempt.finish();
+  } catch (const OutputError& error) {
+    throw UnwrittenReport(error, report);
+  }
 }
 
 std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options) {
   if (!options.writes) return {};
   std::filesystem::path folder = options.folder.empty() ? result_folder(scene) : options.folder;
+  refuse_replaced_inputs(scene, folder, solve_files());
   prepare_result_folder(folder);
   remove_frames(folder);
   return folder;
@@ -131,9 +160,17 @@ Report run_built(const Scene& scene, const SceneGeometry& geometry, SolveSetup s
   }
   const bool has_page = wants_page(scene, options);
   SolvedRun solved = solve_run(scene, geometry, model, setup, has_page, start);
-  if (frames) frames->finish();
-  return complete_run(scene, setup, model, std::move(solved),
-                      {.has_page = has_page, .has_frames = frames.has_value()}, options.checker, folder);
+  std::optional<OutputError> lost_frames;
+  if (frames) try {
+      frames->finish();
+    } catch (const OutputError& error) {
+      lost_frames = error;
+    }
+  Report report =
+      complete_run(scene, setup, model, std::move(solved),
+                   {.has_page = has_page, .has_frames = frames && !lost_frames}, options.checker, folder);
+  if (lost_frames) throw UnwrittenReport(*lost_frames, std::move(report));
+  return report;
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
@@ -146,7 +183,12 @@ RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& 
       if (std::find(run.model.warnings.begin(), run.model.warnings.end(), doubt) == run.model.warnings.end())
         run.model.warnings.push_back(std::move(doubt));
   run.folder = open_result_folder(scene, options);  // only now: a scene that is refused leaves none behind
-  run.report = run_built(scene, geometry, std::move(setup), options, run.model, run.folder);
+  try {
+    run.report = run_built(scene, geometry, std::move(setup), options, run.model, run.folder);
+  } catch (const UnwrittenReport& error) {
+    run.report = std::move(error.report());
+    throw UnwrittenRun(error, std::move(run));
+  }
   return run;
 }
 

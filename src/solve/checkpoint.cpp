@@ -15,14 +15,21 @@ constexpr const char* kBeginAnew = "solve without --resume to begin anew";
 constexpr Seal kSeal = {"coapt checkpoint", "checkpoint of coapt", "2",
                         "; solve without --resume to begin anew"};
 
-void add_named_files(const Json& json, const fs::path& folder, Fingerprint& result) {
+// Every text that is the path of a file.
+void find_named_files(const Json& json, const fs::path& folder, std::vector<fs::path>& files) {
   if (json.is_structured()) {
-    for (const Json& item : json) add_named_files(item, folder, result);
+    for (const Json& item : json) find_named_files(item, folder, files);
   } else if (json.is_string()) {
     std::error_code error;
     const fs::path file = folder / json.get_ref<const std::string&>();
-    if (fs::is_regular_file(file, error)) result.add(fingerprint(formats::read_whole(file)));
+    if (fs::is_regular_file(file, error)) files.push_back(file);
   }
+}
+
+void add_named_files(const Json& json, const fs::path& folder, Fingerprint& result) {
+  std::vector<fs::path> files;
+  find_named_files(json, folder, files);
+  for (const fs::path& file : files) result.add(fingerprint(formats::read_whole(file)));
 }
 
 Json end_json(const MinimisationEnd& end) {
@@ -81,6 +88,12 @@ std::string scene_fingerprint(const Scene& scene) {
   result.add(json.dump(-1, ' ', false, Json::error_handler_t::replace));
   add_named_files(json, scene.file.parent_path(), result);
   return result.digits();
+}
+
+std::vector<fs::path> named_files(const Scene& scene) {
+  std::vector<fs::path> files;
+  find_named_files(read_json(scene.file), scene.file.parent_path(), files);
+  return files;
 }
 
 std::string named_files_fingerprint(const std::string& scene, const fs::path& folder) {

@@ -1,4 +1,4 @@
-// report.html of a comparison.
+// compare.html of a comparison.
 #include "formats/json/suggestion.hpp"
 #include "report/compared_view.hpp"
 #include "report/page_table.hpp"

@@ -166,7 +166,7 @@ Table comparison_table(std::span<const ComparedMethod> methods) {
 
 void write_comparison(const std::filesystem::path& folder, const Comparison& comparison) {
   write_study(folder, "compare", comparison_as_json(comparison), comparison_table(comparison.methods));
-  formats::write_whole(folder / "report.html", comparison_page(comparison));
+  formats::write_whole(folder / "compare.html", comparison_page(comparison));
 }
 
 }  // namespace coapt

@@ -15,11 +15,11 @@ std::string comparison_json(const Comparison& comparison);
 // One row for each method: compare.csv, and what the page and `coapt compare` show.
 Table comparison_table(std::span<const ComparedMethod> methods);
 
-// The text of report.html: tables, error against run time, and the closed shape of every method, coloured by
+// The text of compare.html: tables, error against run time, and the closed shape of every method, coloured by
 // its distance to the reference's. It needs nothing but itself.
 std::string comparison_page(const Comparison& comparison);
 
-// Writes compare.json, compare.csv and report.html. Throws InputError when a file cannot be written.
+// Writes compare.json, compare.csv and compare.html. Throws InputError when a file cannot be written.
 void write_comparison(const std::filesystem::path& folder, const Comparison& comparison);
 
 }  // namespace coapt

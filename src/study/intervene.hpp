@@ -40,11 +40,11 @@ std::vector<ChangedFigure> changed_figures(const BeforeAfter& found);
 // The text of intervene.json. Numbers that are not finite or not defined are null.
 std::string intervene_json(const BeforeAfter& found);
 
-// report.html: the figures, and both shapes where they have the same triangles.
+// intervene.html: the figures, and both shapes where they have the same triangles.
 std::string intervene_page(const BeforeAfter& found);
 
-// Writes intervene.json, intervene.csv (a row for each figure) and report.html. Throws InputError when a file
-// cannot be written.
+// Writes intervene.json, intervene.csv (a row for each figure) and intervene.html. Throws InputError when a
+// file cannot be written.
 void write_intervene(const BeforeAfter& found);
 
 }  // namespace coapt

@@ -97,7 +97,7 @@ std::string intervene_page(const BeforeAfter& found) {
 void write_intervene(const BeforeAfter& found) {
   write_study(found.folder, "intervene", OrderedJson::parse(intervene_json(found)),
               change_table(changed_figures(found)));
-  formats::write_whole(found.folder / "report.html", intervene_page(found));
+  formats::write_whole(found.folder / "intervene.html", intervene_page(found));
 }
 
 }  // namespace coapt

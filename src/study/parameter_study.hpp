@@ -90,7 +90,7 @@ Table point_table(const ParameterStudy& study);
 std::string parameter_study_json(const ParameterStudy& study);
 std::string parameter_study_page(const ParameterStudy& study);
 
-// Writes study.json, study.csv (a row for each point, ranked) and report.html. Throws InputError.
+// Writes study.json, study.csv (a row for each point, ranked) and study.html. Throws InputError.
 void write_parameter_study(const std::filesystem::path& folder, const ParameterStudy& study);
 
 }  // namespace coapt

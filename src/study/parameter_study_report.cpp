@@ -182,7 +182,7 @@ std::string parameter_study_page(const ParameterStudy& study) {
 
 void write_parameter_study(const std::filesystem::path& folder, const ParameterStudy& study) {
   write_study(folder, "study", as_json(study), point_table(study));
-  formats::write_whole(folder / "report.html", parameter_study_page(study));
+  formats::write_whole(folder / "study.html", parameter_study_page(study));
 }
 
 }  // namespace coapt

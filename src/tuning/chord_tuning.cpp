@@ -178,7 +178,7 @@ void solve_tuned(const std::string& text, const std::filesystem::path& scene, co
   const SceneGeometry geometry = scene_geometry(tuned);
   RunReport& after = found.after.emplace();
   after.model = build(tuned, geometry);
-  options.folder = found.folder / "after";
+  options.folder = found.folder / "tuned";
   options.observer = {};  // whoever interrupted the tuning wants what it found
   const Points x = found.before.model.objective->positions(found.tuning.best.q);
   after.folder = open_result_folder(tuned, options);
@@ -216,7 +216,7 @@ ChordTuning tune_chords(const std::filesystem::path& scene, const SolverTable& s
   prepare_result_folder(found.folder);
 
   RunOptions own = run_options;
-  own.folder = found.folder / "before";
+  own.folder = found.folder / "untuned";
   found.before.folder = open_result_folder(ready.scene, own);
   found.before.report = run_built(ready.scene, ready.geometry, ready.setup, own, model, found.before.folder,
                                   options.known != nullptr ? &options.known->x_before : nullptr);

@@ -121,7 +121,7 @@ ChordTuningRecord read_chord_tuning_checkpoint(const std::filesystem::path& path
 // The text of tuning.json. Numbers that are not finite or not known are null.
 std::string chord_tuning_json(const ChordTuning& found);
 
-// report.html: the history, every figure before and after, the lengths, what determines them, both shapes.
+// tuning.html: the history, every figure before and after, the lengths, what determines them, both shapes.
 std::string chord_tuning_page(const ChordTuning& found);
 
 // One row for each length: tuning.csv but for the columns "change_mm" and "remarks", and what the page and
@@ -130,7 +130,7 @@ Table length_table(const ChordTuning& found);
 inline const std::vector<std::string> kShownOfLengths = {
     "name", "before_mm", "after_mm", "change_mm", "standard_deviation_mm", "remarks"};
 
-// Writes tuning.json, tuning.csv (a row for each length) and report.html. Throws InputError when a file
+// Writes tuning.json, tuning.csv (a row for each length) and tuning.html. Throws InputError when a file
 // cannot be written.
 void write_chord_tuning(const ChordTuning& found);
 

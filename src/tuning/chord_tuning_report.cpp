@@ -366,7 +366,7 @@ std::string chord_tuning_page(const ChordTuning& found) {
 void write_chord_tuning(const ChordTuning& found) {
   write_study(found.folder, "tuning", OrderedJson::parse(chord_tuning_json(found)),
               without(length_table(found), {"change_mm", "remarks"}));
-  formats::write_whole(found.folder / "report.html", chord_tuning_page(found));
+  formats::write_whole(found.folder / "tuning.html", chord_tuning_page(found));
 }
 
 }  // namespace coapt

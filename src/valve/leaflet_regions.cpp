@@ -1,5 +1,6 @@
 #include "valve/leaflet_regions.hpp"
 
+#include "core/bounded_int.hpp"
 #include "core/error.hpp"
 #include "mesh/vertex_graph.hpp"
 
@@ -128,7 +129,7 @@ void cut_zone(const TriangleMesh& mesh, std::vector<std::pair<double, int>> tria
   for (const auto& [place, t] : triangles) whole += area(t);
   int last = -1;
   for (const auto& [place, t] : triangles) {
-    const int sector = std::min(sectors - 1, static_cast<int>((before + 0.5 * area(t)) / whole * sectors));
+    const int sector = bounded_int((before + 0.5 * area(t)) / whole * sectors, 0, sectors - 1);
     before += area(t);
     if (sector != last) regions.names.push_back(name + std::to_string(sector + 1));
     last = sector;
@@ -186,8 +187,8 @@ LeafletRegions leaflet_regions(const TriangleMesh& mesh, const std::vector<int>&
     turn(places, 2 * std::numbers::pi);
     for (size_t i = 0; i < leaflets[k].size(); ++i) {
       const double depth = depth_of(mesh.triangles.col(leaflets[k][i]), from_annulus, from_edge, farthest);
-      in_zone[static_cast<size_t>(std::min(zones - 1, static_cast<int>(depth * zones)))].emplace_back(
-          places[i], leaflets[k][i]);
+      in_zone[static_cast<size_t>(bounded_int(depth * zones, 0, zones - 1))].emplace_back(places[i],
+                                                                                          leaflets[k][i]);
     }
     for (int zone = 0; zone < zones; ++zone)
       cut_zone(mesh, in_zone[static_cast<size_t>(zone)], sectors[k],

@@ -1,4 +1,8 @@
 """Arguments that are not understood: the nearest command or option is named, and help is a word too."""
+import json
+import pathlib
+import shutil
+import subprocess
 import unittest
 
 from command_case import CommandCase, coapt
@@ -9,7 +13,54 @@ class Arguments(CommandCase):
         self.assert_bad_input(coapt("slove", "x.json"), 'there is no "slove"', 'did you mean "solve"', "register", "coapt help")
 
     def test_no_command_lists_them(self):
-        self.assert_bad_input(coapt(), "which?", "solve", "generate")
+        run = coapt()
+        self.assert_bad_input(run, "which?", "solve", "generate")
+        self.assertRegex(run.stdout, r"(?m)^  coapt solve +Solve a scene")
+        self.assertEqual(len(run.stdout.splitlines()), 17, "one line for each; `pages` is for those who pack the command")
+
+    def test_the_nearest_value_of_a_scene_is_named(self):
+        scene = self.generate("disc", "--triangles", 100)
+        text = scene.read_text()
+        scene.write_text(text.replace('"type": "newton"', '"type": "newtn"').replace('"cst_stvk"', '"cst_stvkk"'))
+        self.assertNotEqual(scene.read_text(), text)
+        for command in ("check", "solve"):
+            self.assert_bad_input(coapt(command, scene), "cst_stvkk", 'did you mean "cst_stvk"')
+        scene.write_text(text.replace('"type": "newton"', '"type": "newtn"'))
+        self.assertNotEqual(scene.read_text(), text)
+        for command in ("check", "solve"):
+            self.assert_bad_input(coapt(command, scene), "newtn", 'did you mean "newton"')
+        scene.write_text(text)
+        self.assert_bad_input(coapt("solve", scene, "--solver", "lbfsg"), 'did you mean "lbfgs"')
+        self.assert_bad_input(coapt("compare", scene, "--methods", "newton,lbfsg"), 'did you mean "lbfgs"')
+
+    def test_man_pages_and_completions_are_sound(self):
+        run = coapt("pages", self.folder / "pages", "--json")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        written = [pathlib.Path(path) for path in json.loads(run.stdout)["written"]]
+        names = {path.name for path in written}
+        self.assertLessEqual({"coapt.1", "coapt-solve.1", "coapt-mesh-study.1", "coapt.bash", "_coapt"}, names)
+        self.assertNotIn("coapt-pages.1", names)
+        solve = (self.folder / "pages" / "coapt-solve.1").read_text()
+        for piece in ("\\-\\-tolerance", ".SH EXIT STATUS", "\\fISCENE\\fR"):
+            self.assertRegex(solve, piece)
+        for path in written:
+            if path.suffix == ".1" and shutil.which("man"):
+                page = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", path],
+                                      stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                self.assertEqual((page.returncode, page.stderr), (0, ""), path.name)
+        if shutil.which("zsh"):
+            self.assertEqual(subprocess.run(["zsh", "-n", self.folder / "pages" / "_coapt"]).returncode, 0)
+        bash = self.folder / "pages" / "coapt.bash"
+        self.assertEqual(subprocess.run(["bash", "-n", bash]).returncode, 0)
+
+        def completed(*words):
+            script = (f'source "{bash}"; COMP_WORDS=({" ".join(map(repr, words))}); COMP_CWORD={len(words) - 1}; '
+                      '_coapt; printf "%s\n" "${COMPREPLY[@]}"')
+            return subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True).stdout.split()
+
+        self.assertEqual(completed("coapt", "sol"), ["solve"])
+        self.assertEqual(completed("coapt", "solve", "--tol"), ["--tolerance"])
+        self.assertEqual(completed("coapt", "generate", "disc", "--contact", "ba"), ["barrier"])
 
     def test_an_unknown_option_names_the_nearest(self):
         self.assert_bad_input(coapt("solve", "x.json", "--solvr", "newton"), "coapt solve: there is no option --solvr",

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -12,6 +13,11 @@ COAPT = os.path.abspath(sys.argv[1])
 
 def coapt(*arguments, cwd=None, timeout=120):
     return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
+
+
+def content_of(scene):
+    """What a generated scene holds; its comments are for people."""
+    return json.loads(re.sub(r"(?m)(^|[\s{])//[^\n]*$", r"\1", scene.read_text()))
 
 
 class CommandCase(unittest.TestCase):

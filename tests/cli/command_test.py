@@ -339,7 +339,7 @@ class CommandTest(CommandCase):
         for arguments in [["schema", "scene"], ["--help"], ["solve", scene]]:
             with open("/dev/full", "w") as full:
                 run = subprocess.run([COAPT, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE, text=True)
-            self.assertEqual(run.returncode, 2, arguments)
+            self.assertEqual(run.returncode, 5, arguments)
             self.assertIn("standard output", run.stderr)
 
     def test_names_every_defect_of_a_scene_on_its_own_line(self):

@@ -42,7 +42,7 @@ class CompareTest(command_case.CommandCase):
         self.assertEqual([row["method"] for row in rows], ["newton", "lbfgs", "bfgs"])
         self.assertEqual([row["message"] for row in rows], [m["message"] for m in found["methods"]])
         self.assertAlmostEqual(float(rows[1]["cpu_s"]), found["methods"][1]["time"]["cpu_s"], places=6)
-        for word in ["newton", "lbfgs", "same equilibrium", "orifice", "report.html"]:
+        for word in ["newton", "lbfgs", "same equilibrium", "orifice", "compare.html"]:
             self.assertIn(word, text)
 
     def test_static_dynamic_and_other_models_side_by_side(self):
@@ -102,7 +102,7 @@ class CompareTest(command_case.CommandCase):
         self.assertEqual((self.out / "newton" / "closed.obj").read_bytes(), (solved / "closed.obj").read_bytes())
         self.assertIn(b"distance_to_reference_method", (self.out / "newton" / "closed.vtp").read_bytes())
         self.assertNotIn(b"distance_to_reference_method", (self.out / "lbfgs" / "closed.vtp").read_bytes())
-        page = (self.out / "report.html").read_text()
+        page = (self.out / "compare.html").read_text()
         self.assertIn("<th scope=\"row\" class=\"plain text\">newton</th>", page)
 
     def test_names_the_branches_of_a_membrane_that_resists_compression(self):

@@ -46,7 +46,7 @@ class InterveneTest(CommandCase):
         for state in ["before", "after"]:
             solved = self.result(self.folder / "out" / state)
             self.assertAlmostEqual(solved["metrics"]["annulus_area_mm2"], annulus[state], places=6)
-        page = (self.folder / "out" / "report.html").read_text()
+        page = (self.folder / "out" / "intervene.html").read_text()
         self.assertRegex(page, r"annulus area<small>[^<]*</small></th><td class=\"plain text\">mm²</td>")
         self.assertNotIn("annulus_area_mm2", page)
         self.assertIn("ring: size 28 mm, stiffness flexible", page)
@@ -91,7 +91,7 @@ class InterveneTest(CommandCase):
         best = found["points"][0]
         alone = self.result(self.folder / "out" / best["folder"])
         self.assertEqual(alone["metrics"]["orifice_area_mm2"], areas[0])
-        self.assertIn("ring.size", (self.folder / "out" / "report.html").read_text())
+        self.assertIn("ring.size", (self.folder / "out" / "study.html").read_text())
         # The same again reads everything back; another order needs no solve.
         again, reversed_order = self.study(scene, "--sweep", "ring.size=26..30mm:2", "--sweep",
                                            "chords.length_scale=1,1.05", "--greatest")

@@ -66,7 +66,7 @@ class TuneTest(CommandCase):
         self.assertIn("best", run.stdout)
         rows = list(csv.DictReader((self.folder / "out" / "tuning.csv").read_text().splitlines()))
         self.assertAlmostEqual(float(rows[0]["after_mm"]), lengths["tip_0"]["after_mm"], places=6)
-        page = (self.folder / "out" / "report.html").read_text()
+        page = (self.folder / "out" / "tuning.html").read_text()
         for piece in ["Cost of each solve", "Rest lengths", "orifice area", "mm²", "tip_1", "What the target determines",
                       "Singular value of each combination of lengths"]:
             self.assertTrue(piece in page, piece)
@@ -89,7 +89,7 @@ class TuneTest(CommandCase):
         metrics = self.result(self.folder / "alone")["metrics"]
         for name in ["orifice_area_mm2", "leaflet_area_closed_mm2", "max_chord_force_n"]:
             self.assertTrue(math.isclose(metrics[name], found["metrics"][name]["after"], rel_tol=1e-3), name)
-            self.assertIn(name, self.result(self.folder / "out" / "after")["metrics"])
+            self.assertIn(name, self.result(self.folder / "out" / "tuned")["metrics"])
 
     def test_lessens_orifice_or_chord_force(self):
         scene = self.valve()
@@ -101,7 +101,7 @@ class TuneTest(CommandCase):
                                  0, "--by", "tip", "--bounds=-5%..5%", "--max-solves", 100)
             self.assertEqual((found["weights"]["orifice_per_mm2"], found["weights"]["force_per_n"]), weights)
             self.assertIsNone(found["spectrum"])
-            self.assertNotIn("What the target determines", (self.folder / "out" / "report.html").read_text())
+            self.assertNotIn("What the target determines", (self.folder / "out" / "tuning.html").read_text())
             self.assertLess(found["cost"]["after"], 0.95 * found["cost"]["before"])
             for length in found["lengths"]:
                 self.assertTrue(0.95 - 1e-9 <= length["factor"] <= 1.05 + 1e-9, length)

@@ -207,6 +207,30 @@ TEST(SpanningSurface, HasItsHighestChordAlongTheHighEndsOfASaddle) {
   EXPECT_EQ(highest_chord(saddle, 20, 0), -kInfinity);
 }
 
+// A valve that has run away lies beyond any int on the grid of its annulus.
+TEST(TopView, LooksPastWhatHasRunAway) {
+  TriangleMesh sheet = grid_sheet(2, 2, [](double u, double v) { return Vec3(8 * u - 4, 8 * v - 4, 0); });
+  const Points loop = square_loop(3);
+  const Eigen::Index own = sheet.vertices.cols();
+  sheet.vertices.conservativeResize(3, own + 9);
+  sheet.triangles.conservativeResize(3, sheet.triangles.cols() + 3);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Vec3 away = 1e12 * (k == 2 ? Vec3(-1, -1, 1) : Vec3(k == 0, k == 1, 1));
+    for (Eigen::Index c = 0; c < 3; ++c)
+      sheet.vertices.col(own + 3 * k + c) = away + Vec3(c == 1, c == 2, 0) * 1e11;
+    sheet.triangles.col(sheet.triangles.cols() - 3 + k)
+        .setLinSpaced(3, static_cast<int>(own + 3 * k), static_cast<int>(own + 3 * k + 2));
+  }
+  const TopView view = top_view(sheet.vertices, sheet.triangles, loop, kDown, 0.1);
+  for (const int triangle : view.triangle) EXPECT_LT(triangle, sheet.triangles.cols() - 3);
+  EXPECT_EQ(std::count(view.is_open.begin(), view.is_open.end(), 1), 0);
+}
+
+TEST(TopView, RefusesMoreLinesThanItCanNumber) {
+  const TriangleMesh sheet = grid_sheet(2, 2, [](double u, double v) { return Vec3(u, v, 0); });
+  EXPECT_THROW(top_view(sheet.vertices, sheet.triangles, square_loop(3), kDown, 1e-9), InputError);
+}
+
 TEST(VertexGraph, HoldsEveryEdgeOfTheMeshFromBothEnds) {
   const TriangleMesh sheet = wavy_sheet(6);
   const VertexGraph graph = vertex_graph(sheet.triangles, sheet.vertices.cols());

@@ -175,6 +175,18 @@ TEST(Headline, CallsNothingConvergedThatCollisionsLetThrough) {
             "keep apart; at rest with a residual of 2e-09");
 }
 
+TEST(Headline, DoubtsAnEquilibriumWhoseChordsHangSlack) {
+  Report report;
+  report.result.message = "converged";
+  report.result.status = Status::Converged;
+  report.fields.line_strain = Vector::Zero(4);
+  report.metrics.slack_chords = 2;
+  EXPECT_FALSE(headline(report).is_in_doubt);
+  report.metrics.slack_chords = 3;
+  EXPECT_TRUE(headline(report).is_in_doubt);
+  EXPECT_EQ(headline(report).text, "converged; most chords are slack");
+}
+
 TEST(Headline, SaysWhyNoPerturbedStartTellsAnything) {
   Report report;
   report.result.status = Status::Converged;

@@ -371,7 +371,7 @@ TEST_F(ComparisonTest, TellsItInRowsOfOneLength) {
 TEST_F(ComparisonTest, TellsItOnAPageThatNeedsNothingElse) {
   const Comparison found = compare(disc_scene(), {"newton", "idle", "broken"});
   write_comparison(found.folder, found);
-  const std::string page = text_of(result("report.html"));
+  const std::string page = text_of(result("compare.html"));
   const std::string outside = page.substr(0, page.find("<script"));
   for (const char* other : {"http:", "https:", "src=", "href=", "@import"})
     EXPECT_EQ(outside.find(other), std::string::npos) << other;

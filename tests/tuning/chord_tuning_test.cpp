@@ -224,7 +224,7 @@ TEST_F(ChordTuningTest, TheTunedSceneIsTheTunedShape) {
   options.only = {"tip_0", "chords[60]"};
   const ChordTuning found = tuned(options);
   write_chord_tuning(found);
-  for (const char* file : {"tuning.json", "tuning.csv", "report.html", "tuned.json", "after/closed.vtp"})
+  for (const char* file : {"tuning.json", "tuning.csv", "tuning.html", "tuned.json", "tuned/closed.vtp"})
     EXPECT_TRUE(fs::exists(run_.folder / file)) << file;
   RunOptions alone;
   alone.writes = false;

@@ -1,8 +1,9 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
@@ -20,7 +21,6 @@ struct BenchArguments : StudyArguments {
   std::string methods = "newton,lbfgs,dynamic", tolerances = "1e-2,1e-4,1e-6,1e-8", reference, closed;
   int levels = 1, repeats = 3;
   double truth_seconds = 0;  // 0: not given
-  bool prints_json = false;
   BranchSearch branches = {.starts = 0};
 };
 
@@ -64,11 +64,12 @@ void print_summary(const Benchmark& bench) {
   for (const double mm : kTotalAccuracies) std::printf("%s\n", recommendation(bench, mm).c_str());
 }
 
-void bench_scene(const BenchArguments& arguments, int& exit_code) {
+void bench_scene(const BenchArguments& arguments, Session& session) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
-  RunOptions run = arguments.options();
-  run.folder = arguments.folder;
+  RunOptions run = arguments.options(session);
+  const OutputFolder output(arguments.folder_for(scene, {"bench.json", "bench.csv", "bench.html"}));
+  run.folder = output.path();
   BenchOptions options;
   options.methods = comma_list(arguments.methods);
   options.reference = arguments.reference;
@@ -81,25 +82,21 @@ void bench_scene(const BenchArguments& arguments, int& exit_code) {
   RowPrinter print;
   options.report = [&](const Benchmark& bench, const BenchRun& done) {
     end_progress();
-    if (arguments.prints_json) return;
     print(chosen(run_table(bench, {&done, 1}),
                  {"method", "mesh", "tolerance", "status", "wall_median_s", "iterations"}));
   };
   const Benchmark found = run_benchmark(scene, all_solvers(), options, run);
   end_progress();
   write_benchmark(found.folder, found);
-  if (arguments.prints_json) {
-    std::fputs(benchmark_json(found).c_str(), stdout);
-  } else {
-    print_summary(found);
-    std::printf("written to %s (bench.json, bench.csv, bench.html)\n", found.folder.string().c_str());
-  }
-  exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.document = benchmark_json(found);
+  print_summary(found);
+  std::printf("written to %s (bench.json, bench.csv, bench.html)\n", found.folder.string().c_str());
+  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& exit_code) {
+void add_bench_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand(
       "bench",
@@ -135,8 +132,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(positive_defect);
   add_path_option(*command, arguments->damped_steps);
   add_branch_options(*command, arguments->branches);
-  command->add_flag("--json", arguments->prints_json, "Print bench.json instead of the tables");
-  command->callback([arguments, &exit_code] { bench_scene(*arguments, exit_code); });
+  command->callback([arguments, &session] { bench_scene(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -2,9 +2,12 @@
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "core/error.hpp"
 #include "exchange/check.hpp"
 #include "exchange/repair.hpp"
+#include "formats/json/json_text.hpp"
+#include "results/study_files.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -36,6 +39,62 @@ void print_derivatives(const std::vector<DerivativeReport>& reports) {
                                      {{"diff. grad.", "", "", 2}, &Derivatives::gradient_error},
                                      {{"diff. Hess.", "", "", 2}, &Derivatives::hessian_error},
                                      {text_column("verdict"), verdict_on}}));
+}
+
+const char* outcome_name(RepairOutcome outcome) {
+  switch (outcome) {
+    case RepairOutcome::NoContact:
+      return "no_contact";
+    case RepairOutcome::NothingToRepair:
+      return "nothing_to_repair";
+    case RepairOutcome::Failed:
+      return "failed";
+    case RepairOutcome::Repaired:
+      break;
+  }
+  return "repaired";
+}
+
+std::string repair_document(const std::string& scene, const RepairReport& report) {
+  OrderedJson written = OrderedJson::array();
+  if (report.outcome == RepairOutcome::Repaired) written.push_back(report.file.string());
+  return json_text(OrderedJson{{"scene", scene},
+                               {"outcome", outcome_name(report.outcome)},
+                               {"pairs", report.pairs},
+                               {"pairs_left", report.left},
+                               {"largest_move_mm", number_json(report.largest_move_mm)},
+                               {"written", written}},
+                   2) +
+         "\n";
+}
+
+// A slope that is infinite, of a derivative that is exact, is null.
+std::string check_document(const std::string& scene, const CheckReport& report) {
+  OrderedJson derivatives = OrderedJson::array();
+  for (const DerivativeReport& term : report.derivatives)
+    derivatives.push_back({{"term", term.name},
+                           {"type", term.type},
+                           {"active", term.is_active()},
+                           {"passed", term.has_passed()},
+                           {"gradient_slope", number_json(term.gradient_slope)},
+                           {"hessian_slope", number_json(term.hessian_slope)},
+                           {"gradient_error", number_json(term.gradient_error)},
+                           {"hessian_error", number_json(term.hessian_error)},
+                           {"kinks", term.kinks}});
+  return json_text(OrderedJson{{"scene", scene},
+                               {"sound", report.defects.empty() && report.is_sound()},
+                               {"defects", report.defects},
+                               {"warnings", report.warnings},
+                               {"derivatives", derivatives}},
+                   2) +
+         "\n";
+}
+
+// As main() does it: defects are what this command is to find, and no error of it.
+int print_defects(const std::vector<std::string>& defects) {
+  std::fflush(stdout);
+  for (const std::string& defect : defects) std::fprintf(stderr, "coapt: error: %s\n", defect.c_str());
+  return defects.empty() ? kConverged : kBadInput;
 }
 
 // Prints what was done, or why nothing was.
@@ -74,7 +133,7 @@ int print_repair(const std::string& scene, RepairMethod method, const RepairRepo
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int& exit_code) {
+void add_check_command(CLI::App& app, Session& session) {
   struct Options {
     std::string scene, repair, output;
   };
@@ -89,22 +148,26 @@ void add_check_command(CLI::App& app, int& exit_code) {
                        "mesh) or exclude the pairs from contact (writes their list)")
           ->check(CLI::IsMember({"push", "exclude"}));
   command->add_option("-o,--output", options->output, "File that --repair writes")->needs(repair_option);
-  command->callback([options, &exit_code] {
+  command->callback([options, &session] {
     if (!options->repair.empty()) {
       const RepairMethod method = options->repair == "push" ? RepairMethod::Push : RepairMethod::Exclude;
       const auto output =
           options->output.empty() ? std::nullopt : std::optional<std::filesystem::path>(options->output);
-      exit_code = print_repair(options->scene, method, repair(options->scene, method, output));
+      const RepairReport report = repair(options->scene, method, output);
+      session.document = repair_document(options->scene, report);
+      session.exit_code = print_repair(options->scene, method, report);
       return;
     }
     const CheckReport report = check(options->scene);
+    session.document = check_document(options->scene, report);
     for (const std::string& warning : report.warnings) std::printf("warning: %s\n", warning.c_str());
-    if (!report.defects.empty()) throw InputError(report.defects);
+    session.exit_code = print_defects(report.defects);
+    if (session.exit_code != kConverged) return;
     print_derivatives(report.derivatives);
     std::printf(report.is_sound() ? "%s: no defects, derivatives passed\n"
                                   : "%s: no defects, but a derivative did not pass\n",
                 options->scene.c_str());
-    exit_code = report.is_sound() ? kConverged : kNotConverged;
+    session.exit_code = report.is_sound() ? kConverged : kNotConverged;
   });
 }
 

@@ -1,6 +1,8 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
+#include "cli/session.hpp"
+#include "cli/written_document.hpp"
 #include "core/error.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/lower_extension.hpp"
@@ -56,9 +58,8 @@ std::vector<int> numbers_of(const std::string& text) {
 }
 
 // The valve without its chords: from a valve JSON, or a mesh alone. mm.
-Valve read_input(const ChordsArguments& arguments) {
+Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& warnings) {
   Valve valve;
-  std::vector<std::string> warnings;
   if (formats::lower_extension(arguments.input) == ".json") {
     ValveFile file = read_valve(arguments.input);
     valve = std::move(file.valve);
@@ -103,9 +104,6 @@ void check_output(const ChordsArguments& arguments) {
                      "leaflets.obj; give it a name that ends in .json");
   const fs::path folder = fs::absolute(arguments.output).parent_path();
   refuse_folder_of(arguments.input, folder);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }
 
 // What was not known and has been chosen.
@@ -134,13 +132,15 @@ void choose_lengths(ChordsArguments& arguments, bool has_tips) {
   arguments.options.lengths = sums ? ChordLengths::Sum : ChordLengths::ToPlane;
 }
 
-void make_chords(ChordsArguments& arguments) {
+std::string make_chords(ChordsArguments& arguments) {
   check_output(arguments);
+  const OutputFolder output(fs::absolute(arguments.output).parent_path());
   for (const std::string& group : arguments.insertions)
     arguments.options.insertions.push_back(numbers_of(group));
   arguments.options.zones.clear();
   for (const std::string& zone : arguments.zones) arguments.options.zones.push_back(chord_zone(zone));
-  Valve valve = read_input(arguments);
+  std::vector<std::string> warnings;
+  Valve valve = read_input(arguments, warnings);
   const bool has_tips = valve.chords.papillary.cols() > 0;
   choose_lengths(arguments, has_tips);
   try {
@@ -165,11 +165,12 @@ void make_chords(ChordsArguments& arguments) {
       "next:    coapt import %s -o FOLDER\n",
       arguments.output.c_str(), chords.size(), static_cast<int>(valve.chords.junctions.cols()),
       static_cast<long>(taut), arguments.output.c_str());
+  return written_document({arguments.output}, warnings);
 }
 
 }  // namespace
 
-void add_chords_command(CLI::App& app, int& /*exit_code*/) {
+void add_chords_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<ChordsArguments>();
   LeafletChordOptions& options = arguments->options;
   CLI::App* command = app.add_subcommand(
@@ -223,7 +224,7 @@ void add_chords_command(CLI::App& app, int& /*exit_code*/) {
       "Cross-section of one chord at each level [mm2]; default: by zone, shared out at branch points");
   command->add_option("--seed", options.seed, "0: equal steps; any other shifts the ends")
       ->capture_default_str();
-  command->callback([arguments] { make_chords(*arguments); });
+  command->callback([arguments, &session] { session.document = make_chords(*arguments); });
 }
 
 }  // namespace coapt::cli

@@ -1,8 +1,9 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "study/comparison_report.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 struct CompareArguments : StudyArguments {
   std::string methods, reference, closed;
-  bool prints_json = false;
   BranchSearch branches = {.starts = 0};
 };
 
@@ -43,12 +43,13 @@ void print_method(const ComparedMethod& method, bool has_closed, RowPrinter& pri
   std::fflush(stdout);
 }
 
-void compare(const CompareArguments& arguments, int& exit_code) {
+void compare(const CompareArguments& arguments, Session& session) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   const SolverTable solvers = all_solvers();
-  RunOptions run = arguments.options();
-  run.folder = arguments.folder;
+  RunOptions run = arguments.options(session);
+  const OutputFolder output(arguments.folder_for(scene, {"compare.json", "compare.csv", "compare.html"}));
+  run.folder = output.path();
   ComparisonOptions options;
   options.methods =
       arguments.methods.empty() ? usual_methods(known_methods(solvers)) : comma_list(arguments.methods);
@@ -59,23 +60,21 @@ void compare(const CompareArguments& arguments, int& exit_code) {
   RowPrinter print;
   options.report = [&](const ComparedMethod& method) {
     end_progress();
-    if (!arguments.prints_json) print_method(method, has_closed, print);
+    print_method(method, has_closed, print);
   };
   const Comparison found = compare_methods(scene, solvers, options, run);
   write_comparison(found.folder, found);
-  if (arguments.prints_json)
-    std::fputs(comparison_json(found).c_str(), stdout);
-  else
-    std::printf(
-        "distances in mm to %s, of surfaces\n"
-        "written: %s: compare.json, compare.csv, report.html and a folder for each method\n",
-        found.reference().name.c_str(), found.folder.string().c_str());
-  exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.document = comparison_json(found);
+  std::printf(
+      "distances in mm to %s, of surfaces\n"
+      "written: %s: compare.json, compare.csv, compare.html and a folder for each method\n",
+      found.reference().name.c_str(), found.folder.string().c_str());
+  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& exit_code) {
+void add_compare_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand(
       "compare", "One scene by several methods: distances between the results, figures, run times");
@@ -89,8 +88,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command->add_option("--closed", arguments->closed,
                       "Given closed surface, in the unit of the scene's mesh (default: the scene's)");
   add_branch_options(*command, arguments->branches);
-  command->add_flag("--json", arguments->prints_json, "Print compare.json instead of the table");
-  command->callback([arguments, &exit_code] { compare(*arguments, exit_code); });
+  command->callback([arguments, &session] { compare(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -1,5 +1,7 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
+#include "cli/session.hpp"
+#include "cli/written_document.hpp"
 #include "core/error.hpp"
 #include "exchange/export.hpp"
 #include "formats/json/markups.hpp"
@@ -7,10 +9,11 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 
-void add_export_command(CLI::App& app, int& /*exit_code*/) {
+void add_export_command(CLI::App& app, Session& session) {
   struct Arguments {
     std::string from, out, what = "annulus";
   };
@@ -29,13 +32,14 @@ void add_export_command(CLI::App& app, int& /*exit_code*/) {
               "--points", arguments->what,
               "Which points go into a .mrk.json: a set of nodes, or with _closed behind it where they go")
           ->capture_default_str();
-  command->callback([arguments, points] {
+  command->callback([arguments, points, &session] {
     if (points->count() > 0 && !is_markup_file(arguments->out))
       throw InputError("--points: chooses the points of a .mrk.json, which " + arguments->out +
                        " is not; leave it out");
-    for (const std::string& warning : export_file(arguments->from, arguments->out, arguments->what))
-      std::printf("warning: %s\n", warning.c_str());
+    const std::vector<std::string> warnings = export_file(arguments->from, arguments->out, arguments->what);
+    for (const std::string& warning : warnings) std::printf("warning: %s\n", warning.c_str());
     std::printf("written: %s\n", arguments->out.c_str());
+    session.document = written_document({arguments->out}, warnings);
   });
 }
 

@@ -1,6 +1,8 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
+#include "cli/session.hpp"
 #include "cli/shape_scenes.hpp"
 #include "core/error.hpp"
 #include "exchange/import.hpp"
@@ -102,8 +104,9 @@ void write_mitral(const GenerateArguments& arguments) {
   write_valve_scene(valve, arguments.folder, options);
 }
 
-void generate(const GenerateArguments& arguments) {
+std::string generate(const GenerateArguments& arguments) {
   check_measured(arguments);
+  const OutputFolder output(arguments.folder);
   if (is_given(arguments, "--rough")) {
     write_rough(arguments);
   } else if (arguments.what == "tricuspid") {
@@ -113,12 +116,12 @@ void generate(const GenerateArguments& arguments) {
   } else {
     write_shape(arguments);
   }
-  announce_scene(arguments.folder);
+  return announce_scene(arguments.folder);
 }
 
 }  // namespace
 
-void add_generate_command(CLI::App& app, int& /*exit_code*/) {
+void add_generate_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<GenerateArguments>();
   CLI::App* command =
       app.add_subcommand("generate", "Write a valve or a simple shape with a scene that is ready to solve");
@@ -161,10 +164,10 @@ void add_generate_command(CLI::App& app, int& /*exit_code*/) {
                    "With --annulus: X Y Z on the side of the ventricle (default: by tips or saddle)")
       ->expected(3);
   add_scene_options(*command, *arguments, {"follower", "frozen", "volume", "field"});
-  command->callback([arguments, command] {
+  command->callback([arguments, command, &session] {
     for (const CLI::Option* option : command->get_options())
       if (option->count() > 0) arguments->given.push_back(option->get_name());
-    generate(*arguments);
+    session.document = generate(*arguments);
   });
 }
 

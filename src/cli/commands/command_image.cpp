@@ -1,6 +1,8 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/length_argument.hpp"
+#include "cli/session.hpp"
+#include "cli/written_document.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
@@ -21,7 +23,6 @@ struct ImageArguments {
   std::string file, output, kind;
   std::optional<int> frame;
   std::vector<std::string> spacing;  // with units: one for all axes, or three
-  bool json = false;
 };
 
 VolumeReadOptions read_options(const ImageArguments& arguments) {
@@ -102,25 +103,24 @@ void print_image(const std::string& path, const VolumeFile& file) {
   for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
 }
 
-void show_image(const ImageArguments& arguments) {
+void show_image(const ImageArguments& arguments, Session& session) {
   const VolumeReadOptions options = read_options(arguments);
   VolumeFile file = read_volume_header(arguments.file, options);
   // Of a series without a frame chosen, and where lengths are not known, the header says all that can be
   // said.
   if (file.states_spacing && (file.frames == 1 || arguments.frame))
     file = read_volume(arguments.file, options);
-  if (arguments.json)
-    std::printf("%s\n", image_json(arguments.file, file).dump(2).c_str());
-  else
-    print_image(arguments.file, file);
+  print_image(arguments.file, file);
+  session.document = image_json(arguments.file, file).dump(2);
 }
 
-void convert_image(const ImageArguments& arguments) {
+void convert_image(const ImageArguments& arguments, Session& session) {
   const VolumeFile file = read_volume(arguments.file, read_options(arguments));
   for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
   const VoxelKind kind = arguments.kind.empty() ? file.kind : voxel_kind(arguments.kind).value();
   write_volume(arguments.output, file.volume, kind);
   std::printf("written to %s (%s)\n", arguments.output.c_str(), voxel_kind_name(kind).c_str());
+  session.document = written_document({arguments.output}, file.warnings);
 }
 
 void add_reading_options(CLI::App& command, ImageArguments& arguments) {
@@ -138,7 +138,7 @@ void add_reading_options(CLI::App& command, ImageArguments& arguments) {
 
 }  // namespace
 
-void add_image_command(CLI::App& app, int& /*exit_code*/) {
+void add_image_command(CLI::App& app, Session& session) {
   CLI::App* command =
       app.add_subcommand("image", "Say what a volume image holds, or write it in another format");
   command->require_subcommand(1);
@@ -146,8 +146,7 @@ void add_image_command(CLI::App& app, int& /*exit_code*/) {
   CLI::App* info = command->add_subcommand(
       "info", "Size, spacing, origin, direction, range, kind of voxel, frames, place");
   add_reading_options(*info, *arguments);
-  info->add_flag("--json", arguments->json, "As JSON");
-  info->callback([arguments] { show_image(*arguments); });
+  info->callback([arguments, &session] { show_image(*arguments, session); });
 
   CLI::App* convert =
       command->add_subcommand("convert", "Write a volume, or one frame of a series, to another file");
@@ -158,7 +157,7 @@ void add_image_command(CLI::App& app, int& /*exit_code*/) {
       ->add_option("--kind", arguments->kind,
                    "Kind of its voxels (default: as in FILE); whole numbers are rounded")
       ->check(CLI::IsMember({"uint8", "int16", "uint16", "float32"}));
-  convert->callback([arguments] { convert_image(*arguments); });
+  convert->callback([arguments, &session] { convert_image(*arguments, session); });
 }
 
 }  // namespace coapt::cli

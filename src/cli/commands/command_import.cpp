@@ -2,12 +2,14 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/scene_arguments.hpp"
+#include "cli/session.hpp"
 #include "exchange/import.hpp"
 #include "exchange/valve_models.hpp"
 
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 namespace {
@@ -18,8 +20,9 @@ struct ImportArguments : SceneArguments {
   bool is_incompressible = false, keeps_mesh = false, takes_any_size = false;
 };
 
-void import_file(const ImportArguments& arguments) {
+std::string import_file(const ImportArguments& arguments) {
   refuse_folder_of(arguments.file, arguments.folder);
+  const OutputFolder output(arguments.folder);
   ImportOptions options = import_options(arguments);
   options.keeps_bulk = arguments.bulk == "stated";
   options.repairs = !arguments.keeps_mesh;
@@ -30,14 +33,14 @@ void import_file(const ImportArguments& arguments) {
   options.annulus_closed = arguments.annulus_closed;
   options.papillary = arguments.papillary;
   options.papillary_closed = arguments.papillary_closed;
-  for (const std::string& warning : import_valve(arguments.file, arguments.folder, options))
-    std::printf("warning: %s\n", warning.c_str());
-  announce_scene(arguments.folder);
+  const std::vector<std::string> warnings = import_valve(arguments.file, arguments.folder, options);
+  for (const std::string& warning : warnings) std::printf("warning: %s\n", warning.c_str());
+  return announce_scene(arguments.folder, warnings);
 }
 
 }  // namespace
 
-void add_import_command(CLI::App& app, int& /*exit_code*/) {
+void add_import_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand(
       "import",
@@ -75,7 +78,7 @@ void add_import_command(CLI::App& app, int& /*exit_code*/) {
                    "Tissue, chords, load or method of a published model in the place of the file's")
       ->check(CLI::IsMember(valve_model_names()))
       ->excludes("--membrane");
-  command->callback([arguments] { import_file(*arguments); });
+  command->callback([arguments, &session] { session.document = import_file(*arguments); });
 }
 
 }  // namespace coapt::cli

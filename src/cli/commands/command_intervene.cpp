@@ -1,8 +1,9 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "study/intervene.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 struct InterveneArguments : StudyArguments {
   std::vector<std::string> edits, files;
-  bool prints_json = false;
 };
 
 void print_state(const char* name, const std::optional<RunReport>& run) {
@@ -27,33 +27,32 @@ void print_state(const char* name, const std::optional<RunReport>& run) {
   for (const std::string& warning : run->report.warnings) std::printf("        %s\n", warning.c_str());
 }
 
-void run_command(const InterveneArguments& arguments, int& exit_code) {
+void run_command(const InterveneArguments& arguments, Session& session) {
   listen_for_interrupts();
   InterveneOptions options;
   options.files.assign(arguments.files.begin(), arguments.files.end());
   options.edits = arguments.edits;
   options.report = [](const RunReport&) { end_progress(); };
-  RunOptions run = arguments.options();
-  run.folder = arguments.folder;
+  RunOptions run = arguments.options(session);
+  const OutputFolder output(arguments.folder_for(load_scene(arguments.scene),
+                                                 {"intervene.json", "intervene.csv", "intervene.html"}));
+  run.folder = output.path();
   const BeforeAfter found = intervene(arguments.scene, all_solvers(), options, run);
   write_intervene(found);
-  if (arguments.prints_json) {
-    std::fputs(intervene_json(found).c_str(), stdout);
-  } else {
-    print_state("before", found.before);
-    print_state("after", found.after);
-    print_table(change_table(defined_figures(changed_figures(found))));
-    if (!found.after) std::printf("cancelled before the second solve\n");
-    std::printf(
-        "written to %s (intervene.json, intervene.csv, report.html and the folders before and after)\n",
-        found.folder.string().c_str());
-  }
-  exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.document = intervene_json(found);
+  print_state("before", found.before);
+  print_state("after", found.after);
+  print_table(change_table(defined_figures(changed_figures(found))));
+  if (!found.after) std::printf("cancelled before the second solve\n");
+  std::printf(
+      "written to %s (intervene.json, intervene.csv, intervene.html and the folders before and after)\n",
+      found.folder.string().c_str());
+  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_intervene_command(CLI::App& app, int& exit_code) {
+void add_intervene_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<InterveneArguments>();
   CLI::App* command = app.add_subcommand(
       "intervene", "A valve before and after its repair: both solved, with every figure of both");
@@ -65,8 +64,7 @@ void add_intervene_command(CLI::App& app, int& exit_code) {
           "the scene; may be given again")
       ->allow_extra_args(false);
   command->add_option("--edits", arguments->files, "File with an intervention or a list of them, as JSON");
-  command->add_flag("--json", arguments->prints_json, "Print intervene.json instead of the table");
-  command->callback([arguments, &exit_code] { run_command(*arguments, exit_code); });
+  command->callback([arguments, &session] { run_command(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -1,8 +1,8 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
 #include "cli/length_argument.hpp"
 #include "cli/progress.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "core/error.hpp"
 #include "formats/durable_file.hpp"
@@ -109,7 +109,7 @@ PhantomValve valve_at(const Points& x, const Model& model, const std::vector<int
 
 // Of a result folder, or of the scene solved now.
 Points closed_nodes(const PhantomArguments& arguments, const Scene& scene, const Model& model,
-                    int& exit_code) {
+                    Session& session) {
   if (arguments.closed != "solve") {
     const fs::path file = fs::path(arguments.closed) / "closed.vtp";
     if (!fs::exists(file))
@@ -126,17 +126,17 @@ Points closed_nodes(const PhantomArguments& arguments, const Scene& scene, const
   options.writes = false;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer();
+  options.observer = make_observer(session);
   const RunReport solved = run(scene, all_solvers(), options);
   end_progress();
   if (solved.report.result.status != Status::Converged) {
     std::printf("warning: the scene did not converge: %s\n", solved.report.result.message.c_str());
-    exit_code = kNotConverged;
+    session.exit_code = kNotConverged;
   }
   return solved.report.fields.x.colwise() + solved.model.origin;
 }
 
-std::vector<PhantomState> states_of(const PhantomArguments& arguments, int& exit_code) {
+std::vector<PhantomState> states_of(const PhantomArguments& arguments, Session& session) {
   const Scene scene = load_scene(arguments.scene);
   const Model model = build(scene);
   const std::vector<int> annulus = annulus_loop(model, arguments.scene);
@@ -145,7 +145,7 @@ std::vector<PhantomState> states_of(const PhantomArguments& arguments, int& exit
   states.push_back({"open", valve_at(model.X.colwise() + model.origin, model, annulus)});
   states.front().valve.on_wall = on_wall;
   if (!arguments.closed.empty())
-    states.push_back({"closed", valve_at(closed_nodes(arguments, scene, model, exit_code), model, annulus)});
+    states.push_back({"closed", valve_at(closed_nodes(arguments, scene, model, session), model, annulus)});
   const Vec3 upstream = upstream_direction(states.front().valve.surface, annulus);
   for (PhantomState& state : states) state.valve.upstream = upstream;
   return states;
@@ -188,9 +188,9 @@ void make_folder(const fs::path& folder) {
   if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
 }
 
-void make_phantoms(PhantomArguments& arguments, int& exit_code) {
+void make_phantoms(PhantomArguments& arguments, Session& session) {
   read_lengths(arguments);
-  const std::vector<PhantomState> states = states_of(arguments, exit_code);
+  const std::vector<PhantomState> states = states_of(arguments, session);
   std::vector<PhantomValve> valves;
   for (const PhantomState& state : states) valves.push_back(state.valve);
   PhantomOptions& options = arguments.options;
@@ -206,7 +206,8 @@ void make_phantoms(PhantomArguments& arguments, int& exit_code) {
     std::printf("%s: %d x %d x %d voxels of %g mm, written to %s\n", states[k].name.c_str(), grid.size[0],
                 grid.size[1], grid.size[2], options.voxel, (folder / states[k].name).c_str());
   }
-  formats::write_durable(folder / "phantom.json", truth_json(arguments, states, grid).dump(2) + "\n");
+  session.document = truth_json(arguments, states, grid).dump(2) + "\n";
+  formats::write_durable(folder / "phantom.json", session.document);
 }
 
 void add_appearance_options(CLI::App& command, PhantomArguments& arguments) {
@@ -242,7 +243,7 @@ void add_appearance_options(CLI::App& command, PhantomArguments& arguments) {
 
 }  // namespace
 
-void add_phantom_command(CLI::App& app, int& exit_code) {
+void add_phantom_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<PhantomArguments>();
   CLI::App* command = app.add_subcommand(
       "phantom", "Make an ultrasound-like volume image of a scene, open and closed, with its truth");
@@ -257,7 +258,7 @@ void add_phantom_command(CLI::App& app, int& exit_code) {
   add_appearance_options(*command, *arguments);
   command->add_option("--seed", arguments->options.seed, "Of the random numbers")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "Folder to write")->capture_default_str();
-  command->callback([arguments, &exit_code] { make_phantoms(*arguments, exit_code); });
+  command->callback([arguments, &session] { make_phantoms(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/durable_file.hpp"
@@ -123,7 +124,7 @@ Table distance_table(const RegisteredMeshes& meshes) {
   return table;
 }
 
-void register_meshes(RegisterArguments& arguments) {
+void register_meshes(RegisterArguments& arguments, Session& session) {
   if (arguments.method.empty()) arguments.method = arguments.landmarks.empty() ? "surface" : "landmarks";
   if ((arguments.method == "landmarks") != !arguments.landmarks.empty())
     throw InputError("--landmarks A.mrk.json B.mrk.json and --method landmarks need each other");
@@ -137,10 +138,9 @@ void register_meshes(RegisterArguments& arguments) {
   meshes.before = registration_distances(meshes.moving, meshes.target);
   meshes.after = registration_distances(moved, meshes.target);
   meshes.lines = distance_of_lines(moved, meshes.target);
-  std::error_code error;
-  fs::create_directories(arguments.output, error);
-  if (error) throw InputError(arguments.output + ": cannot be made: " + error.message());
+  const OutputFolder output(arguments.output);
   write_files(arguments, meshes);
+  session.document = document(arguments, meshes).dump(2) + "\n";
   std::printf("%s onto %s by %s: turned by %.4g degrees, moved by %.4g mm, scale %.6g\n",
               arguments.moving.c_str(), arguments.target.c_str(), arguments.method.c_str(),
               found.motion.angle_deg(), moved_by(found.motion, meshes.moving.vertices), found.motion.scale);
@@ -157,7 +157,7 @@ void register_meshes(RegisterArguments& arguments) {
 
 }  // namespace
 
-void add_register_command(CLI::App& app, int& /*exit_code*/) {
+void add_register_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<RegisterArguments>();
   CLI::App* command = app.add_subcommand(
       "register", "Move one surface onto another, as a scan: motion, overlap, distances before and after");
@@ -177,7 +177,7 @@ void add_register_command(CLI::App& app, int& /*exit_code*/) {
       ->capture_default_str();
   command->add_flag("--scale", arguments->options.with_scale, "Also find one scale");
   command->add_option("-o,--output", arguments->output, "Folder to write")->capture_default_str();
-  command->callback([arguments] { register_meshes(*arguments); });
+  command->callback([arguments, &session] { register_meshes(*arguments, session); });
 }
 
 }  // namespace coapt::cli

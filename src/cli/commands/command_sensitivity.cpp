@@ -1,12 +1,14 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
+#include "formats/whole_file.hpp"
 #include "tuning/sensitivity_study.hpp"
 
 #include <cstdio>
@@ -62,7 +64,7 @@ void print_parameter(const ParameterSensitivity& found, RowPrinter& print) {
   std::fflush(stdout);
 }
 
-void study(const SensitivityArguments& arguments, int& exit_code) {
+void study(const SensitivityArguments& arguments, Session& session) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   SensitivityOptions options;
@@ -78,8 +80,9 @@ void study(const SensitivityArguments& arguments, int& exit_code) {
     has_caption = true;
     print_parameter(found, print);
   };
-  const std::filesystem::path folder = arguments.prepared_folder(scene);
-  const SensitivityStudy found = study_sensitivity(scene, all_solvers(), options, arguments.options());
+  const OutputFolder output(arguments.folder_for(scene, {"sensitivity.json", "sensitivity.csv"}));
+  const std::filesystem::path& folder = output.path();
+  const SensitivityStudy found = study_sensitivity(scene, all_solvers(), options, arguments.options(session));
   end_progress();
   for (const std::string& reason : found.left_out) std::printf("left out: %s\n", reason.c_str());
   const SensitivityRun& base = found.base;
@@ -91,13 +94,14 @@ void study(const SensitivityArguments& arguments, int& exit_code) {
   if (found.is_cancelled)
     std::printf("cancelled: only %zu parameters were studied to the end\n", found.parameters.size());
   write_sensitivity(folder, found);
+  session.document = formats::read_whole(folder / "sensitivity.json");
   std::printf("written to %s (sensitivity.json, sensitivity.csv)\n", folder.string().c_str());
-  exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_sensitivity_command(CLI::App& app, int& exit_code) {
+void add_sensitivity_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<SensitivityArguments>();
   CLI::App* command = app.add_subcommand(
       "sensitivity",
@@ -111,7 +115,7 @@ void add_sensitivity_command(CLI::App& app, int& exit_code) {
                       "Make each smaller and larger by this share, such as 5%, and solve again");
   command->add_flag("--from-start", arguments->starts_anew,
                     "Solve each again, from the scene's own start instead of the first solution");
-  command->callback([arguments, &exit_code] { study(*arguments, exit_code); });
+  command->callback([arguments, &session] { study(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -1,7 +1,8 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
+#include "cli/session.hpp"
 #include "cli/solve_checkpoint.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
@@ -11,11 +12,13 @@
 #include "formats/json/units.hpp"
 #include "results/result_warnings.hpp"
 #include "run/branches.hpp"
+#include "run/unwritten.hpp"
 #include "study/bench/accuracy.hpp"
 #include "tuning/first_order.hpp"
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -190,12 +193,43 @@ RunIdentity identity(const Scene& scene, const RunOptions& options,
           options.damped_steps.value_or(scene.solver.continuation.damped_steps)};
 }
 
+// What could not be written is said at the end, below all that was found.
+int print_unwritten(const std::vector<std::string>& unwritten) {
+  for (const std::string& defect : unwritten) std::fprintf(stderr, "coapt: error: %s\n", defect.c_str());
+  return kUnwritten;
+}
+
+// What was solved, also where its files could not be written.
+RunReport solved(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
+                 const std::optional<double>& accuracy_mm, std::vector<std::string>& unwritten) {
+  try {
+    return accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options)
+                       : run(scene, solvers, options);
+  } catch (const UnwrittenRun& error) {
+    unwritten = error.defects();
+    return std::move(error.run());
+  }
+}
+
+Report completed(std::vector<std::string>& unwritten, const std::function<Report()>& complete) {
+  try {
+    return complete();
+  } catch (const UnwrittenReport& error) {
+    unwritten = error.defects();
+    return std::move(error.report());
+  }
+}
+
 // Returns the exit code.
-int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
+int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session& session) {
   const Scene scene = load_scene(arguments.scene);
+  const OutputFolder output(arguments.folder.empty() ? result_folder(scene)
+                                                     : std::filesystem::path(arguments.folder));
+  std::vector<std::string> unwritten;
   std::optional<double> accuracy_mm;
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
   options.doubts = told_doubts;
+  options.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
@@ -203,18 +237,23 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
     solvers = checkpoint->recorded(solvers);
     options.observer = checkpoint->recorded(options.observer);
   }
-  RunReport report =
-      accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options) : run(scene, solvers, options);
+  RunReport report = solved(scene, solvers, options, accuracy_mm, unwritten);
   RunOptions again = options;
-  again.observer = make_observer();
-  report.report = with_branches(scene, all_solvers(), again, arguments.branches, report.model,
-                                std::move(report.report), report.folder);
+  again.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
+  report.report = completed(unwritten, [&] {
+    return with_branches(scene, all_solvers(), again, arguments.branches, report.model,
+                         std::move(report.report), report.folder);
+  });
   if (arguments.has_sliders)
-    report.report =
-        with_first_order(scene, all_solvers(), again, report.model, std::move(report.report), report.folder);
+    report.report = completed(unwritten, [&] {
+      return with_first_order(scene, all_solvers(), again, report.model, std::move(report.report),
+                              report.folder);
+    });
   end_progress();
+  session.document = result_json(report.model, report.report);
   print_summary(report);
-  if (checkpoint) checkpoint->finish(arguments.scene);
+  if (checkpoint) checkpoint->finish(arguments.scene, unwritten.empty());
+  if (!unwritten.empty()) return print_unwritten(unwritten);
   const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
   const Result& result = report.report.result;
   if (!is_reached || result.status != Status::Converged) return kNotConverged;
@@ -223,7 +262,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options) {
 
 }  // namespace
 
-void add_solve_command(CLI::App& app, int& exit_code) {
+void add_solve_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<SolveArguments>();
   CLI::App* command = app.add_subcommand("solve", "Solve a scene and write its result folder");
   command->add_option("SCENE", arguments->scene, "Scene file (JSON)")->required();
@@ -259,7 +298,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
       "In report.html, sliders of the parameters that matter most, which move the shape and its figures by "
       "their first-order response, over ranges that solves have checked");
   sliders->excludes("--no-report")->excludes("--accuracy");
-  command->callback([arguments, tolerance, seconds, modes, frames, &exit_code] {
+  command->callback([arguments, tolerance, seconds, modes, frames, &session] {
     listen_for_interrupts();
     RunOptions options;
     options.solver = arguments->solver;
@@ -272,8 +311,7 @@ void add_solve_command(CLI::App& app, int& exit_code) {
     if (arguments->has_no_report) options.writes_page = false;
     options.factorisations = all_factorisations();
     options.checker = intersection_checker();
-    options.observer = make_observer();
-    exit_code = solve_as_asked(*arguments, options);
+    session.exit_code = solve_as_asked(*arguments, options, session);
   });
 }
 

@@ -1,11 +1,13 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
+#include "formats/json/json_text.hpp"
 #include "stress/stress_report.hpp"
 
 #include <cerrno>
@@ -24,7 +26,7 @@ namespace {
 struct StressArguments {
   std::string scene, folder, rows;
   double row_seconds = 20;
-  bool is_quick = false, lists = false, prints_json = false;
+  bool is_quick = false, lists = false;
 };
 
 void print_list(const std::vector<StressRow>& rows) {
@@ -35,6 +37,17 @@ void print_list(const std::vector<StressRow>& rows) {
                                          {text_column("scene"), &StressRow::scene},
                                          {text_column("what is varied"), &StressRow::name},
                                          {text_column("quick"), quick}}));
+}
+
+std::string list_document(const std::vector<StressRow>& rows) {
+  OrderedJson list = OrderedJson::array();
+  for (const StressRow& row : rows)
+    list.push_back({{"row", row.id},
+                    {"topic", stress_topic(row.id)},
+                    {"scene", row.scene},
+                    {"name", row.name},
+                    {"quick", row.is_quick}});
+  return json_text(OrderedJson{{"rows", list}}, 2) + "\n";
 }
 
 void print_result(const StressResult& result, RowPrinter& print) {
@@ -70,7 +83,7 @@ void solve_apart(const std::filesystem::path& scene, const std::filesystem::path
   }
 }
 
-void stress(const StressArguments& arguments, int& exit_code) {
+void stress(const StressArguments& arguments, Session& session) {
   listen_for_interrupts();
   std::optional<Scene> scene;
   if (!arguments.scene.empty()) scene = load_scene(arguments.scene);
@@ -85,33 +98,29 @@ void stress(const StressArguments& arguments, int& exit_code) {
   options.is_cancelled = is_interrupted;
   options.solve_apart = solve_apart;
   RowPrinter print;
-  options.report = [&](const StressResult& result) {
-    if (!arguments.prints_json) print_result(result, print);
-  };
+  options.report = [&](const StressResult& result) { print_result(result, print); };
   const std::vector<StressRow> rows = scene ? stress_rows(*scene, options) : stress_rows(options);
   if (arguments.lists) {
+    session.document = list_document(rows);
     print_list(rows);
     return;
   }
-  prepare_result_folder(options.folder);
+  const OutputFolder output(options.folder);
   StressMatrix matrix = run_stress(rows, options);
   if (scene) {
     matrix.scene_file = scene->file.filename().string();
     matrix.scene_title = scene_title(*scene);
   }
   write_stress(options.folder, matrix);
-  if (arguments.prints_json)
-    std::fputs(stress_json(matrix).c_str(), stdout);
-  else
-    std::printf("%s\nwritten to %s (stress.json, stress.csv, stress.html%s)\n",
-                stress_summary(matrix).c_str(), options.folder.string().c_str(),
-                scene ? "" : ", and the scenes");
-  exit_code = matrix.holds() ? kConverged : kNotConverged;
+  session.document = stress_json(matrix);
+  std::printf("%s\nwritten to %s (stress.json, stress.csv, stress.html%s)\n", stress_summary(matrix).c_str(),
+              options.folder.string().c_str(), scene ? "" : ", and the scenes");
+  session.exit_code = matrix.holds() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_stress_command(CLI::App& app, int& exit_code) {
+void add_stress_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<StressArguments>();
   CLI::App* command = app.add_subcommand(
       "stress",
@@ -125,8 +134,7 @@ void add_stress_command(CLI::App& app, int& exit_code) {
       ->check(positive_defect);
   command->add_flag("--quick", arguments->is_quick, "Only the rows that take next to no time");
   command->add_flag("--list", arguments->lists, "List the rows and run none");
-  command->add_flag("--json", arguments->prints_json, "Print stress.json instead of the table");
-  command->callback([arguments, &exit_code] { stress(*arguments, exit_code); });
+  command->callback([arguments, &session] { stress(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -1,13 +1,16 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "cli/worker_pool.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
+#include "run/replaced_inputs.hpp"
 #include "study/parameter_study.hpp"
 #include "study/point_shapes.hpp"
 
@@ -23,7 +26,7 @@ struct ParameterStudyArguments : StudyArguments {
   std::vector<std::string> sweeps;
   std::string metric = "orifice_area_mm2";
   int processes = 0;
-  bool is_greatest_best = false, starts_over = false, prints_json = false;
+  bool is_greatest_best = false, starts_over = false;
 };
 
 std::string settings_text(const ParameterStudyArguments& arguments) {
@@ -36,9 +39,8 @@ std::string settings_text(const ParameterStudyArguments& arguments) {
 // In a process of its own: solves the point into its folder.
 int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
                 const std::filesystem::path& folder, const ParameterStudyArguments& arguments) {
-  RunOptions options = arguments.options();
+  RunOptions options = arguments.options({.is_quiet = true});
   options.folder = folder;
-  options.observer = [](const Iteration&, const Vector&) { return !is_interrupted(); };
   try {
     const RunReport solved = run(parse_scene(point.scene, scene), all_solvers(), options);
     if (solved.report.result.status == Status::Cancelled) return kNotConverged;  // to be solved again
@@ -67,20 +69,16 @@ void print_ranking(const ParameterStudy& study) {
   print_table(chosen(point_table(study), columns));
 }
 
-void print_study(const ParameterStudy& study, bool prints_json, const std::filesystem::path& folder) {
-  if (prints_json) {
-    std::fputs(parameter_study_json(study).c_str(), stdout);
-  } else {
-    print_ranking(study);
-    if (study.results.size() < study.point_count)
-      std::printf("%zu points are missing; the same command goes on with them\n",
-                  study.point_count - study.results.size());
-    std::printf("written to %s (study.json, study.csv, report.html and a folder for each point)\n",
-                folder.string().c_str());
-  }
+void print_study(const ParameterStudy& study, const std::filesystem::path& folder) {
+  print_ranking(study);
+  if (study.results.size() < study.point_count)
+    std::printf("%zu points are missing; the same command goes on with them\n",
+                study.point_count - study.results.size());
+  std::printf("written to %s (study.json, study.csv, study.html and a folder for each point)\n",
+              folder.string().c_str());
 }
 
-void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
+void run_study(const ParameterStudyArguments& arguments, Session& session) {
   listen_for_interrupts();
   const std::filesystem::path scene = arguments.scene;
   ParameterStudy study;
@@ -95,7 +93,8 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
   study.scene_title = scene_title(first);
   const std::filesystem::path folder =
       arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
-  prepare_result_folder(folder);
+  refuse_replaced_inputs(first, folder, {"study.json", "study.csv", "study.html"});
+  const OutputFolder output(folder);
 
   std::vector<std::optional<PointResult>> results(points.size());
   std::vector<size_t> open;
@@ -104,7 +103,7 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
     if (!arguments.starts_over) results[point.number] = read_point(place, point);
     if (!results[point.number]) open.push_back(point.number);
   }
-  if (open.size() < points.size() && !arguments.prints_json)
+  if (open.size() < points.size())
     std::printf("%zu of %zu points are there already\n", points.size() - open.size(), points.size());
 
   size_t finished = points.size() - open.size();
@@ -123,7 +122,7 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
       return;
     }
     ++finished;
-    if (!arguments.prints_json) print_point(*results[point.number], study, finished);
+    print_point(*results[point.number], study, finished);
   };
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   run_jobs(open.size(), arguments.processes > 0 ? arguments.processes : cores, callbacks);
@@ -132,13 +131,14 @@ void run_study(const ParameterStudyArguments& arguments, int& exit_code) {
     if (result) study.results.push_back(std::move(*result));
   if (has_shape_view()) study.shapes = point_shapes(scene, points, study.results, study.sweeps, folder);
   write_parameter_study(folder, study);
-  print_study(study, arguments.prints_json, folder);
-  exit_code = study.has_converged() ? kConverged : kNotConverged;
+  session.document = parameter_study_json(study);
+  print_study(study, folder);
+  session.exit_code = study.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_study_command(CLI::App& app, int& exit_code) {
+void add_study_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<ParameterStudyArguments>();
   CLI::App* command = app.add_subcommand(
       "study", "A scene at every point of a grid of values, in parallel processes, and the points ranked");
@@ -158,8 +158,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
       ->add_option("-j,--processes", arguments->processes, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 4096));
   command->add_flag("--start-over", arguments->starts_over, "Solve finished points again");
-  command->add_flag("--json", arguments->prints_json, "Print study.json instead of the table");
-  command->callback([arguments, &exit_code] { run_study(*arguments, exit_code); });
+  command->callback([arguments, &session] { run_study(*arguments, session); });
 }
 
 }  // namespace coapt::cli

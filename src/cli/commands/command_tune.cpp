@@ -1,9 +1,10 @@
 #include "cli/checkpoint_file.hpp"
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
@@ -34,7 +35,6 @@ struct TuneArguments : StudyArguments {
   CheckpointArguments checkpoint;
   std::string target, grouping = "chord", sides = "both", only, bounds, noise, determined, step;
   double distance_weight = -1, change_weight = -1, total_seconds = 0;  // below 0, or 0: not given
-  bool prints_json = false;
 };
 
 // Keeps one tuning in a file while it goes on, and gives it what an earlier session kept.
@@ -43,7 +43,7 @@ class TuneCheckpoint {
   // Sets `keep` and `known` of the options, which must not outlive this object; defects go to theirs: a file
   // that is not of this tuning, one that is there already.
   TuneCheckpoint(const CheckpointArguments& arguments, const std::filesystem::path& scene,
-                 ChordTuningOptions& options, const RunOptions& run, bool is_quiet);
+                 ChordTuningOptions& options, const RunOptions& run);
   TuneCheckpoint(const TuneCheckpoint&) = delete;
   TuneCheckpoint& operator=(const TuneCheckpoint&) = delete;
 
@@ -58,12 +58,11 @@ class TuneCheckpoint {
   Identity identity_;
   ChordTuningRecord known_, last_;
   double every_, written_s_ = 0;
-  bool is_quiet_;
 };
 
 TuneCheckpoint::TuneCheckpoint(const CheckpointArguments& arguments, const std::filesystem::path& scene,
-                               ChordTuningOptions& options, const RunOptions& run, bool is_quiet)
-    : file_(arguments, "tuning", "tune"), every_(arguments.every), is_quiet_(is_quiet) {
+                               ChordTuningOptions& options, const RunOptions& run)
+    : file_(arguments, "tuning", "tune"), every_(arguments.every) {
   if (!arguments.is_wanted()) return;
   if (const auto defect = file_.defect()) options.defects.push_back(*defect);
   try {
@@ -76,7 +75,7 @@ TuneCheckpoint::TuneCheckpoint(const CheckpointArguments& arguments, const std::
     options.defects.insert(options.defects.end(), found.defects().begin(), found.defects().end());
     return;
   }
-  if (options.known != nullptr && !is_quiet_)
+  if (options.known != nullptr)
     std::printf("resumed after %zu trials in %.3g s\n", known_.tuning.history.size(), known_.tuning.seconds);
   last_ = known_;
   options.keep = [this](const ChordTuningRecord& record) {
@@ -95,7 +94,7 @@ void TuneCheckpoint::finish(const ChordTuning& found, const std::string& scene) 
   const TuningStatus status = found.tuning.status;
   if (status == TuningStatus::Converged || status == TuningStatus::Stalled) return file_.remove();
   write();
-  if (!is_quiet_) file_.print_how_to_go_on(scene);
+  file_.print_how_to_go_on(scene);
 }
 
 // "-20%" or "-0.2".
@@ -179,42 +178,49 @@ void print_found(const ChordTuning& found) {
     std::printf("\n  warning: the best shape %s", found.tuning.anchor->message.c_str());
   std::printf("\n  %d solves (%d rejected, %d on another branch of equilibria), %.2f s\n", found.solves,
               found.tuning.failed, found.tuning.lost_branches, found.seconds);
-  std::printf("written to %s (tuning.json, tuning.csv, report.html%s and the folders before and after)\n",
+  std::printf("written to %s (tuning.json, tuning.csv, tuning.html%s and the folders untuned and tuned)\n",
               found.folder.string().c_str(), found.tuned_scene.empty() ? "" : ", tuned.json");
 }
 
-void run_command(const TuneArguments& arguments, int& exit_code) {
+// Nothing where it cannot be read: tune_chords() says so, with all else that is wrong.
+std::optional<Scene> readable_scene(const std::string& path) {
+  try {
+    return load_scene(path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+void run_command(const TuneArguments& arguments, Session& session) {
   listen_for_interrupts();
   ChordTuningOptions options = tuning_options(arguments);
-  RunOptions run = arguments.options();
+  RunOptions run = arguments.options(session);
   run.folder = arguments.folder;
   if (arguments.total_seconds > 0) run.max_seconds = arguments.total_seconds;
   options.is_cancelled = [] { return is_interrupted(); };
-  if (!arguments.prints_json) {
-    options.report = print_trial;
-    options.report_before = [](const RunReport& before) {
-      end_progress();
-      std::printf("solve   1  %s, residual %.1e  %d iterations  %.2f s\n",
-                  std::string(status_name(before.report.result.status)).c_str(),
-                  before.report.result.residual, before.report.result.iterations,
-                  before.report.result.wall_s);
-    };
-  }
-  TuneCheckpoint checkpoint(arguments.checkpoint, arguments.scene, options, run, arguments.prints_json);
+  options.report = print_trial;
+  options.report_before = [](const RunReport& before) {
+    end_progress();
+    std::printf("solve   1  %s, residual %.1e  %d iterations  %.2f s\n",
+                std::string(status_name(before.report.result.status)).c_str(), before.report.result.residual,
+                before.report.result.iterations, before.report.result.wall_s);
+  };
+  std::optional<OutputFolder> output;
+  if (const std::optional<Scene> scene = readable_scene(arguments.scene))
+    output.emplace(arguments.folder_for(*scene, {"tuning.json", "tuning.csv", "tuning.html", "tuned.json"}));
+  TuneCheckpoint checkpoint(arguments.checkpoint, arguments.scene, options, run);
   const ChordTuning found = tune_chords(arguments.scene, all_solvers(), all_minimisers(), options, run);
   end_progress();
   write_chord_tuning(found);
-  if (arguments.prints_json)
-    std::fputs(chord_tuning_json(found).c_str(), stdout);
-  else
-    print_found(found);
+  session.document = chord_tuning_json(found);
+  print_found(found);
   checkpoint.finish(found, arguments.scene);
-  exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
 }
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, int& exit_code) {
+void add_tune_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<TuneArguments>();
   CLI::App* command = app.add_subcommand(
       "tune", "Chord lengths that fit a closed surface, or minimise orifice and chord force");
@@ -270,9 +276,8 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       "Standard deviation of the target's distances, for what it determines (default: 0.1 mm)");
   command->add_option("--determined", arguments->determined,
                       "Greatest standard deviation of a length that counts as determined (default: 0.05 mm)");
-  command->add_flag("--json", arguments->prints_json, "Print tuning.json instead of the table");
   add_checkpoint_arguments(*command, arguments->checkpoint, "tuning", 10);
-  command->callback([arguments, &exit_code] { run_command(*arguments, exit_code); });
+  command->callback([arguments, &session] { run_command(*arguments, session); });
 }
 
 }  // namespace coapt::cli

@@ -1,11 +1,13 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/row_printer.hpp"
+#include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
+#include "formats/whole_file.hpp"
 #include "tuning/region_tuning.hpp"
 
 #include <cstdio>
@@ -29,7 +31,7 @@ void print_state(const char* label, const TuningState& state) {
   std::fflush(stdout);
 }
 
-void tune(const TuneRegionsArguments& arguments, int& exit_code) {
+void tune(const TuneRegionsArguments& arguments, Session& session) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   RegionTuningOptions options = arguments.tuning;
@@ -40,8 +42,10 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
     end_progress();
     print_state(("iteration " + std::to_string(round)).c_str(), state);
   };
-  const std::filesystem::path folder = arguments.prepared_folder(scene);
-  const RegionTuning found = tune_regions(scene, all_solvers(), options, arguments.options());
+  const OutputFolder output(
+      arguments.folder_for(scene, {"region_tuning.json", "region_tuning.csv", "triangle_factors.csv"}));
+  const std::filesystem::path& folder = output.path();
+  const RegionTuning found = tune_regions(scene, all_solvers(), options, arguments.options(session));
   end_progress();
   std::printf("%s\n", found.message.c_str());
   print_state("before", found.before);
@@ -51,9 +55,10 @@ void tune(const TuneRegionsArguments& arguments, int& exit_code) {
               found.failed_solves, found.rounds, found.wall_s);
   print_table(factor_table(found));
   write_region_tuning(folder, found);
+  session.document = formats::read_whole(folder / "region_tuning.json");
   std::printf("written to %s (region_tuning.json, region_tuning.csv, triangle_factors.csv)\n",
               folder.string().c_str());
-  exit_code = found.is_reached ? kConverged : kNotConverged;
+  session.exit_code = found.is_reached ? kConverged : kNotConverged;
 }
 
 std::string regions_defect(const std::string& text) {
@@ -65,7 +70,7 @@ std::string regions_defect(const std::string& text) {
 
 }  // namespace
 
-void add_tune_regions_command(CLI::App& app, int& exit_code) {
+void add_tune_regions_command(CLI::App& app, Session& session) {
   const auto arguments = std::make_shared<TuneRegionsArguments>();
   CLI::App* command = app.add_subcommand(
       "tune-regions", "Stiffness of each leaflet region with which no chord exceeds its yield strain");
@@ -92,10 +97,10 @@ void add_tune_regions_command(CLI::App& app, int& exit_code) {
                    "On a stiffness; its inverse is the least (default: 10)")
       ->check(positive_defect)
       ->check(CLI::Range(1.001, 1e6));
-  command->callback([arguments, zones, &exit_code] {
+  command->callback([arguments, zones, &session] {
     if (zones->count() > 0 && arguments->regions == "mesh")
       throw InputError("--zones: --regions mesh takes the regions of the mesh as they are; leave one out");
-    tune(*arguments, exit_code);
+    tune(*arguments, session);
   });
 }
 

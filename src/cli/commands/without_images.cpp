@@ -21,11 +21,11 @@ void add_refused_command(CLI::App& app, const std::string& name, const std::stri
 
 }  // namespace
 
-void add_image_command(CLI::App& app, int& /*exit_code*/) {
+void add_image_command(CLI::App& app, Session& /*session*/) {
   add_refused_command(app, "image", "Say what a volume image holds, or write it in another format");
 }
 
-void add_phantom_command(CLI::App& app, int& /*exit_code*/) {
+void add_phantom_command(CLI::App& app, Session& /*session*/) {
   add_refused_command(app, "phantom", "Make an ultrasound-like volume image of a scene, with its truth");
 }
 

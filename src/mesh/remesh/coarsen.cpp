@@ -1,5 +1,6 @@
 #include "mesh/remesh/coarsen.hpp"
 
+#include "core/bounded_int.hpp"
 #include "mesh/distance/triangle_distance.hpp"
 #include "mesh/remesh/detail/coarsener.hpp"
 #include "mesh/remesh/detail/order_of_place.hpp"
@@ -238,7 +239,7 @@ Coarsening Coarsener::result(const TriangleMesh& fine) const {
 Coarsening coarsen(const TriangleMesh& mesh, const CoarsenOptions& options) {
   const coarsening::OrderedMesh ordered = coarsening::in_order_of_place(mesh, options);
   coarsening::Coarsener coarsener(ordered.mesh, ordered.options);
-  coarsener.run(static_cast<int>(std::ceil(options.share * mesh.triangle_count())));
+  coarsener.run(bounded_int(std::ceil(options.share * mesh.triangle_count()), 0, mesh.triangle_count()));
   return coarsening::renumbered(coarsener.result(ordered.mesh), ordered, mesh);
 }
 

@@ -1,5 +1,7 @@
 #include "mesh/remesh/spanning_surface.hpp"
 
+#include "core/bounded_int.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -54,7 +56,7 @@ double highest_chord(const Points& polygon, double x, double y) {
     }
     const double from = std::atan2(a[1], a[0]) / step;
     const double to = from + std::atan2(std::abs(cross), a.dot(b)) / step;
-    for (int d = static_cast<int>(std::ceil(from)); d <= to; ++d) {
+    for (int d = bounded_int(std::ceil(from), -2 * kDirections, 2 * kDirections); d <= to; ++d) {
       const Eigen::Vector2d along(std::cos(d * step), std::sin(d * step));
       const double on_b = a[0] * along[1] - a[1] * along[0], on_a = along[0] * b[1] - along[1] * b[0];
       const double part = on_b / (on_a + on_b);

@@ -1,5 +1,6 @@
 #include "optim/linear/lowest_eigenvalues.hpp"
 
+#include "core/bounded_int.hpp"
 #include "optim/linear/inverse_tangent.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -100,7 +101,7 @@ double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, co
 // lay evenly.
 int more_values(int last, double shift, double far, double reach) {
   const double share = far > shift ? (reach - shift) / (far - shift) : kInfinity;
-  return static_cast<int>(std::min(double{kMost}, std::max(kMoreThanNeeded * share, 2.0) * last));
+  return bounded_int(std::max(kMoreThanNeeded * share, 2.0) * last, 1, kMost);
 }
 
 }  // namespace

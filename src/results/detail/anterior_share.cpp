@@ -1,5 +1,7 @@
 #include "results/detail/anterior_share.hpp"
 
+#include "core/bounded_int.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,13 +50,12 @@ std::optional<double> anterior_share(const TriangleMesh& mesh, const std::vector
              to = attachment_middle(mesh, posterior, annulus, outline);
   if (!from || !to) return {};
   const Eigen::Vector2d way = (*to - *from).head<2>();
-  const int samples = std::max(1, static_cast<int>(std::ceil(way.norm() / view.cell)));
+  const int samples = bounded_int(std::ceil(way.norm() / view.cell), 1, view.node_count());
   int covered = 0;
   for (int k = 0; k < samples; ++k) {
     const Eigen::Vector2d at = from->head<2>() + (k + 0.5) / samples * way;
-    const int i = std::clamp(static_cast<int>(std::lround((at[0] - view.x0) / view.cell)), 0,
-                             view.columns - 1),
-              j = std::clamp(static_cast<int>(std::lround((at[1] - view.y0) / view.cell)), 0, view.rows - 1);
+    const int i = bounded_int(std::round((at[0] - view.x0) / view.cell), 0, view.columns - 1),
+              j = bounded_int(std::round((at[1] - view.y0) / view.cell), 0, view.rows - 1);
     const int source = closed.source[static_cast<size_t>(j * view.columns + i)];
     const int triangle = source < 0 ? -1 : view.triangle[static_cast<size_t>(source)];
     covered += triangle >= 0 && mesh.regions[static_cast<size_t>(triangle)] == anterior;

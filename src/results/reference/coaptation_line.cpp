@@ -1,5 +1,6 @@
 #include "results/reference/coaptation_line.hpp"
 
+#include "core/bounded_int.hpp"
 #include "core/error.hpp"
 #include "mesh/distance/vertex_gaps.hpp"
 #include "mesh/projected_area.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr int kFinest = 1024, kCoarsest = 128;  // cells over the extent of the annulus
 constexpr int kPieces = 400;                    // of the shorter line, whose middles are compared
+constexpr int kMostPieces = 100 * kPieces;      // of one stretch of a line that is far longer than the other
 
 // Eight cells to an edge, four to the contact distance, within bounds that keep the view cheap and useful.
 double cell_size(double extent, double mean_edge, double contact_distance) {
@@ -32,7 +34,9 @@ std::vector<char> near_contact(const TopView& view, const Points& x, double mean
       marked[static_cast<size_t>(j * view.columns + i)] = 1;
   }
   const double extent = view.cell * std::max(view.columns, view.rows);
-  return near_marked(view, marked, static_cast<int>(std::ceil(std::max(extent / 20, mean_edge) / view.cell)));
+  return near_marked(view, marked,
+                     bounded_int(std::ceil(std::max(extent / 20, mean_edge) / view.cell), 0,
+                                 std::max(view.columns, view.rows)));
 }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -62,7 +66,7 @@ DistanceFigures figures(const std::vector<Seam>& from, const std::vector<Seam>& 
   for (const Seam& seam : from)
     for (Eigen::Index k = 0; k + 1 < seam.points.cols(); ++k) {
       const Vec3 a = seam.points.col(k), b = seam.points.col(k + 1);
-      const int count = std::max(1, static_cast<int>(std::ceil((b - a).norm() / piece)));
+      const int count = bounded_int(std::ceil((b - a).norm() / piece), 1, kMostPieces);
       for (int i = 0; i < count; ++i)
         places.emplace_back(distance_to(a + (i + 0.5) / count * (b - a), to), (b - a).norm() / count);
     }
@@ -92,7 +96,7 @@ SeenSurface seen_surface(const Points& x, const Triangles& triangles, const Poin
   const double extent = (outline.rowwise().maxCoeff() - outline.rowwise().minCoeff()).head<2>().maxCoeff();
   const double cell = cell_size(extent, mean_edge_length(x, triangles), contact_distance);
   SeenSurface seen;
-  seen.radius = std::max(1, static_cast<int>(std::lround(contact_distance / 2 / cell)));
+  seen.radius = bounded_int(std::round(contact_distance / 2 / cell), 1, kFinest);
   seen.view = top_view(x, triangles, annulus, frame, cell, seen.radius + 1);
   seen.closed = closed_view(seen.view, seen.radius);
   return seen;

@@ -8,6 +8,7 @@
 #include "xpbd/paper_numbers.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace coapt {
@@ -175,13 +176,14 @@ std::vector<Spec> named(const Parameters& scene, const std::string& key, std::se
     if (values.has("name") && !names.insert(values.text("name")).second)
       reading.defects.push_back(values.where("name") + ": \"" + values.text("name") +
                                 "\" is the name of another term or intervention too");
+  std::map<std::string, int> next_of_type;  // below it all numbers are taken
   for (const Parameters& values : all) {
     Spec spec{values.text("type"), "", values};
     if (values.has("name")) {
       spec.name = values.text("name");
     } else {
-      spec.name = spec.type;
-      for (int number = 2; !names.insert(spec.name).second; ++number)
+      int& number = next_of_type.try_emplace(spec.type, 2).first->second;
+      for (spec.name = spec.type; !names.insert(spec.name).second; ++number)
         spec.name = spec.type + "_" + std::to_string(number);
     }
     specs.push_back(std::move(spec));

@@ -1,5 +1,8 @@
 #include "scene/file/parameters.hpp"
 
+#include "core/bounded_int.hpp"
+
+#include <limits>
 #include <stdexcept>
 
 namespace coapt {
@@ -22,7 +25,9 @@ double Parameters::number(const std::string& key) const { return get<double>(key
 double Parameters::number_or(const std::string& key, double otherwise) const {
   return has(key) ? number(key) : otherwise;
 }
-int Parameters::integer(const std::string& key) const { return static_cast<int>(get<double>(key)); }
+int Parameters::integer(const std::string& key) const {
+  return bounded_int(get<double>(key), std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+}
 bool Parameters::flag(const std::string& key) const { return get<bool>(key); }
 const std::string& Parameters::text(const std::string& key) const { return get<std::string>(key); }
 const Vec3& Parameters::vector(const std::string& key) const { return get<Vec3>(key); }

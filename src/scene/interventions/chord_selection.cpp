@@ -1,6 +1,7 @@
 #include "scene/interventions/chord_selection.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 
 #include <algorithm>
@@ -21,9 +22,8 @@ std::set<int> numbers(const Parameters& p, const char* key, Eigen::Index count, 
   std::set<int> all;
   for (const double number : p.numbers(key)) {
     if (number >= static_cast<double>(count))
-      throw InputError(p.where(key) + ": there is no " + what + " " +
-                       std::to_string(static_cast<long>(number)) + "; the network has " +
-                       std::to_string(count) + ", counted from 0");
+      throw InputError(p.where(key) + ": there is no " + what + " " + exact_text(number) +
+                       "; the network has " + std::to_string(count) + ", counted from 0");
     all.insert(static_cast<int>(number));
   }
   return all;

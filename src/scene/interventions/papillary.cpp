@@ -1,5 +1,6 @@
 // Papillary tips moved: relocation, or a displaced ventricle.
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "scene/interventions/intervention.hpp"
 
 namespace coapt {
@@ -14,9 +15,8 @@ std::vector<int> moved_tips(const Parameters& p, const Model& model) {
   std::vector<int> tips;
   for (const double number : p.numbers("tips")) {
     if (number >= static_cast<double>(all.size()))
-      throw InputError(p.where("tips") + ": there is no papillary tip " +
-                       std::to_string(static_cast<long>(number)) + "; the scene has " +
-                       std::to_string(all.size()) + ", counted from 0");
+      throw InputError(p.where("tips") + ": there is no papillary tip " + exact_text(number) +
+                       "; the scene has " + std::to_string(all.size()) + ", counted from 0");
     tips.push_back(all[static_cast<size_t>(number)]);
   }
   return tips;

@@ -1,5 +1,6 @@
 #include "sensitivity/metrics/metrics_opening.hpp"
 
+#include "core/bounded_int.hpp"
 #include "core/error.hpp"
 
 #include <Eigen/Geometry>
@@ -14,11 +15,11 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 using Places = Eigen::Matrix2Xd;
 
-constexpr double kGridPerBlur = 3;     // points
-constexpr double kSamplesPerBlur = 3;  // of a facet, along an edge
-constexpr double kMargin = 0.2;        // of the grid around the rim
-constexpr double kRounding = 1e-3;     // of the modulus of a signed area, over the mean area
-constexpr double kMostPoints = 4e6;    // of the grid
+constexpr double kGridPerBlur = 3;      // points
+constexpr double kSamplesPerBlur = 3;   // of a facet, along an edge
+constexpr double kMargin = 0.2;         // of the grid around the rim
+constexpr double kRounding = 1e-3;      // of the modulus of a signed area, over the mean area
+constexpr int kMostPoints = 4'000'000;  // of the grid
 
 struct Step {
   double value, slope;
@@ -45,8 +46,7 @@ struct Grid {
   void visit_around(const Vec2& p, double radius, const Visit& visit) const {
     const auto range = [&](double at, int most) {
       const double first = std::ceil((at - radius) / spacing), last = std::floor((at + radius) / spacing);
-      return std::pair(static_cast<int>(std::clamp(first, 0.0, double(most))),
-                       static_cast<int>(std::clamp(last, -1.0, double(most - 1))));
+      return std::pair(bounded_int(first, 0, most), bounded_int(last, -1, most - 1));
     };
     const auto [c0, c1] = range(p[0] - corner[0], columns);
     const auto [r0, r1] = range(p[1] - corner[1], rows);
@@ -68,13 +68,13 @@ class OpeningArea final : public Metric {
     grid_.spacing = blur_ / kGridPerBlur;
     grid_.corner = low - margin;
     const Vec2 extent = high - low + 2 * margin;
-    grid_.columns = static_cast<int>(std::min(kMostPoints, extent[0] / grid_.spacing)) + 1;
-    grid_.rows = static_cast<int>(std::min(kMostPoints, extent[1] / grid_.spacing)) + 1;
+    grid_.columns = bounded_int(extent[0] / grid_.spacing, 0, kMostPoints) + 1;
+    grid_.rows = bounded_int(extent[1] / grid_.spacing, 0, kMostPoints) + 1;
     double area = 0;
     for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
       const Vec3 a = x.col(triangles_(0, t)), b = x.col(triangles_(1, t)), c = x.col(triangles_(2, t));
       const double edge = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-      divisions_.push_back(std::max(1, static_cast<int>(std::ceil(kSamplesPerBlur * edge / blur_))));
+      divisions_.push_back(bounded_int(std::ceil(kSamplesPerBlur * edge / blur_), 1, kMostPoints));
       area += 0.5 * (b - a).cross(c - a).norm();
     }
     rounding_ = kRounding * area / static_cast<double>(std::max<Eigen::Index>(1, triangles_.cols()));

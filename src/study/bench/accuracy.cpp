@@ -4,6 +4,7 @@
 #include "report/report_page.hpp"
 #include "results/frames.hpp"
 #include "run/run_parts.hpp"
+#include "run/unwritten.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/refine_scene.hpp"
 #include "study/bench/discretisation.hpp"
@@ -219,8 +220,13 @@ RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double
         "Frames are not written for a wanted accuracy, as several meshes are solved.");
   notes.accuracy = std::move(estimate);
   run.model = std::move(mesh.model);
-  run.report =
-      complete_run(scene, setup, run.model, std::move(mesh.solved), notes, options.checker, run.folder);
+  try {
+    run.report =
+        complete_run(scene, setup, run.model, std::move(mesh.solved), notes, options.checker, run.folder);
+  } catch (const UnwrittenReport& error) {
+    run.report = std::move(error.report());
+    throw UnwrittenRun(error, std::move(run));
+  }
   return run;
 }
 

@@ -1,0 +1,31 @@
+// How long a minimisation still takes, from how far it has got.
+#pragma once
+
+#include "optim/solver.hpp"
+
+#include <optional>
+#include <string>
+
+namespace coapt::cli {
+
+class ProgressEstimate {
+ public:
+  // Call it at each accepted iterate.
+  void see(const Iteration& now);
+
+  // [s], by the decades that the residual has fallen in this round and has still to fall to `wanted`. Nothing
+  // before it has fallen by one.
+  std::optional<double> seconds_left(double wanted) const;
+
+ private:
+  int round_ = -1;  // of the outer iterations and of the steps of a path
+  double start_s_ = 0, now_s_ = 0;
+  double first_residual_ = 0, least_residual_ = 0;
+};
+
+// "step 3, 1234 nodes, iteration 12, residual 0.0012 (wanted 1e-06), 3.4 s, about 5 s left in this step". The
+// energy is left out: that of a step on the way is not the one that is reported.
+std::string progress_line(const Iteration& now, long nodes, std::optional<double> wanted, double elapsed_s,
+                          std::optional<double> left_s);
+
+}  // namespace coapt::cli

@@ -1,0 +1,45 @@
+#include "run/replaced_inputs.hpp"
+
+#include "core/error.hpp"
+#include "solve/checkpoint.hpp"
+
+#include <algorithm>
+
+namespace coapt {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool fits(const std::string& name, const std::string& pattern) {
+  const size_t star = pattern.find('*');
+  if (star == std::string::npos) return name == pattern;
+  return name.size() + 1 >= pattern.size() && name.starts_with(pattern.substr(0, star)) &&
+         name.ends_with(pattern.substr(star + 1));
+}
+
+}  // namespace
+
+const std::vector<std::string>& solve_files() {
+  static const std::vector<std::string> names = {
+      "result.json",         "metrics.csv", "trace.csv",   "closed.vtp",    "closed.obj",
+      "coaptation_line.vtp", "orifice.vtp", "report.html", "reference.vtp", "frames.pvd"};
+  return names;
+}
+
+void refuse_replaced_inputs(const Scene& scene, const fs::path& folder,
+                            const std::vector<std::string>& names) {
+  std::error_code error;
+  if (!fs::is_regular_file(scene.file, error)) return;
+  std::vector<fs::path> inputs = named_files(scene);
+  inputs.push_back(scene.file);
+  std::vector<std::string> defects;
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(fs::absolute(input).parent_path(), folder, error) &&
+        std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return fits(input.filename().string(), name); }))
+      defects.push_back(input.string() + ": is read by the scene and would be replaced by a result; choose " +
+                        "another folder than " + folder.string() + " with -o");
+  if (!defects.empty()) throw InputError(defects);
+}
+
+}  // namespace coapt

@@ -1,0 +1,20 @@
+// Inputs that a result would take the place of.
+#pragma once
+
+#include "scene/file/scene.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace coapt {
+
+// The names of all files that a solve may write into its folder.
+const std::vector<std::string>& solve_files();
+
+// Throws InputError where the scene file, or a file that it names, is one of those names in the folder;
+// "*.obj" and "closed_*" are patterns with one star. A scene in memory has no file.
+void refuse_replaced_inputs(const Scene& scene, const std::filesystem::path& folder,
+                            const std::vector<std::string>& names);
+
+}  // namespace coapt

@@ -1,0 +1,117 @@
+"""Nothing breaks: runaway shapes, extreme numbers, limits of memory and of the disk, inputs that are no files.
+
+Usage: robust_test.py COAPT_BINARY [unittest arguments]
+"""
+import json
+import os
+import re
+import resource
+import subprocess
+import unittest
+
+from command_case import COAPT, CommandCase, coapt, content_of
+
+
+def limited(limit, amount, *arguments, timeout=120):
+    """The command under a limit of a resource."""
+    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, timeout=timeout,
+                          preexec_fn=lambda: resource.setrlimit(limit, (amount, amount)))
+
+
+class Robust(CommandCase):
+    def edited(self, scene, change):
+        content = content_of(scene)
+        change(content)
+        scene.write_text(json.dumps(content))
+        return scene
+
+    def test_a_valve_that_runs_away_ends_with_a_result(self):
+        scene = self.generate("mitral", "--triangles", 200)
+
+        def soften(content):
+            content["terms"] = [term for term in content["terms"] if not term["type"].startswith("contact")]
+            for term in content["terms"]:
+                if term["type"] == "cst_tension_field":
+                    for key in ("young", "poisson"):
+                        term.pop(key, None)
+                    term.update({"type": "cst_neo_hookean", "shear_modulus": "0.1 MPa"})
+                if term["type"] == "load_pressure":
+                    term["value"] = "300 mmHg"
+
+        run = coapt("solve", self.edited(scene, soften), "--max-seconds", 20)
+        self.assertIn(run.returncode, [0, 1, 4], run.stdout + run.stderr)
+        self.assertNotIn("nan", (run.stdout + run.stderr).lower())
+        self.result()
+
+    def test_no_number_is_printed_as_nan(self):
+        for value in ["1e308 MPa", "1e-300 MPa", "1e150 MPa"]:
+            scene = self.generate("disc", "--triangles", 100)
+            text = scene.read_text()
+            scene.write_text(re.sub(r'"young": "[^"]*"', f'"young": "{value}"', text))
+            self.assertNotEqual(scene.read_text(), text)
+            run = coapt("solve", scene, "--max-seconds", 10)
+            self.assertIn(run.returncode, [0, 1, 2, 4], run.stdout + run.stderr)
+            self.assertNotRegex(run.stdout + run.stderr, r"(?i)\bnan\b", value)
+
+    def test_too_little_memory_is_said_and_ends_the_run(self):
+        scene = self.generate("mitral", "--triangles", 20000)
+        for megabytes in [98, 150, 300]:
+            run = limited(resource.RLIMIT_AS, megabytes << 20, "solve", scene, "--max-seconds", 5)
+            if "error while loading shared libraries" in run.stderr:
+                continue  # the system's own word
+            self.assertIn(run.returncode, [0, 1, 3, 4], f"{megabytes} MB: {run.stdout}{run.stderr}")
+            if run.returncode == 3:
+                self.assertIn("not enough memory", run.stderr)
+
+    def test_a_thread_of_blas_that_waits_for_memory_keeps_no_process_alive(self):
+        scene = self.generate("disc", "--triangles", 100)
+        run = limited(resource.RLIMIT_AS, 100000 << 10, "solve", scene, timeout=60)
+        self.assertIn(run.returncode, [0, 3, 127], run.stdout + run.stderr)
+
+    def test_pipes_devices_and_folders_are_named_as_such(self):
+        scene = self.generate("mitral", "--triangles", 300)
+        pipe = self.folder / "pipe.obj"
+        os.mkfifo(pipe)
+        for path, what in [(pipe, "pipe"), ("/dev/zero", "device"), (self.folder, "folder")]:
+            for arguments in [["solve", path], ["check", path], ["import", path, "-o", self.folder / "new"],
+                              ["export", path, "-o", self.folder / "x.feb"], ["register", path, path],
+                              ["solve", scene, "--resume", path], ["tune", scene, "--target", path],
+                              ["generate", "mitral", "--annulus", path, "-o", self.folder / "new"]]:
+                with self.subTest(arguments):
+                    self.assert_bad_input(coapt(*arguments, timeout=20), what)
+        for key in ["file", "sets"]:
+            changed = self.folder / "changed.json"
+            content = content_of(scene)
+            content["mesh"][key] = "pipe.obj"
+            changed.write_text(json.dumps(content))
+            self.assert_bad_input(coapt("solve", changed, timeout=20), "pipe")
+            self.assert_bad_input(coapt("check", changed, timeout=20), "pipe")
+
+    def test_twenty_thousand_terms_are_read_in_seconds(self):
+        scene = self.generate("disc", "--triangles", 100)
+        force = {"type": "load_field", "force": "1e-9 N", "direction": [0, 0, 1], "nodes": [1]}
+        self.edited(scene, lambda content: content["terms"].extend([force] * 20000))
+        begun = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        run = coapt("export", scene, "-o", self.folder / "out.obj")
+        used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begun
+        self.assertEqual(run.returncode, 0, (run.stdout + run.stderr)[-600:])
+        self.assertLess(used, 5)
+
+    def test_a_scene_does_not_choose_a_folder_outside(self):
+        scene = self.generate("disc", "--triangles", 100)
+        outside = self.folder.parent / (self.folder.name + "_outside")
+        for folder in [str(outside), "../" + outside.name]:
+            self.edited(scene, lambda content: content.update(output={"folder": folder}))
+            for command in ["solve", "sensitivity", "mesh-study", "compare", "bench"]:
+                self.assert_bad_input(coapt(command, scene), "output.folder", "-o")
+        self.assertFalse(outside.exists())
+        (self.folder / "link").symlink_to(self.folder.parent)
+        self.edited(scene, lambda content: content.update(output={"folder": "link/" + outside.name}))
+        self.assert_bad_input(coapt("solve", scene), "output.folder")
+        self.edited(scene, lambda content: content.update(output={"folder": "inside/deep"}))
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        self.assertTrue((self.folder / "inside" / "deep" / "result.json").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[__file__])
