@@ -25,5 +25,7 @@ void add_compare_command(CLI::App& app, int& exit_code);
 void add_register_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_stress_command(CLI::App& app, int& exit_code);
+void add_segment_command(CLI::App& app, int& exit_code);
+void add_close_command(CLI::App& app, int& exit_code);
 
 }  // namespace coapt::cli

@@ -44,6 +44,8 @@ int run_command(int argc, char** argv) {
   add_register_command(app, exit_code);
   add_bench_command(app, exit_code);
   add_stress_command(app, exit_code);
+  add_segment_command(app, exit_code);
+  add_close_command(app, exit_code);
   app.footer(
       "Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error, 4 converged "
       "(result written) but its stability is in doubt.");
