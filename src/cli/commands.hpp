@@ -30,5 +30,7 @@ void add_stress_command(CLI::App& app, Session& session);
 void add_pages_command(CLI::App& app, Session& session);
 void add_image_command(CLI::App& app, Session& session);
 void add_phantom_command(CLI::App& app, Session& session);
+void add_segment_command(CLI::App& app, Session& session);
+void add_close_command(CLI::App& app, Session& session);
 
 }  // namespace coapt::cli

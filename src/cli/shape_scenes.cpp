@@ -94,7 +94,8 @@ Shape catenary_shape() {
 
 Shape airbag_shape() {
   return {"airbag",
-          "Quarter of one sheet of a square airbag that bears no compression, diagonal 1.2 m, 5 kPa (Contri & Schrefler 1988)",
+          "Quarter of one sheet of a square airbag that bears no compression, diagonal 1.2 m, 5 kPa (Contri "
+          "& Schrefler 1988)",
           R"([
     { "nodes": { "plane": { "axis": "x", "at": "$SIDE" } }, "fix": ["z"] },
     { "nodes": { "plane": { "axis": "y", "at": "$SIDE" } }, "fix": ["z"] },

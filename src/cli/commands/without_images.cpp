@@ -29,4 +29,12 @@ void add_phantom_command(CLI::App& app, Session& /*session*/) {
   add_refused_command(app, "phantom", "Make an ultrasound-like volume image of a scene, with its truth");
 }
 
+void add_segment_command(CLI::App& app, Session& /*session*/) {
+  add_refused_command(app, "segment", "Find the leaflets in a volume image");
+}
+
+void add_close_command(CLI::App& app, Session& /*session*/) {
+  add_refused_command(app, "close", "From a volume image to a closed valve");
+}
+
 }  // namespace coapt::cli

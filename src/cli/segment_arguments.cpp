@@ -1,0 +1,115 @@
+#include "cli/segment_arguments.hpp"
+
+#include "cli/command_line.hpp"
+#include "cli/length_argument.hpp"
+#include "cli/progress.hpp"
+#include "core/error.hpp"
+#include "formats/json/markups.hpp"
+#include "image/read_volume.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+#include <unistd.h>
+
+namespace coapt::cli {
+namespace {
+
+SegmentOptions segment_options(const SegmentArguments& arguments) {
+  SegmentOptions options;
+  options.method = arguments.method == "isosurface" ? SegmentMethod::Isosurface : SegmentMethod::Ridge;
+  options.annulus = annulus_curve(arguments.annulus);
+  if (!arguments.papillary.empty())
+    options.ventricle = papillary_points(arguments.papillary).rowwise().mean();
+  options.threshold = arguments.threshold;
+  if (!arguments.mask.empty()) options.mask = printed_volume(arguments.mask, std::nullopt);
+  options.dynamic_range = arguments.dynamic_range.value_or(0);
+  if (!arguments.blur.empty()) options.blur = length_argument("--blur", arguments.blur);
+  options.edge_length = length_argument("--edge-length", arguments.edge_length);
+  options.keeps_evidence = arguments.keeps_evidence;
+  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  options.on_phase = [is_terminal](const std::string& phase) {
+    if (is_terminal) std::fprintf(stderr, "\r  %s ...\033[K", phase.c_str());
+  };
+  return options;
+}
+
+void print_found(const Segmentation& found) {
+  const TriangleMesh& mesh = found.valve.leaflets;
+  std::printf("leaflets: %d vertices, %d triangles, least angle %.1f degrees, %.1f mm2\n",
+              mesh.vertex_count(), mesh.triangle_count(), found.least_angle,
+              surface_area(mesh.vertices, mesh.triangles));
+  std::printf("  %-12s %.2f mm in the middle, seen through a blur of %.2f mm\n", "thickness",
+              found.thickness_median, found.blur);
+  std::printf("  %-12s %.2f mm across the leaflets on average, %.2f mm of the free edge along them\n",
+              "deviation", found.deviation.mean(), found.edge_deviation);
+  std::printf("  %-12s %.0f %% of the area\n", "shown", 100 * found.shown_share);
+  std::printf("  %-12s %d x %d x %d voxels, %.1f s of the processor\n", "looked at", found.size[0],
+              found.size[1], found.size[2], found.cpu_seconds);
+  for (const std::string& warning : found.warnings) std::printf("warning: %s\n", warning.c_str());
+}
+
+}  // namespace
+
+void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
+  command
+      .add_option("VOLUME", arguments.volume,
+                  "Volume with the open valve: NRRD, NIfTI, MetaImage or a DICOM folder")
+      ->required();
+  command
+      .add_option("--annulus", arguments.annulus,
+                  "Closed curve of 3D Slicer (.mrk.json) along the annulus, in the frame of the volume")
+      ->required();
+  command.add_option("--frame", arguments.frame, "Of a time series, from 0 on");
+  command.add_option("--papillary", arguments.papillary,
+                     "Papillary tips (.mrk.json); they also say on which side the ventricle is");
+  command
+      .add_option(
+          "--dynamic-range", arguments.dynamic_range,
+          "Between the least and the greatest value, in dB, where values are logarithms (ultrasound); "
+          "default: values are linear (CT, MR)")
+      ->check(CLI::Range(1.0, 200.0));
+  command.add_option("--blur", arguments.blur,
+                     "Standard deviation of the blur across the leaflets, such as 0.4mm (default: found)");
+  auto* method =
+      command
+          .add_option("--method", arguments.method,
+                      "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
+                      "is above a threshold")
+          ->check(CLI::IsMember({"ridge", "isosurface"}))
+          ->capture_default_str();
+  command.add_option("--threshold", arguments.threshold, "Of the isosurface (default: Otsu's)")
+      ->needs(method);
+  command
+      .add_option(
+          "--mask", arguments.mask,
+          "Volume that is above 0.5 in the leaflets, as a neural network gives it: it takes the place of "
+          "what the image shows")
+      ->excludes(method);
+  command.add_option("--edge-length", arguments.edge_length, "Of the mesh")->capture_default_str();
+  command.add_flag("--keep", arguments.keeps_evidence, "Also write the evidence of sheets, evidence.nrrd");
+}
+
+Volume printed_volume(const std::string& path, const std::optional<int>& frame) {
+  VolumeFile file = read_volume(path, {.frame = frame, .spacing = {}});
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+  return std::move(file.volume);
+}
+
+Segmentation find_leaflets(const SegmentArguments& arguments) {
+  if (arguments.threshold && arguments.method != "isosurface")
+    throw InputError("--threshold: belongs to --method isosurface");
+  const Volume volume = printed_volume(arguments.volume, arguments.frame);
+  const SegmentOptions options = segment_options(arguments);
+  try {
+    const Segmentation found = segment_leaflets(volume, options);
+    end_progress();
+    print_found(found);
+    return found;
+  } catch (const InputError& error) {
+    end_progress();
+    throw error.within(arguments.volume);
+  }
+}
+
+}  // namespace coapt::cli

@@ -1,0 +1,33 @@
+// The arguments of the commands that find leaflets in a volume, and what they have in common.
+#pragma once
+
+#include "image/segment/segment_leaflets.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace coapt::cli {
+
+struct SegmentArguments {
+  std::string volume, annulus, papillary, mask, output, method = "ridge", edge_length = "1.2mm";
+  std::optional<int> frame;
+  std::optional<double> threshold, dynamic_range;
+  std::string blur;  // empty: found
+  bool keeps_evidence = false;
+};
+
+void add_segment_options(CLI::App& command, SegmentArguments& arguments);
+
+// Reads the files and finds the leaflets; tells of phases on a terminal and prints what was found, with
+// warnings. Throws InputError that names the file.
+Segmentation find_leaflets(const SegmentArguments& arguments);
+
+// Values of a file of a volume [mm], with warnings printed.
+Volume printed_volume(const std::string& path, const std::optional<int>& frame);
+
+}  // namespace coapt::cli

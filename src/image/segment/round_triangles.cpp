@@ -1,0 +1,186 @@
+#include "image/segment/round_triangles.hpp"
+
+#include "mesh/distance/triangle_tree.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace coapt {
+namespace {
+
+constexpr double kGoodAngle = 30;    // below it an angle never gets smaller [degrees]
+constexpr double kFlipCosine = 0.8;  // between the normals at an edge that may be flipped
+constexpr double kLeastGain = 1e-3;  // of a flip, so that no edge is flipped to and fro [degrees]
+constexpr double kWay = 0.7;         // towards the middle of the neighbours, at each round
+
+double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
+  return std::atan2(ab.cross(ac).norm(), ab.dot(ac)) * 180 / std::numbers::pi;
+}
+
+double least_angle_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return std::min({angle_at(a, b, c), angle_at(b, c, a), angle_at(c, a, b)});
+}
+
+int opposite(const Eigen::Vector3i& t, const Edge& edge) {
+  return t[0] != edge.a && t[0] != edge.b ? t[0] : t[1] != edge.a && t[1] != edge.b ? t[1] : t[2];
+}
+
+// The closed polygons of the rims of a surface.
+std::vector<Points> rims_of(const TriangleMesh& surface) {
+  std::vector<Points> rims;
+  for (const std::vector<int>& loop : boundary_loops(surface.triangles)) {
+    Points rim(3, static_cast<Eigen::Index>(loop.size()));
+    for (size_t k = 0; k < loop.size(); ++k)
+      rim.col(static_cast<Eigen::Index>(k)) = surface.vertices.col(loop[k]);
+    rims.push_back(rim);
+  }
+  return rims;
+}
+
+Vec3 nearest_on(const Points& rim, const Vec3& x) {
+  Vec3 best = rim.col(0);
+  double least = kInfinity;
+  for (Eigen::Index k = 0; k < rim.cols(); ++k) {
+    const Vec3 a = rim.col(k), along = rim.col((k + 1) % rim.cols()) - a;
+    const double part = std::clamp((x - a).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
+    const Vec3 place = a + part * along;
+    if ((place - x).squaredNorm() >= least) continue;
+    least = (place - x).squaredNorm();
+    best = place;
+  }
+  return best;
+}
+
+// What is around each vertex, and on which rim it lies (-1: inside).
+struct Surroundings {
+  std::vector<std::vector<int>> triangles;
+  std::vector<int> rim;
+  std::vector<std::array<int, 2>> rim_neighbours;
+};
+
+Surroundings surroundings(const TriangleMesh& mesh, const std::vector<Points>& rims) {
+  const auto n = static_cast<size_t>(mesh.vertex_count());
+  Surroundings around{std::vector<std::vector<int>>(n), std::vector<int>(n, -1),
+                      std::vector<std::array<int, 2>>(n, {-1, -1})};
+  for (int t = 0; t < mesh.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) around.triangles[static_cast<size_t>(mesh.triangles(k, t))].push_back(t);
+  for (const std::vector<int>& loop : boundary_loops(mesh.triangles)) {
+    const Vec3 first = mesh.vertices.col(loop.front());
+    const auto nearest = std::min_element(rims.begin(), rims.end(), [&](const Points& a, const Points& b) {
+      return (nearest_on(a, first) - first).squaredNorm() < (nearest_on(b, first) - first).squaredNorm();
+    });
+    for (size_t k = 0; k < loop.size(); ++k) {
+      const auto v = static_cast<size_t>(loop[k]);
+      around.rim[v] = static_cast<int>(nearest - rims.begin());
+      around.rim_neighbours[v] = {loop[(k + loop.size() - 1) % loop.size()], loop[(k + 1) % loop.size()]};
+    }
+  }
+  return around;
+}
+
+double least_around(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  double least = 180;
+  for (const int t : triangles)
+    least = std::min(least, least_angle_of(mesh.vertices.col(mesh.triangles(0, t)),
+                                           mesh.vertices.col(mesh.triangles(1, t)),
+                                           mesh.vertices.col(mesh.triangles(2, t))));
+  return least;
+}
+
+// Whether a triangle around a vertex is turned over when that moves there.
+bool turns_over(const TriangleMesh& mesh, const std::vector<int>& triangles, int vertex, const Vec3& there) {
+  return std::any_of(triangles.begin(), triangles.end(), [&](int t) {
+    const Eigen::Vector3i corners = mesh.triangles.col(t);
+    std::array<Vec3, 3> x;
+    for (int k = 0; k < 3; ++k)
+      x[static_cast<size_t>(k)] = corners[k] == vertex ? there : Vec3(mesh.vertices.col(corners[k]));
+    return (x[1] - x[0]).cross(x[2] - x[0]).dot(area_vector(mesh.vertices, corners)) <= 0;
+  });
+}
+
+void move_vertices(TriangleMesh& mesh, const TriangleTree& tree, const std::vector<Points>& rims) {
+  const Surroundings around = surroundings(mesh, rims);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const auto at = static_cast<size_t>(v);
+    const std::vector<int>& triangles = around.triangles[at];
+    if (triangles.empty()) continue;
+    Vec3 middle = Vec3::Zero();
+    const bool is_inside = around.rim[at] < 0;
+    if (is_inside) {
+      double weights = 0;
+      for (const int t : triangles) {
+        const double area = area_vector(mesh.vertices, mesh.triangles.col(t)).norm();
+        for (int k = 0; k < 3; ++k) middle += area / 3 * mesh.vertices.col(mesh.triangles(k, t));
+        weights += area;
+      }
+      middle /= weights;
+    } else {
+      for (const int neighbour : around.rim_neighbours[at]) middle += 0.5 * mesh.vertices.col(neighbour);
+    }
+    const Vec3 before = mesh.vertices.col(v), wanted = before + kWay * (middle - before);
+    const Vec3 there = is_inside ? tree.closest(wanted).point
+                                 : nearest_on(rims[static_cast<size_t>(around.rim[at])], wanted);
+    if (turns_over(mesh, triangles, v, there)) continue;
+    const double least = least_around(mesh, triangles);
+    mesh.vertices.col(v) = there;
+    if (least_around(mesh, triangles) < std::min(least, kGoodAngle)) mesh.vertices.col(v) = before;
+  }
+}
+
+void flip_edges(TriangleMesh& mesh) {
+  const std::vector<Edge> all = edges(mesh.triangles);
+  std::set<std::pair<int, int>> joined;
+  for (const Edge& edge : all) joined.insert({edge.a, edge.b});
+  std::vector<bool> is_touched(static_cast<size_t>(mesh.triangle_count()), false);
+  for (const Edge& edge : all) {
+    if (edge.triangles.size() != 2) continue;
+    const int left = edge.triangles[0], right = edge.triangles[1];
+    if (is_touched[static_cast<size_t>(left)] || is_touched[static_cast<size_t>(right)]) continue;
+    const Eigen::Vector3i t = mesh.triangles.col(left);
+    const int c = opposite(t, edge), d = opposite(mesh.triangles.col(right), edge);
+    if (!joined.insert({std::min(c, d), std::max(c, d)}).second) continue;
+    const auto at_c = std::find(t.begin(), t.end(), c) - t.begin();
+    const int a = t[(at_c + 1) % 3], b = t[(at_c + 2) % 3];  // the triangle runs c, a, b
+    const auto x = [&](int v) -> Vec3 { return mesh.vertices.col(v); };
+    const Vec3 n1 = (x(a) - x(c)).cross(x(b) - x(c)).normalized();
+    const Vec3 n2 = (x(b) - x(d)).cross(x(a) - x(d)).normalized();
+    const Vec3 n3 = (x(a) - x(c)).cross(x(d) - x(c)).normalized();
+    const Vec3 n4 = (x(d) - x(c)).cross(x(b) - x(c)).normalized();
+    const double before = std::min(least_angle_of(x(c), x(a), x(b)), least_angle_of(x(d), x(b), x(a)));
+    const double after = std::min(least_angle_of(x(c), x(a), x(d)), least_angle_of(x(c), x(d), x(b)));
+    const bool is_flat = n1.dot(n2) > kFlipCosine && n3.dot(n4) > kFlipCosine && n1.dot(n3) > kFlipCosine;
+    if (!is_flat || after < before + kLeastGain) {
+      joined.erase({std::min(c, d), std::max(c, d)});
+      continue;
+    }
+    mesh.triangles.col(left) << c, a, d;
+    mesh.triangles.col(right) << c, d, b;
+    is_touched[static_cast<size_t>(left)] = is_touched[static_cast<size_t>(right)] = true;
+    joined.erase({edge.a, edge.b});
+  }
+}
+
+}  // namespace
+
+void round_triangles(TriangleMesh& mesh, const TriangleMesh& surface, int rounds) {
+  const TriangleTree tree(surface.vertices, surface.triangles);
+  const std::vector<Points> rims = rims_of(surface);
+  for (int round = 0; round < rounds; ++round) {
+    flip_edges(mesh);
+    move_vertices(mesh, tree, rims);
+  }
+}
+
+double least_angle(const TriangleMesh& mesh) {
+  double least = 180;
+  for (int t = 0; t < mesh.triangle_count(); ++t) least = std::min(least, least_around(mesh, {t}));
+  return least;
+}
+
+}  // namespace coapt

@@ -1,0 +1,18 @@
+// A mesh whose triangles are made rounder where they lie on a surface.
+#pragma once
+
+#include "mesh/triangle_mesh.hpp"
+
+namespace coapt {
+
+// In each round edges are flipped to where the least of six angles grows, and each vertex moves towards the
+// middle of its neighbours, on `surface` (rims along its rims), unless that makes an angle below 30 degrees
+// smaller. Corners of the rims are rounded off as far as vertices slide. Manifold, orientation and number of
+// rims are kept. Pre: both are manifold and consistently oriented; the vertices of `mesh` lie on `surface`,
+// and its rims follow those of `surface` in any order.
+void round_triangles(TriangleMesh& mesh, const TriangleMesh& surface, int rounds);
+
+// The least angle of all triangles [degrees].
+double least_angle(const TriangleMesh& mesh);
+
+}  // namespace coapt

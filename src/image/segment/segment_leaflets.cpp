@@ -1,0 +1,210 @@
+#include "image/segment/segment_leaflets.hpp"
+
+#include "core/error.hpp"
+#include "core/number_text.hpp"
+#include "image/segment/annulus_region.hpp"
+#include "image/segment/fit_layer.hpp"
+#include "image/segment/free_edge.hpp"
+#include "image/segment/leaflet_thickness.hpp"
+#include "image/segment/round_triangles.hpp"
+#include "image/segment/track_layer.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coapt {
+namespace {
+
+constexpr double kColumnStep = 0.75;   // along the annulus [mm]
+constexpr double kLeastRowStep = 0.5;  // and at least a voxel [mm]
+constexpr int kFitRounds = 4;          // of measuring and fitting the layer
+constexpr double kShown = 0.3;         // evidence from which a place counts as shown
+// What phantoms show beyond the noise of the fit: standard deviation of a place, in voxels.
+constexpr double kPlaceNoise = 0.15;
+constexpr double kLeastAngle = 20;    // below which the mesh is doubtful [degrees]
+constexpr double kLittleShown = 0.7;  // of the area, below which the result is doubtful
+
+void check(const Volume& volume, const SegmentOptions& options) {
+  std::vector<std::string> defects;
+  if (options.annulus.cols() < 5)
+    defects.push_back("the annulus has " + std::to_string(options.annulus.cols()) +
+                      " points; at least 5 are needed, in their order around the ring");
+  else if (!options.annulus.allFinite() || plane_of(options.annulus).diameter <= 0)
+    defects.push_back("the annulus has a point that is no place, or no length");
+  else if (std::isnan(sample(volume, options.annulus.rowwise().mean(), kNaN)))
+    defects.push_back(
+        "the middle of the annulus lies outside of the volume; are both in the same frame (LPS)?");
+  if (!(options.dynamic_range >= 0 && options.dynamic_range <= 200))
+    defects.push_back("the dynamic range is " + number_text(options.dynamic_range, 3) +
+                      " dB; expected 0 (values that are linear) to 200");
+  if (options.blur && !(*options.blur > 0 && *options.blur <= 5))
+    defects.push_back("the blur is " + number_text(*options.blur, 3) + " mm; expected above 0 to 5");
+  if (!(options.edge_length >= 0.3 && options.edge_length <= 5))
+    defects.push_back("the edge length is " + number_text(options.edge_length, 3) + " mm; expected 0.3 to 5");
+  if (!(options.smoothing >= 0.2 && options.smoothing <= 10))
+    defects.push_back("the smoothing is " + number_text(options.smoothing, 3) + " mm; expected 0.2 to 10");
+  if (!defects.empty()) throw InputError(defects);
+}
+
+// Tells of a phase, and times it until the next.
+class Phases {
+ public:
+  Phases(Segmentation& result, const SegmentOptions& options) : result_(result), options_(options) {}
+  void begin(const std::string& phase) {
+    timer_.reset();
+    timer_.emplace(result_.times, phase);
+    if (options_.on_phase) options_.on_phase(phase);
+  }
+
+ private:
+  Segmentation& result_;
+  const SegmentOptions& options_;
+  std::optional<PhaseTimer> timer_;
+};
+
+// What the sheet is looked for in: the volume, or what the mask or the threshold says is leaflet.
+Volume looked_at(const Volume& volume, const SegmentOptions& options, std::optional<double>& threshold) {
+  if (options.mask) {
+    Volume occupied = volume_like(volume, 0);
+    for (int k = 0; k < volume.size[2]; ++k)
+      for (int j = 0; j < volume.size[1]; ++j)
+        for (int i = 0; i < volume.size[0]; ++i)
+          if (sample(*options.mask, position_of(volume, Vec3(i, j, k)), 0) > 0.5)
+            occupied.values[volume.voxel(i, j, k)] = 1;
+    return occupied;
+  }
+  if (options.method == SegmentMethod::Ridge) return volume;
+  threshold = options.threshold ? *options.threshold : otsu_threshold(volume);
+  return greatest_part(volume, *threshold);
+}
+
+// The unit vector to the ventricle: as said, or to the side on which there are leaflets.
+Vec3 side_of_ventricle(const SheetEvidence& evidence, const SegmentOptions& options,
+                       const AnnulusPlane& plane, TrackOptions track) {
+  if (options.ventricle)
+    return (*options.ventricle - plane.middle).dot(plane.normal) < 0 ? Vec3(-plane.normal) : plane.normal;
+  double found[2];
+  for (const int side : {0, 1}) {
+    track.ventricle = side == 0 ? plane.normal : Vec3(-plane.normal);
+    found[side] =
+        evidence_on_side(evidence, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
+  }
+  return found[0] >= found[1] ? plane.normal : Vec3(-plane.normal);
+}
+
+// The points above the edge that the image shows.
+std::vector<char> seen_points(const LayerGrid& grid, const LayerFit& fit, const FreeEdge& edge) {
+  const Eigen::MatrixXd lengths = lengths_along_columns(grid);
+  std::vector<char> is_seen(static_cast<size_t>(grid.points.cols()));
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const Eigen::Index node = grid.node(column, row);
+      is_seen[static_cast<size_t>(node)] =
+          lengths(row, column) < edge.lengths[column] && fit.evidence[node] > kShown;
+    }
+  return is_seen;
+}
+
+// From the middle of the sheet to where its values fall below the threshold, against the normal.
+void move_to_atrium(LayerMesh& mesh, const LayerGrid& grid, const Volume& volume, double threshold) {
+  constexpr double kStep = 0.1, kFarthest = 3;  // [mm]
+  for (int v = 0; v < mesh.mesh.vertex_count(); ++v) {
+    Vec3 normal = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) normal += mesh.weights(k, v) * grid.normals.col(mesh.nodes(k, v));
+    normal.normalize();
+    const Vec3 x = mesh.mesh.vertices.col(v);
+    double before = sample(volume, x, kNaN);
+    for (double t = kStep; t <= kFarthest && before >= threshold; t += kStep) {
+      const double here = sample(volume, x - t * normal, kNaN);
+      if (here < threshold) {
+        const double part = (before - threshold) / (before - here);
+        mesh.mesh.vertices.col(v) = x - (t - kStep + part * kStep) * normal;
+        break;
+      }
+      before = here;
+    }
+  }
+}
+
+void add_warnings(Segmentation& result) {
+  if (result.shown_share < kLittleShown)
+    result.warnings.push_back("the image shows only " + number_text(100 * result.shown_share, 2) +
+                              " % of the area of the leaflets; the rest follows from its neighbours");
+  if (result.least_angle < kLeastAngle)
+    result.warnings.push_back("the least angle of the mesh is " + number_text(result.least_angle, 3) +
+                              " degrees, below " + number_text(kLeastAngle, 2));
+  if (result.thickness_median <= 0)
+    result.warnings.push_back("no thickness could be fitted; the valve states none");
+}
+
+void gather(Segmentation& result, const LayerMesh& mesh, const LayerFit& fit, double voxel) {
+  result.valve.leaflets = mesh.mesh;
+  result.valve.annulus = mesh.annulus;
+  result.valve.free_edge = mesh.free_edge;
+  result.valve.thickness = result.thickness_median;
+  const double common = kPlaceNoise * voxel;
+  result.deviation = (at_vertices(mesh, fit.deviation).array().square() + common * common).sqrt();
+  result.evidence = at_vertices(mesh, fit.evidence);
+  result.noise = fit.noise;
+  result.noise_area = fit.noise_area;
+  result.least_angle = least_angle(mesh.mesh);
+  const Vector areas = nodal_areas(mesh.mesh.vertices, mesh.mesh.triangles);
+  double shown = 0;
+  for (Eigen::Index v = 0; v < areas.size(); ++v)
+    if (result.evidence[v] >= kShown) shown += areas[v];
+  result.shown_share = shown / areas.sum();
+}
+
+}  // namespace
+
+Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& options) {
+  check(volume, options);
+  Segmentation result;
+  const double cpu_start = cpu_seconds();
+  Phases phases(result, options);
+  const AnnulusPlane plane = plane_of(options.annulus);
+  const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());
+  const GreyScale scale{*greatest > *least ? options.dynamic_range / (*greatest - *least) : 0.0};
+
+  phases.begin("evidence of sheets");
+  const Volume part = around_annulus(volume, options.annulus, options.ventricle);
+  result.size = part.size;
+  std::optional<double> threshold;
+  const Volume seen = looked_at(part, options, threshold);
+  const bool is_occupancy = threshold || options.mask;
+  SheetEvidence evidence = sheet_evidence(seen, sheet_scales(part));
+
+  phases.begin("layer from the annulus");
+  TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
+                     .greatest_length = kGreatestShare * plane.diameter};
+  track.ventricle = side_of_ventricle(evidence, options, plane, track);
+  LayerGrid grid = track_layer(evidence, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
+  const LayerFit fit = fit_layer(grid, evidence, options.smoothing, kFitRounds);
+
+  phases.begin("free edge");
+  const GreyScale seen_scale = is_occupancy ? GreyScale{} : scale;
+  FreeEdge edge = free_edge(seen, evidence, grid, 0, seen_scale);
+  const std::vector<char> is_seen = seen_points(grid, fit, edge);
+  const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
+  result.blur = blur.mean();
+  edge = free_edge(seen, evidence, grid, result.blur, seen_scale);
+  result.edge_deviation = edge.deviation;
+  result.contrast = edge.contrast;
+
+  phases.begin("mesh");
+  LayerMesh mesh = layer_mesh(grid, edge.lengths, options.edge_length);
+
+  phases.begin("thickness");
+  result.thickness = thickness_at_vertices(part, grid, mesh, blur, scale);
+  result.thickness_median = median_of_finite(result.thickness);
+  if (threshold) move_to_atrium(mesh, grid, part, *threshold);
+  gather(result, mesh, fit, part.spacing.maxCoeff());
+  if (options.keeps_evidence) result.strength = std::move(evidence.strength);
+  add_warnings(result);
+  result.cpu_seconds = cpu_seconds() - cpu_start;
+  return result;
+}
+
+}  // namespace coapt

@@ -1,0 +1,130 @@
+// The parts of which a segmentation is made, each on something whose answer is known.
+#include "core/random_source.hpp"
+#include "image/segment/closed_path.hpp"
+#include "image/segment/round_triangles.hpp"
+#include "image/segment/sheet_evidence.hpp"
+#include "image/segment/speckle_blur.hpp"
+#include "image/segment/wall_profile.hpp"
+#include "image/support/speckle_phantom.hpp"
+#include "mesh/shapes.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace coapt {
+namespace {
+
+double cost_of(const Eigen::MatrixXd& costs, const std::vector<int>& path, double step_cost) {
+  double sum = 0;
+  for (size_t i = 0; i < path.size(); ++i)
+    sum += costs(path[i], static_cast<Eigen::Index>(i)) +
+           step_cost * std::abs(path[i] - path[(i + 1) % path.size()]);
+  return sum;
+}
+
+TEST(ClosedPath, IsTheCheapestOfAll) {
+  RandomSource random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    Eigen::MatrixXd costs(4, 5);
+    for (double& cost : costs.reshaped()) cost = random.unit();
+    const std::vector<int> found = closed_path(costs, 1, 0.2);
+    double least = kInfinity;
+    for (int code = 0; code < 1024; ++code) {
+      std::vector<int> path;
+      for (int i = 0, rest = code; i < 5; ++i, rest /= 4) path.push_back(rest % 4);
+      bool is_allowed = true;
+      for (size_t i = 0; i < 5; ++i) is_allowed = is_allowed && std::abs(path[i] - path[(i + 1) % 5]) <= 1;
+      if (is_allowed) least = std::min(least, cost_of(costs, path, 0.2));
+    }
+    EXPECT_NEAR(cost_of(costs, found, 0.2), least, 1e-12);
+  }
+}
+
+// A grid around the origin with values of a function of the place.
+template <class Function>
+Volume volume_of(int half, double voxel, const Function& value) {
+  Volume volume;
+  volume.size = {2 * half + 1, 2 * half + 1, 2 * half + 1};
+  volume.spacing = Vec3::Constant(voxel);
+  volume.direction = Eigen::AngleAxisd(0.5, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+  volume.origin = -volume.direction * Vec3::Constant(half * voxel);
+  volume.values.resize(static_cast<size_t>(volume.size[0] * volume.size[1] * volume.size[2]));
+  for (int k = 0; k <= 2 * half; ++k)
+    for (int j = 0; j <= 2 * half; ++j)
+      for (int i = 0; i <= 2 * half; ++i)
+        volume.values[volume.voxel(i, j, k)] = static_cast<float>(value(position_of(volume, Vec3(i, j, k))));
+  return volume;
+}
+
+TEST(SheetEvidence, SeesASheetAndItsNormalButNoTube) {
+  const Vec3 normal = Vec3(1, 2, 3).normalized(), along = Vec3(0, 3, -2).normalized();
+  const auto gauss = [](double d) { return std::exp(-0.5 * d * d / 0.36); };
+  const Volume both = volume_of(16, 0.6, [&](const Vec3& x) {
+    const Vec3 beside = x - 6 * normal;
+    return gauss(normal.dot(x)) + gauss((beside - along.dot(beside) * along).norm());
+  });
+  const SheetEvidence evidence = sheet_evidence(both, {0.7, 1.0});
+  const double on_sheet = sheet_strength(evidence, Vec3::Zero(), normal);
+  EXPECT_GT(on_sheet, 0.5);
+  EXPECT_LT(sheet_strength(evidence, Vec3::Zero(), along), 0.05 * on_sheet);
+  EXPECT_LT(sheet_strength(evidence, 6 * normal, normal), 0.3 * on_sheet);
+  EXPECT_LT(sheet_strength(evidence, 2.5 * normal, normal), 0.1 * on_sheet);
+}
+
+TEST(WallFit, FindsTheWidthThatMadeTheProfile) {
+  for (const GreyScale scale : {GreyScale{}, GreyScale{0.2}})
+    for (const double width : {0.8, 1.5}) {
+      WallProfiles profiles;
+      profiles.values.resize(27, 1);
+      for (Eigen::Index k = 0; k < 27; ++k) {
+        const double t = profiles.offset(k) - 0.2, a = std::sqrt(0.5) / 0.4;
+        const double share = 0.5 * (std::erf((t + 0.5 * width) * a) - std::erf((t - 0.5 * width) * a));
+        profiles.values(k, 0) = value_at_share(scale, 60, 200, share);
+      }
+      const WallFit fit = fit_wall(profiles, 0, 0.4, scale);
+      ASSERT_TRUE(fit.is_found);
+      EXPECT_NEAR(fit.width, width, 0.02);
+      EXPECT_NEAR(fit.centre, 0.2, 0.01);
+    }
+}
+
+TEST(SpeckleBlur, IsThatOfThePointSpread) {
+  const TriangleMesh sheet = square(24, 800);
+  const testing::PhantomOptions phantom{.voxel = 0.5, .thickness = 1.5, .spread = 0.6};
+  const Volume volume = testing::speckle_volume(sheet, phantom);
+  LayerGrid grid;
+  grid.columns = 41;
+  grid.rows = 41;
+  grid.points.resize(3, 41 * 41);
+  for (int row = 0; row < 41; ++row)
+    for (int column = 0; column < 41; ++column)
+      grid.points.col(grid.node(column, row)) = Vec3(2 + 0.5 * column, 2 + 0.5 * row, 0);
+  const std::optional<Vec3> blur = speckle_blur(volume, grid, std::vector<char>(41 * 41, 1));
+  ASSERT_TRUE(blur);
+  EXPECT_NEAR((*blur)[0], 0.6 / std::sqrt(2.0), 0.06);  // of power; along y it is the same
+  EXPECT_NEAR((*blur)[1], 0.6 / std::sqrt(2.0), 0.06);
+  EXPECT_FALSE(speckle_blur(volume, grid, std::vector<char>(41 * 41, 0)));
+}
+
+TEST(RoundTriangles, MakesAnglesLargerOnTheSameSurface) {
+  TriangleMesh mesh = disc(10, 600);
+  const TriangleMesh surface = mesh;
+  RandomSource random(1);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.vertices.col(v).norm() < 9.5)
+      for (int axis : {0, 1}) mesh.vertices(axis, v) += 0.35 * random.between(-1, 1);
+  const double before = least_angle(mesh);
+  round_triangles(mesh, surface, 20);
+  EXPECT_LT(before, 20);
+  EXPECT_GT(least_angle(mesh), 28);
+  EXPECT_LT(mesh.vertices.row(2).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(boundary_loops(mesh.triangles).size(), 1u);
+  EXPECT_NEAR(surface_area(mesh.vertices, mesh.triangles), surface_area(surface.vertices, surface.triangles),
+              3);
+}
+
+}  // namespace
+}  // namespace coapt
