@@ -245,6 +245,12 @@ bool has_orifice(const Report& report) {
   return report.metrics.closure && !report.metrics.closure->orifices.empty();
 }
 
+OrderedJson phases_json(const std::map<std::string, double>& phases) {
+  OrderedJson json = OrderedJson::object();
+  for (const auto& [phase, seconds] : phases) json[phase] = number_json(seconds);
+  return json;
+}
+
 }  // namespace
 
 std::string pressure_route(const Model& model, const Result& result) {
@@ -259,11 +265,6 @@ std::string pressure_route(const Model& model, const Result& result) {
 
 std::string result_json(const Model& model, const Report& report) {
   const Result& result = report.result;
-  const auto phases_json = [](const std::map<std::string, double>& phases) {
-    OrderedJson json = OrderedJson::object();
-    for (const auto& [phase, seconds] : phases) json[phase] = number_json(seconds);
-    return json;
-  };
   OrderedJson json = {{"version", version()},
                       {"scene", report.scene_file},
                       {"status", status_name(result.status)},

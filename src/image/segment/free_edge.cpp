@@ -17,7 +17,7 @@ constexpr double kEdgeReadingStep = 0.25;          // [mm]
 constexpr double kLevelFrom = 2, kLevelTo = 6;     // from the annulus, where all leaflets are [mm]
 constexpr double kShortest = 3;                    // leaflet [mm]
 constexpr double kLeastContrast = -0.5, kGreatestContrast = 1.5;  // counted
-constexpr double kSheetFactor = 2;      // of the evidence, above which contrast counts no more
+constexpr double kSheetFactor = 1;      // of the evidence, above which contrast counts no more
 constexpr int kClimb = 4;               // rows from one column to the next
 constexpr double kClimbCost = 0.08;     // of a row, in contrasts times rows
 constexpr double kEdgeSmoothing = 1.2;  // along the ring [mm]

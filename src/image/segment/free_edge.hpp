@@ -15,7 +15,7 @@ struct FreeEdge {
 
 // At each point of the layer the contrast is what the value on the layer (the mean of half a millimetre to
 // both sides) exceeds that on the darker of its sides (1.5 to 2.5 mm away) by, over the median of what it is
-// two to six millimetres from the annulus; at most twice the evidence of a sheet, so that chords, which are
+// two to six millimetres from the annulus; at most the evidence of a sheet, so that chords, which are
 // bright too but no sheets, do not lengthen the leaflet. The edge is the closed path around the valve that
 // parts contrasts above one half from those below with the least sum of contradictions (a change point in
 // each column, a path that costs what it climbs): a gap of evidence within the leaflet is passed over. Then

@@ -37,7 +37,7 @@ OrderedJson document(const Segmentation& found, const std::string& volume, const
   const Valve& valve = found.valve;
   const auto fitted = static_cast<double>(found.thickness.array().isFinite().count());
   OrderedJson phases = OrderedJson::object();
-  for (const auto& [phase, seconds] : found.times.seconds()) phases[phase] = seconds;
+  for (const auto& [phase, seconds] : found.times.wall()) phases[phase] = seconds;
   return {{"volume", volume},
           {"annulus", annulus},
           {"voxels", found.size},
