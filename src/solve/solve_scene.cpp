@@ -19,7 +19,8 @@ constexpr double kCollisionDistance = 0.3;  // of dynamics, over the mean edge l
 FactorisationFactory chosen_factorisation(const FactorisationTable& table, const std::string& name) {
   if (name == "auto") return make_multifrontal_factorisation;
   if (const auto found = table.find(name); found != table.end()) return found->second;
-  throw InputError("factorisation \"" + name + "\" is not in this build; use \"auto\", \"multifrontal\" or \"eigen\"");
+  throw InputError("factorisation \"" + name +
+                   "\" is not in this build; use \"auto\", \"multifrontal\" or \"eigen\"");
 }
 
 SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name) {

@@ -26,7 +26,8 @@ struct Backend {
 void PrintTo(const Backend& backend, std::ostream* out) { *out << backend.name; }
 
 std::vector<Backend> backends() {
-  std::vector<Backend> all = {{"eigen", make_eigen_factorisation}, {"multifrontal", make_multifrontal_factorisation}};
+  std::vector<Backend> all = {{"eigen", make_eigen_factorisation},
+                              {"multifrontal", make_multifrontal_factorisation}};
 #ifdef COAPT_HAS_CHOLMOD
   using Ordering = CholmodOptions::Ordering;
   all.push_back({"cholmod", [] { return make_cholmod_factorisation(); }});
