@@ -67,6 +67,14 @@ function(coapt_room room)
   coapt_sources(${target} HEADERS ${ARG_HEADERS} SOURCES ${ARG_SOURCES})
 endfunction()
 
+# coapt_umbrella(<target>): the headers <coapt/coapt.hpp> and <coapt/version.hpp>, which belong to no room.
+function(coapt_umbrella target)
+  set(written ${PROJECT_BINARY_DIR}/include)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/version.hpp.in ${written}/coapt/version.hpp @ONLY)
+  target_sources(${target} INTERFACE FILE_SET umbrella TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include ${written}
+                 FILES ${PROJECT_SOURCE_DIR}/include/coapt/coapt.hpp ${written}/coapt/version.hpp)
+endfunction()
+
 # coapt_unite(<target> <size> <sources>): groups of so many, named after the folder and the first source.
 function(coapt_unite target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

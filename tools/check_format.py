@@ -9,7 +9,7 @@ MACRO = re.compile(r"^\s*#\s*define\s+\w+\(", re.MULTILINE)
 
 
 def sources() -> list[pathlib.Path]:
-    folders = ["src", "tests", "bench", "bindings"]
+    folders = ["include", "src", "tests", "bench", "bindings"]
     return sorted(p for f in folders for p in (ROOT / f).rglob("*.[ch]pp"))
 
 

@@ -9,12 +9,6 @@
 namespace coapt::python {
 namespace {
 
-// Names in messages come from files and may hold bytes that are not UTF-8.
-py::str text_of(const std::string& text) {
-  return py::reinterpret_steal<py::str>(
-      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
-}
-
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
@@ -34,6 +28,11 @@ py::list component_list() {
 }
 
 }  // namespace
+
+py::str text_of(const std::string& text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
+}
 
 py::array_t<double> array_of(Points points) {
   const auto count = points.cols();

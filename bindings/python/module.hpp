@@ -9,6 +9,7 @@
 #include <memory>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <string>
 #include <type_traits>
 
 namespace coapt::python {
@@ -80,6 +81,9 @@ inline Eigen::Map<const Points> points_in(const Numbers& array) { return {array.
 inline Eigen::Map<const Triangles> triangles_in(const Corners& array) {
   return {array.data(), 3, array.shape(0)};
 }
+
+// A message or warning. Names in it come from files and may hold bytes that are not UTF-8.
+py::str text_of(const std::string& text);
 
 // Arrays that own what they hold; points as (n, 3).
 py::array_t<double> array_of(Points points);

@@ -65,6 +65,33 @@ void generate_mitral(const std::string& folder, int triangles, unsigned seed, co
                     folder);
 }
 
+py::list import_to_folder(const std::string& file, const std::string& folder,
+                          const std::string& annulus_closed, const std::string& papillary,
+                          const std::string& papillary_closed, const std::string& pressure,
+                          const std::string& young, const std::string& chord_young,
+                          const std::string& contact, const std::string& model, bool repairs,
+                          bool takes_any_size) {
+  ImportOptions options;
+  options.annulus_closed = annulus_closed;
+  options.papillary = papillary;
+  options.papillary_closed = papillary_closed;
+  options.pressure = pressure;
+  options.young = young;
+  options.chord_young = chord_young;
+  options.contact = contact;
+  options.model = model;
+  options.repairs = repairs;
+  options.takes_any_size = takes_any_size;
+  std::vector<std::string> warnings;
+  {
+    const py::gil_scoped_release unlocked;
+    warnings = import_valve(file, folder, options);
+  }
+  py::list texts;
+  for (const std::string& warning : warnings) texts.append(text_of(warning));
+  return texts;
+}
+
 }  // namespace
 
 void define_scene(py::module_& module) {
@@ -73,6 +100,11 @@ void define_scene(py::module_& module) {
   module.def("generate_mitral", &generate_mitral, py::kw_only(), py::arg("folder"), py::arg("triangles"),
              py::arg("seed"), py::arg("preset"),
              "Writes the generated mitral valve with a scene into a folder.");
+  module.def("import_valve", &import_to_folder, py::kw_only(), py::arg("file"), py::arg("folder"),
+             py::arg("annulus_closed"), py::arg("papillary"), py::arg("papillary_closed"),
+             py::arg("pressure"), py::arg("young"), py::arg("chord_young"), py::arg("contact"),
+             py::arg("model"), py::arg("repairs"), py::arg("takes_any_size"),
+             "Writes a scene from a valve file into a folder; empty texts stand for the defaults.");
   module.def("methods", &method_names, "Names of the solvers of this build.");
   module.def("scene_schema", &json_schema, "JSON Schema of the scene file, as text.");
   module.def("run", &run, py::arg("input"), py::kw_only(), py::arg("callback"), py::arg("solver"),

@@ -57,7 +57,8 @@ std::unique_ptr<CLI::App, void (*)(CLI::App*)> application(Session& session, Tex
         add_chords_command,      add_export_command,  add_schema_command,       add_mesh_study_command,
         add_sensitivity_command, add_tune_command,    add_tune_regions_command, add_intervene_command,
         add_study_command,       add_compare_command, add_register_command,     add_bench_command,
-        add_stress_command,      add_image_command,   add_phantom_command,      add_pages_command})
+        add_stress_command,      add_image_command,   add_phantom_command,      add_segment_command,
+        add_close_command,       add_pages_command})
     add(*app, session);
   const auto every = [](const CLI::App*) { return true; };
   for (CLI::App* command : app->get_subcommands(every)) {

@@ -20,6 +20,7 @@ from ._documents import Branches, Certificate, Metrics
 from ._energy import Energy, energy
 from ._equilibrium import Equilibrium
 from ._errors import InputError
+from ._import import Imported, import_valve
 from ._library import components, generate_mitral, licence, methods, scene_schema
 from ._objective import LostBranchWarning, Objective, objective
 from ._registration import Registration, register
@@ -28,10 +29,10 @@ from ._terms import Term, check_term
 from ._warm_solve import AnchorCheck, KinkWarning, LostBranch, Switch, WarmSolve
 
 __version__ = _core.version()
-__all__ = ["AnchorCheck", "Branches", "Certificate", "Energy", "Equilibrium", "InputError", "Iterate", "KinkWarning", "LostBranch",
-           "LostBranchWarning", "Metrics", "Objective", "Registration", "Result", "Status", "Switch", "Term", "WarmSolve",
-           "autograd", "check_term", "components", "energy", "generate_mitral", "licence", "methods", "metrics", "minimize",
-           "objective", "plot", "register", "scene_schema", "solve", "symbolic"]
+__all__ = ["AnchorCheck", "Branches", "Certificate", "Energy", "Equilibrium", "Imported", "InputError", "Iterate", "KinkWarning",
+           "LostBranch", "LostBranchWarning", "Metrics", "Objective", "Registration", "Result", "Status", "Switch", "Term",
+           "WarmSolve", "autograd", "check_term", "components", "energy", "generate_mitral", "import_valve", "licence", "methods",
+           "metrics", "minimize", "objective", "plot", "register", "scene_schema", "solve", "symbolic"]
 
 
 def __dir__() -> list[str]:

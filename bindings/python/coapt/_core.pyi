@@ -151,6 +151,21 @@ def follow(
     max_seconds: float | None,
 ) -> Followed: ...
 def generate_mitral(*, folder: str | bytes, triangles: int, seed: int, preset: str) -> None: ...
+def import_valve(
+    *,
+    file: str | bytes,
+    folder: str | bytes,
+    annulus_closed: str | bytes,
+    papillary: str | bytes,
+    papillary_closed: str | bytes,
+    pressure: str,
+    young: str,
+    chord_young: str,
+    contact: str,
+    model: str,
+    repairs: bool,
+    takes_any_size: bool,
+) -> list[str]: ...
 def version() -> str: ...
 def licence() -> str: ...
 def components() -> list[tuple[str, str, str, bool]]: ...

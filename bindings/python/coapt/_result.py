@@ -84,6 +84,12 @@ class Result(dict[str, Any]):
         """For notebooks: warnings, a picture of the closed shape (by matplotlib) and the figures."""
         return _html.of_result(self)
 
+    def field_arrays(self) -> _fields.Fields:
+        """All fields in two dicts, ready for a file or another program: `of_nodes`, each (n, ...), and `of_cells`, each a
+        pair of arrays, of the triangles (m, ...) and of the lines (k, ...). Where a field says nothing stands NaN, or -1 in
+        whole numbers; true and false are 1 and 0."""
+        return _fields.fields_of(self)
+
     def to_meshio(self) -> Any:
         """The closed shape as a `meshio.Mesh` [mm]: triangles, chords as lines, and all fields.
 

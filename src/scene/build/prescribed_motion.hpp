@@ -1,4 +1,4 @@
-// Prescribed nodes: which coordinates, and where they go. Private to this room.
+// Prescribed nodes: which coordinates, and where they go.
 #pragma once
 
 #include "formats/json/valve_json.hpp"
