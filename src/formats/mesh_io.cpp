@@ -54,6 +54,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
                                                            : format == ".off" ? formats::read_off
                                                            : format == ".vtp" ? formats::read_vtp
                                                                               : nullptr;
+  formats::refuse_what_is_no_file(path);
   if (!read) refuse_extension(path);
   const std::string bytes = formats::read_whole(path);
   MeshFile file = read(bytes, path.string());

@@ -9,13 +9,21 @@
 
 namespace coapt::formats {
 
+void refuse_what_is_no_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return;
+  if (std::filesystem::is_directory(status))
+    throw InputError(path.string() + ": is a folder; name a file in it");
+  if (!std::filesystem::is_regular_file(status))
+    throw InputError(path.string() + ": is a device or a pipe, no file");
+}
+
 std::string read_whole(const std::filesystem::path& path, std::uintmax_t greatest) {
   const std::string name = path.string();
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": there is no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a folder; name a file in it");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": is a device or a pipe, no file");
+  if (!std::filesystem::exists(path, error)) throw InputError(name + ": there is no such file");
+  refuse_what_is_no_file(path);
   const auto size = std::filesystem::file_size(path, error);
   if (!error && size > greatest)
     throw InputError(name + ": " + std::to_string(size >> 20) + " MB; at most " +

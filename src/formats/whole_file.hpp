@@ -10,6 +10,9 @@
 
 namespace coapt::formats {
 
+// Throws InputError for a folder, a device or a pipe; a file that is not there passes.
+void refuse_what_is_no_file(const std::filesystem::path& path);
+
 // The bytes of a file without the byte order mark of UTF-8. Throws InputError when the path is not a regular
 // file that can be read, or is greater than `greatest` [bytes].
 std::string read_whole(const std::filesystem::path& path,

@@ -166,11 +166,20 @@ Report run_built(const Scene& scene, const SceneGeometry& geometry, SolveSetup s
     } catch (const OutputError& error) {
       lost_frames = error;
     }
-  Report report =
-      complete_run(scene, setup, model, std::move(solved),
-                   {.has_page = has_page, .has_frames = frames && !lost_frames}, options.checker, folder);
-  if (lost_frames) throw UnwrittenReport(*lost_frames, std::move(report));
-  return report;
+  const auto complete = [&] {
+    return complete_run(scene, setup, model, std::move(solved),
+                        {.has_page = has_page, .has_frames = frames && !lost_frames}, options.checker,
+                        folder);
+  };
+  if (!lost_frames) return complete();
+  try {
+    throw UnwrittenReport(*lost_frames, complete());
+  } catch (const UnwrittenReport& error) {  // of the frames, or of the files that come after them
+    std::vector<std::string> defects = lost_frames->defects();
+    if (error.defects() != defects)
+      defects.insert(defects.end(), error.defects().begin(), error.defects().end());
+    throw UnwrittenReport(OutputError(defects), std::move(error.report()));
+  }
 }
 
 RunReport run(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {

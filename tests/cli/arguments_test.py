@@ -16,7 +16,7 @@ class Arguments(CommandCase):
         run = coapt()
         self.assert_bad_input(run, "which?", "solve", "generate")
         self.assertRegex(run.stdout, r"(?m)^  coapt solve +Solve a scene")
-        self.assertEqual(len(run.stdout.splitlines()), 17, "one line for each; `pages` is for those who pack the command")
+        self.assertEqual(len(run.stdout.splitlines()), 21, "one line for each; `pages` is for those who pack the command")
 
     def test_the_nearest_value_of_a_scene_is_named(self):
         scene = self.generate("disc", "--triangles", 100)
@@ -42,7 +42,7 @@ class Arguments(CommandCase):
         self.assertNotIn("coapt-pages.1", names)
         solve = (self.folder / "pages" / "coapt-solve.1").read_text()
         for piece in ("\\-\\-tolerance", ".SH EXIT STATUS", "\\fISCENE\\fR"):
-            self.assertRegex(solve, piece)
+            self.assertIn(piece, solve)
         for path in written:
             if path.suffix == ".1" and shutil.which("man"):
                 page = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", path],

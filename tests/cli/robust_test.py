@@ -59,6 +59,8 @@ class Robust(CommandCase):
             run = limited(resource.RLIMIT_AS, megabytes << 20, "solve", scene, "--max-seconds", 5)
             if "error while loading shared libraries" in run.stderr:
                 continue  # the system's own word
+            if "OpenBLAS blas_thread_init" in run.stderr:
+                continue  # which ends the process itself, before main
             self.assertIn(run.returncode, [0, 1, 3, 4], f"{megabytes} MB: {run.stdout}{run.stderr}")
             if run.returncode == 3:
                 self.assertIn("not enough memory", run.stderr)
@@ -66,7 +68,8 @@ class Robust(CommandCase):
     def test_a_thread_of_blas_that_waits_for_memory_keeps_no_process_alive(self):
         scene = self.generate("disc", "--triangles", 100)
         run = limited(resource.RLIMIT_AS, 100000 << 10, "solve", scene, timeout=60)
-        self.assertIn(run.returncode, [0, 3, 127], run.stdout + run.stderr)
+        if "OpenBLAS blas_thread_init" not in run.stderr:  # then it has ended the process itself, before main
+            self.assertIn(run.returncode, [0, 3, 127], run.stdout + run.stderr)
 
     def test_pipes_devices_and_folders_are_named_as_such(self):
         scene = self.generate("mitral", "--triangles", 300)

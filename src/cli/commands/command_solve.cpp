@@ -155,7 +155,10 @@ void print_summary(const RunReport& run) {
   const Metrics& m = report.metrics;
   std::printf("%s\n", headline(report).text.c_str());
   for (const std::string& warning : report.warnings) std::printf("  warning: %s\n", warning.c_str());
-  std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
+  if (std::isfinite(result.residual))
+    std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
+  else
+    std::printf("  %-22s not finite (wanted: %g)\n", "residual", report.tolerance);
   std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
   print_certificate(result.certificate);
   if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());

@@ -164,9 +164,9 @@ std::string summary(const Certificate& certificate) {
   std::string text = stability_summary(certificate.stability);
   if (!certificate.free_nodes.empty())
     text += ", " + counted(static_cast<int>(certificate.free_nodes.size()), "free node");
-  if (certificate.is_balance_clear)
-    text += ", reactions balance to " +
-            number_text(std::max(certificate.balance.force, certificate.balance.moment), 2);
+  if (const double rest = std::max(certificate.balance.force, certificate.balance.moment);
+      certificate.is_balance_clear && std::isfinite(rest))
+    text += ", reactions balance to " + number_text(rest, 2);
   if (const auto& worst = certificate.imbalance)
     text += ", largest out-of-balance force " + number_text(worst->force, 2) + " at node " +
             std::to_string(worst->node) + " (most of it by " + worst->term + ")";
