@@ -42,8 +42,8 @@ class Json(CommandCase):
         self.assertIn("levels", self.document("mesh-study", flat, "--levels", 1))
         self.document("sensitivity", flat)
         self.document("tune", scene, "--orifice-weight", 1, "--by", "all", "--max-solves", 2, codes=(0, 1))
-        self.document("tune-regions", scene, "--yield-strain", 0.5, "--regions", 2, codes=(0, 1))
-        self.document("intervene", scene, "--edit", '{"type": "ring", "size": "95 %"}', codes=(0, 1))
+        self.document("tune-regions", scene, "--yield-strain", 0.5, "--regions", 4, codes=(0, 1))
+        self.document("intervene", scene, "--edit", '{"type": "ring", "size": "34 mm"}', codes=(0, 1))
         self.document("study", flat, "--sweep", "terms[0].young=1MPa,2MPa", codes=(0, 1, 2))
         self.document("compare", flat, "--methods", "newton,lbfgs")
         self.document("register", valve / "result" / "closed.obj",
