@@ -12,7 +12,10 @@ COAPT = os.path.abspath(sys.argv[1])
 
 
 def coapt(*arguments, cwd=None, timeout=120):
-    return subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
+    """The command, without the lines of progress that a log gets every five seconds."""
+    run = subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
+    run.stderr = re.sub(r"(?m)^  step \d+, [^\n]* s[^\n]*\n", "", run.stderr)
+    return run
 
 
 def content_of(scene):
