@@ -11,10 +11,11 @@ import unittest
 COAPT = os.path.abspath(sys.argv[1])
 
 
-def coapt(*arguments, cwd=None, timeout=120):
-    """The command, without the lines of progress that a log gets every five seconds."""
+def coapt(*arguments, cwd=None, timeout=120, keeps_progress=False):
+    """The command; without the lines of progress that a log gets every five seconds, unless they are wanted."""
     run = subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
-    run.stderr = re.sub(r"(?m)^  step \d+, [^\n]* s[^\n]*\n", "", run.stderr)
+    if not keeps_progress:
+        run.stderr = re.sub(r"(?m)^  step \d+, [^\n]* s[^\n]*\n", "", run.stderr)
     return run
 
 

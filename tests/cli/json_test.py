@@ -79,13 +79,13 @@ class Json(CommandCase):
 
     def test_verbose_shows_every_iterate(self):
         scene = self.generate("disc", "--triangles", 100)
-        run = coapt("solve", scene, "--verbose")
+        run = coapt("solve", scene, "--verbose", keeps_progress=True)
         lines = re.findall(r"(?m)^  step \d+, \d+ nodes, iteration (\d+), residual \S+ \(wanted \S+\), [\d.]+ s", run.stderr)
         self.assertEqual(len(lines), len((self.folder / "result" / "trace.csv").read_text().splitlines()) - 1)
 
     def test_a_log_has_a_line_every_five_seconds(self):
         scene = self.generate("mitral", "--triangles", 20000)
-        run = coapt("solve", scene, "--tolerance", "1e-13", "--max-seconds", 12)
+        run = coapt("solve", scene, "--tolerance", "1e-13", "--max-seconds", 12, keeps_progress=True)
         lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
         self.assertIn(len(lines), [1, 2, 3], run.stderr)
 

@@ -52,7 +52,7 @@ await run("figures of a valve have their healthy ranges beside them", async () =
 await run("before and after stand beside each other in the colours of what changes", async () => {
   const place = join(scratch, "intervene");
   finished("intervene", scene, "--edit", '{"type": "chord_length", "tips": [0, 1], "factor": 0.9}', "-o", place);
-  const { page, closed } = await opened(place, { viewport: { width: 1280, height: 900 } });
+  const { page, closed } = await opened(join(place, "intervene.html"), { viewport: { width: 1280, height: 900 } });
   assert.equal(await chosen(page), "Change of greater principal Cauchy stress");
   assert.match(await text(page.locator("#legends")), /Change of greater principal Cauchy stress \[kPa\]/);
   assert.deepEqual(await page.locator("#pane-names span").allTextContents(), ["before", "after"]);
@@ -104,7 +104,7 @@ await run("before and after stand beside each other in the colours of what chang
 await run("a study shows the shapes of its points", async () => {
   const place = join(scratch, "study_shapes");
   finished("study", scene, "--sweep", "load_pressure.value=60,90,120 mmHg", "-o", place, "-j", "1");
-  const { page, closed } = await opened(place);
+  const { page, closed } = await opened(join(place, "study.html"));
   assert.equal(await chosen(page), "Greater principal Cauchy stress");
   const slider = page.getByRole("slider", { name: "load_pressure.value" });
   for (const [k, value] of [60, 90, 120].entries()) {

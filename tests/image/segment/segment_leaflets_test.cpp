@@ -20,7 +20,8 @@ Points loop_of(const Valve& valve, const std::vector<int>& loop) {
 }
 
 const Valve& truth() {
-  static const Valve valve = mitral_valve(MitralOptions{.triangles = 3000});
+  static const Valve valve =
+      mitral_valve(MitralOptions{.triangles = 3000, .preset = MitralPreset::Benchmark});
   return valve;
 }
 
