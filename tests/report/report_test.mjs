@@ -236,7 +236,7 @@ const tests = {
   },
 };
 
-const folder = solved("mitral", ["mitral", "--triangles", "400"]);
+const folder = solved("mitral", ["mitral", "--preset", "benchmark", "--triangles", "400"]);
 const vtp = readVtp(join(folder, "closed.vtp"));
 const { page, closed } = await opened(folder);
 for (const [name, test] of Object.entries(tests)) await run(name, () => test({ page, vtp, folder }));
@@ -259,7 +259,7 @@ function pyramidResult() {
     terms: [{ type: "cst_stvk", young: "1 MPa", poisson: 0.3, thickness: "0.5 mm" },
             { type: "load_field", nodes: [4], force: "0.001 N", direction: [0, 0, -1] }] }));
   finished("solve", join(folder, "scene.json"), "--branches", "12", "--branch-kick", "0.5");
-  return { solve: join(folder, "result"), compare: written("report.html", join(folder, "scene.json"), "compare", "--methods", "newton,lbfgs", "--branches", "12", "--branch-kick", "0.5") };
+  return { solve: join(folder, "result"), compare: written("compare.html", join(folder, "scene.json"), "compare", "--methods", "newton,lbfgs", "--branches", "12", "--branch-kick", "0.5") };
 }
 await run("every warning stands above the figures, in sight", async () => {
   for (const place of Object.values(pyramidResult())) {
@@ -328,13 +328,13 @@ await run("pages of compare, bench, study, tune and stress work as that of solve
   const disc = join(scratch, "disc", "scene.json"), valve = join(scratch, "mitral", "scene.json"), few = ["--methods", "newton,lbfgs"];
   for (const [title, place, charts] of [
          ["Result of parametric mitral valve (scene.json)", folder, 2],
-         ["Comparison of methods on disc (scene.json)", written("report.html", disc, "compare", ...few), 3],
+         ["Comparison of methods on disc (scene.json)", written("compare.html", disc, "compare", ...few), 3],
          ["Benchmark of disc (scene.json)",
           written("bench.html", disc, "bench", ...few, "--tolerances", "1e-2,1e-6", "--repeats", "1"), 2],
          ["Stability matrix of disc (scene.json)", written("stress.html", disc, "stress", "--rows", "S1,S4,S8", "--quick"), 0],
-         ["Study of parametric mitral valve (scene.json)", written("report.html", valve, "study", "--sweep", "load_pressure.value=60,120 mmHg"), 4],
+         ["Study of parametric mitral valve (scene.json)", written("study.html", valve, "study", "--sweep", "load_pressure.value=60,120 mmHg"), 4],
          ["Chord lengths of parametric mitral valve (scene.json)",
-          written("report.html", valve, "tune", "--orifice-weight", "1", "--by", "tip", "--max-solves", "6"), 1]]) {
+          written("tuning.html", valve, "tune", "--orifice-weight", "1", "--by", "tip", "--max-solves", "6"), 1]]) {
     const { page, closed } = await opened(place);
     assert.equal(await page.getByRole("heading", { level: 1 }).textContent(), title);
     assert.ok(await page.getByRole("table").count() > 0);
@@ -359,7 +359,7 @@ await run("10,000 triangles take less than 5 MB", async () => {
     assert.ok(size > 1e6 && size < 5e6, shape + ": " + size + " bytes");
   }
   // Of every method there is.
-  const page = written("report.html", join(scratch, "large_mitral", "scene.json"), "compare", "--max-seconds", "1");
+  const page = written("compare.html", join(scratch, "large_mitral", "scene.json"), "compare", "--max-seconds", "1");
   const size = statSync(page).size;
   assert.ok(size > 2e6 && size < 5e6, "compare: " + size + " bytes");
 });
