@@ -49,9 +49,9 @@ void MultifrontalFactor::count_signs(const double* values, int& negative, int& p
 
 MultifrontalFactor::UpdatePlan MultifrontalFactor::plan_updates(const Supernodes& nodes) {
   const int count = nodes.size();
-  UpdatePlan plan{std::vector<size_t>(count), std::vector<char>(count, 0), {0, 0}};
+  UpdatePlan plan{std::vector<size_t>(count), std::vector<int>(count, 0), {0, 0}};
   for (int s = count - 1; s >= 0; --s)
-    if (nodes.parent[s] >= 0) plan.parity[s] = static_cast<char>(1 - plan.parity[nodes.parent[s]]);
+    if (nodes.parent[s] >= 0) plan.parity[s] = 1 - plan.parity[nodes.parent[s]];
   size_t top[2] = {0, 0};
   for (int s = 0; s < count; ++s) {
     const int own = plan.parity[s];

@@ -55,7 +55,7 @@ class MultifrontalFactor {
   // other.
   struct UpdatePlan {
     std::vector<size_t> place;  // of each supernode in its stack
-    std::vector<char> parity;   // which stack
+    std::vector<int> parity;    // which stack
     size_t size[2] = {0, 0};
   };
 
@@ -67,7 +67,7 @@ class MultifrontalFactor {
   Panel panel(int s) const {
     return {values_.data() + panel_[s], height(s), 3 * nodes_.columns(s), Eigen::OuterStride<>(stride(s))};
   }
-  double* update_of(int s) { return stack_[static_cast<int>(plan_.parity[s])].data() + plan_.place[s]; }
+  double* update_of(int s) { return stack_[plan_.parity[s]].data() + plan_.place[s]; }
   DenseFront front_of(int s) {
     return {3 * nodes_.columns(s), 3 * nodes_.rows_below(s), values_.data() + panel_[s], update_of(s)};
   }
