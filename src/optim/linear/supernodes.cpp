@@ -92,7 +92,7 @@ std::vector<int> column_counts(const Lists& earlier, const std::vector<int>& par
 double trapezoid(double columns, double below) { return columns * (columns + 1) / 2 + columns * below; }
 
 // A merged supernode of so many columns may hold that share of zeros at most: each further column makes the
-// dense kernels busier. Set by bench/factorisation on valves and sheets of 600 to 40,000 triangles.
+// dense kernels busier. Set by hand, near those of CHOLMOD; not swept.
 bool is_worth_merging(double columns, double zeros, double entries) {
   constexpr double kMostColumns[3] = {4, 12, 32};      // nodes
   constexpr double kMostZeros[3] = {0.6, 0.25, 0.08};  // share of the entries
