@@ -120,6 +120,14 @@ void add(const std::string& name, const FactorisationFactory& make, int most_tri
 int main(int argc, char** argv) {
   add("eigen", make_eigen_factorisation, 40000);
   add("multifrontal", make_multifrontal_factorisation, 160000);
+  add(
+      "multifrontal_2_threads",
+      [team = std::make_shared<ThreadTeam>(2)] {
+        std::unique_ptr<Factorisation> factorisation = make_multifrontal_factorisation();
+        factorisation->use_threads(team);
+        return factorisation;
+      },
+      160000);
 #ifdef COAPT_HAS_CHOLMOD
   using Ordering = CholmodOptions::Ordering;
   for (int threads : {1, 2}) {

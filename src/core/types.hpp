@@ -2,6 +2,8 @@
 // coordinates lie side by side in memory.
 #pragma once
 
+#include "core/alignment.hpp"
+
 #include <Eigen/Core>
 
 #include <limits>

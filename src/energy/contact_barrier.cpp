@@ -3,15 +3,18 @@
 #include "core/error.hpp"
 #include "energy/contact/collision_detection.hpp"
 #include "energy/contact/contact_surface.hpp"
+#include "energy/pour_elements.hpp"
 #include "energy/term_access.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace coapt {
 namespace {
 
+constexpr size_t kShare = 1024;        // pairs that a thread takes at once in a search
 constexpr double kSkin = 0.25;         // of the gap: candidates are found this much ahead
 constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the range never exceeds
 constexpr double kParallel = 1e-3;     // sin^2 of the angle below which two edges count as parallel
@@ -63,31 +66,46 @@ struct Candidates {
 
   // Energy at x; counts the pairs that are within range.
   double evaluate(const Points& x, double pressure, Sink& sink, long& active) const {
-    double energy = 0;
+    const bool wants_gradient = sink.wants_gradient(), wants_hessian = sink.wants_hessian();
     active = 0;
-    PairVector g;
-    PairMatrix H;
-    PairVector* wanted_g = sink.wants_gradient() ? &g : nullptr;
-    PairMatrix* wanted_h = sink.wants_hessian() ? &H : nullptr;
-    for (size_t k = 0; k < rest.size(); ++k) {
-      const int* nodes = &stencils.nodes[4 * k];
-      const PairCorners corners = gather(x, nodes);
-      if (are_apart(rest[k].kind, corners, rest[k].range)) continue;
-      const ClosestPair closest = closest_points(rest[k].kind, corners);
-      if (closest.distance >= rest[k].range) continue;
-      ++active;
-      energy += pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(), wanted_g, wanted_h);
-      if (wanted_g == nullptr) continue;
-      g *= pressure;
-      for (int a = 0; a < 4; ++a) sink.add_gradient(nodes[a], g.segment<3>(3 * a));
-      if (wanted_h == nullptr) continue;
-      H *= pressure;
-      for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < 4; ++b)
-          sink.add_block(16 * static_cast<long>(k), 4, a, b, H.block<3, 3>(3 * a, 3 * b));
-    }
-    return energy;
+    return pour_elements<Evaluated>(
+        rest.size(), sink,
+        [&](size_t k, Evaluated& out) {
+          const PairCorners corners = gather(x, &stencils.nodes[4 * k]);
+          out.is_active = false;
+          if (are_apart(rest[k].kind, corners, rest[k].range)) return;
+          const ClosestPair closest = closest_points(rest[k].kind, corners);
+          if (closest.distance >= rest[k].range) return;
+          out.is_active = true;
+          out.energy =
+              pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(),
+                                          wants_gradient ? &out.g : nullptr, wants_hessian ? &out.h : nullptr);
+          if (wants_gradient) out.g *= pressure;
+          if (wants_hessian) out.h *= pressure;
+        },
+        [&](size_t k, const Evaluated& in, Sink& to) {
+          if (!in.is_active) return 0.0;
+          ++active;
+          for (int a = 0; wants_gradient && a < 4; ++a)
+            to.add_gradient(stencils.nodes[4 * k + static_cast<size_t>(a)], in.g.segment<3>(3 * a));
+          return in.energy;
+        },
+        [&](size_t k, const Evaluated& in, Sink& to) {
+          if (!in.is_active || !wants_hessian) return;
+          for (int a = 0; a < 4; ++a)
+            for (int b = 0; b < 4; ++b)
+              to.add_block(16 * static_cast<long>(k), 4, a, b, in.h.block<3, 3>(3 * a, 3 * b));
+        });
   }
+
+ private:
+  // Everything of a pair, between its evaluation and its scatter.
+  struct Evaluated {
+    bool is_active;
+    double energy;
+    PairVector g;
+    PairMatrix h;
+  };
 };
 
 // The pairs that a part of the nodes can meet within its reach: no search while it moves.
@@ -151,6 +169,8 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
   const Stencils& stencils() const override { return candidates_.stencils; }
   TermCounters counters() const override { return {active_pairs_, candidates_.stencils.count(), searches_}; }
 
+  void use_threads(const std::shared_ptr<ThreadTeam>& team) override { team_ = team; }
+
   bool prepare(const Points& x) override {
     if (is_within_skin(x)) return false;
     search(x);
@@ -165,7 +185,8 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     Candidates candidates;
     const double ahead = 2 * moving.reach();
     surface_.visit_near(moving.x(), gap_ + ahead, moving, [&](const FeaturePair& pair) {
-      if (moving.moves_any(pair.nodes)) add_candidate(pair, moving.x(), ahead, candidates);
+      if (!moving.moves_any(pair.nodes)) return;
+      if (const auto rest = candidate(pair, moving.x(), ahead)) candidates.add(pair, *rest);
     });
     for (int& node : candidates.stencils.nodes) node = moving.number(node);
     Points start(3, moving.moving_count());
@@ -240,26 +261,32 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
   void search(const Points& x) {
     ++searches_;
     searched_at_ = x;
+    const std::vector<FeaturePair> pairs = surface_.near_pairs(x, gap_ + skin_, *team_);
+    std::vector<std::optional<BarrierRest>> found(pairs.size());
+    team_->run_ranges(pairs.size(), kShare, [&](size_t first, size_t last) {
+      for (size_t k = first; k < last; ++k) found[k] = candidate(pairs[k], x, skin_);
+    });
     candidates_ = {};
-    surface_.visit_near(x, gap_ + skin_,
-                        [&](const FeaturePair& pair) { add_candidate(pair, x, skin_, candidates_); });
+    for (size_t k = 0; k < pairs.size(); ++k)
+      if (found[k]) candidates_.add(pairs[k], *found[k]);
   }
 
-  // A pair that at x is less than `ahead` from its range.
-  void add_candidate(const FeaturePair& pair, const Points& x, double ahead, Candidates& candidates) const {
+  // Of a pair that at x is less than `ahead` from its range; nothing of any other.
+  std::optional<BarrierRest> candidate(const FeaturePair& pair, const Points& x, double ahead) const {
     const PairCorners corners = gather(x, pair.nodes.data());
-    if (are_apart(pair.kind, corners, gap_ + ahead)) return;
+    if (are_apart(pair.kind, corners, gap_ + ahead)) return {};
     const double distance = closest_points(pair.kind, corners).distance;
-    if (distance >= gap_ + ahead) return;
+    if (distance >= gap_ + ahead) return {};
     const PairCorners at_rest = gather(surface_.rest(), pair.nodes.data());
     const double range = std::min(gap_, kShareOfRest * closest_points(pair.kind, at_rest).distance);
-    if (distance >= range + ahead) return;
+    if (distance >= range + ahead) return {};
     const double lengths =
         (at_rest.col(1) - at_rest.col(0)).squaredNorm() * (at_rest.col(3) - at_rest.col(2)).squaredNorm();
-    candidates.add(pair, {pair.kind, range, surface_.area(pair) * range, kParallel * lengths});
+    return BarrierRest{pair.kind, range, surface_.area(pair) * range, kParallel * lengths};
   }
 
   ContactSurface surface_;
+  std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
   double gap_, skin_;
   double given_pressure_, pressure_;
   Candidates candidates_;

@@ -1,8 +1,8 @@
 // A term made of one element law: gathers, calls the kernel, scatters. Written once for all laws.
 #pragma once
 
-#include "core/parallel.hpp"
 #include "energy/moving_part.hpp"
+#include "energy/pour_elements.hpp"
 #include "energy/project_psd.hpp"
 #include "energy/term.hpp"
 #include "energy/term_access.hpp"
@@ -325,37 +325,22 @@ class ElementTerm final : public EnergyTerm, public TermAccess {
                      : K::evaluate(rest_[e], local, &out.g, &out.h);
   }
 
-  double scatter_element(size_t e, const Evaluated& in, Sink& sink) const {
-    scatter(in.g, stencils_.nodes.data() + e * K::kNodes, sink);
+  void scatter_blocks(size_t e, const Evaluated& in, Sink& sink) const {
     const long offset = static_cast<long>(e) * K::kNodes * K::kNodes;
     for (int a = 0; a < K::kNodes; ++a)
       for (int b = 0; b < K::kNodes; ++b)
         sink.add_block(offset, K::kNodes, a, b, in.h.template block<3, 3>(3 * a, 3 * b));
-    return in.energy;
   }
 
-  // Several threads evaluate a batch of elements, one scatters them in their order: the same bits whatever
-  // their number.
   double evaluate_with_hessian(const Points& x, Sink& sink) const {
-    constexpr size_t kBatch = 4096;  // worth the start of a thread; keeps the buffer in the cache
-    double energy = 0;
-    if (sink.threads() <= 1 || rest_.size() < kBatch) {
-      Evaluated element;
-      for (size_t e = 0; e < rest_.size(); ++e) {
-        evaluate_element(x, e, sink.projection(), element);
-        energy += scatter_element(e, element, sink);
-      }
-      return energy;
-    }
-    std::vector<Evaluated> batch(std::min(kBatch, rest_.size()));
-    for (size_t first = 0; first < rest_.size(); first += kBatch) {
-      const size_t count = std::min(kBatch, rest_.size() - first);
-      in_parallel(sink.threads(), count, [&](size_t from, size_t to) {
-        for (size_t k = from; k < to; ++k) evaluate_element(x, first + k, sink.projection(), batch[k]);
-      });
-      for (size_t k = 0; k < count; ++k) energy += scatter_element(first + k, batch[k], sink);
-    }
-    return energy;
+    return pour_elements<Evaluated>(
+        rest_.size(), sink,
+        [&](size_t e, Evaluated& out) { evaluate_element(x, e, sink.projection(), out); },
+        [&](size_t e, const Evaluated& in, Sink& to) {
+          scatter(in.g, stencils_.nodes.data() + e * K::kNodes, to);
+          return in.energy;
+        },
+        [&](size_t e, const Evaluated& in, Sink& to) { scatter_blocks(e, in, to); });
   }
 
   Stencils stencils_;

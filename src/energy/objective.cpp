@@ -115,6 +115,11 @@ void Objective::release_stress_limits() {
   has_stress_limits_ = scale_is_current_ = false;
 }
 
+void Objective::use_threads(int count) {
+  team_ = std::make_shared<ThreadTeam>(count);
+  for (const auto& term : terms_) term->use_threads(team_);
+}
+
 double Objective::pour(const EnergyTerm& term, Sink sink) const {
   sink.set_factor(factor(term));
   return factor(term) * term.evaluate(x_, sink);
@@ -221,9 +226,9 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   };
   for (size_t k = 0; k < terms_.size(); ++k) {
     if (terms_[k]->role() != TermRole::Load) read_off_loads();
-    energy +=
-        pour(*terms_[k], h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection, threads_)
-                                      : Sink(gradient));
+    Sink sink = h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection) : Sink(gradient);
+    if (h != nullptr) sink.share(team_.get(), h->nonZeros());
+    energy += pour(*terms_[k], sink);
   }
   read_off_loads();
   if (h != nullptr) {

@@ -88,9 +88,10 @@ class Objective {
   double raise_stress_limits(const Vector& q);
   void release_stress_limits();
 
-  // Threads that may assemble the Hessian; 1 from the start. The result has the same bits whatever their
-  // number.
-  void use_threads(int count) { threads_ = count; }
+  // Threads that share assembly and the search for contact, and may share what a solver does besides; 1 from
+  // the start. Results have the same bits whatever their number.
+  void use_threads(int count);
+  const std::shared_ptr<ThreadTeam>& team() const { return team_; }
 
   // Moves the prescribed coordinates to those of x; free coordinates of x are ignored.
   void prescribe(const Points& x);
@@ -214,7 +215,7 @@ class Objective {
   int free_count_ = 0;
   double load_factor_ = 1, stiffness_factor_ = 1;
   Vector damping_, damped_from_;  // of each unknown; empty: no dampers
-  int threads_ = 1;
+  std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
   bool has_stress_limits_ = false;
 
   enum class Circulatory { None, Lagged, PathWork };

@@ -1,6 +1,7 @@
 // Where a term pours its derivatives: a gradient, and Hessian blocks at places computed beforehand.
 #pragma once
 
+#include "core/thread_team.hpp"
 #include "core/types.hpp"
 
 namespace coapt {
@@ -26,15 +27,22 @@ class Sink {
   // Energy and gradient, 3 x node_count values in column order, added to.
   explicit Sink(double* gradient) : gradient_(gradient) {}
 
-  // Energy, gradient and Hessian. slots: width * width for each element of the term. threads: that may
-  // evaluate elements; what is poured, and in which order, does not depend on them.
-  Sink(double* gradient, double* hessian, const BlockSlot* slots, Projection projection, int threads = 1)
-      : gradient_(gradient), hessian_(hessian), slots_(slots), projection_(projection), threads_(threads) {}
+  // Energy, gradient and Hessian. slots: width * width for each element of the term.
+  Sink(double* gradient, double* hessian, const BlockSlot* slots, Projection projection)
+      : gradient_(gradient), hessian_(hessian), slots_(slots), projection_(projection) {}
+
+  // Threads that may evaluate elements and scatter them; what is poured, and in which order, does not depend on
+  // them. value_count: of the Hessian.
+  void share(ThreadTeam* team, long value_count) {
+    team_ = team;
+    value_count_ = value_count;
+  }
+  bool is_shared() const { return team_ != nullptr && team_->size() > 1; }
+  ThreadTeam& team() const { return *team_; }
 
   bool wants_gradient() const { return gradient_ != nullptr; }
   bool wants_hessian() const { return hessian_ != nullptr; }
   Projection projection() const { return projection_; }
-  int threads() const { return threads_; }
 
   // Everything that is poured in from now on is multiplied by this factor (continuation in load or
   // stiffness).
@@ -47,11 +55,20 @@ class Sink {
     to[2] += factor_ * g[2];
   }
 
+  // Of this sink the k-th of `count` parts of the Hessian's values: threads that each pour all blocks into one
+  // part add up what this one would.
+  Sink part(int k, int count) const {
+    Sink part = *this;
+    part.first_value_ = static_cast<unsigned>(value_count_ * k / count);
+    part.values_ = static_cast<unsigned>(value_count_ * (k + 1) / count) - part.first_value_;
+    return part;
+  }
+
   // Adds the block of one element's local nodes (a, b); element_offset = element * width * width.
   template <typename Block>
   void add_block(long element_offset, int width, int a, int b, const Block& block) {
     const BlockSlot slot = slots_[element_offset + a * width + b];
-    if (slot.base < 0) return;
+    if (static_cast<unsigned>(slot.base) - first_value_ >= values_) return;
     double* to = hessian_ + slot.base;
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) to[c * slot.stride + r] += factor_ * block(r, c);
@@ -62,7 +79,9 @@ class Sink {
   double* hessian_ = nullptr;
   const BlockSlot* slots_ = nullptr;
   Projection projection_ = Projection::None;
-  int threads_ = 1;
+  ThreadTeam* team_ = nullptr;
+  long value_count_ = 0;
+  unsigned first_value_ = 0, values_ = 0xFFFFFFFF;  // blocks that begin here; one that is not stored never does
   double factor_ = 1;
 };
 

@@ -68,6 +68,9 @@ class EnergyTerm {
   // stencils changed. Never changes a value: what is not in the list contributes exactly zero.
   virtual bool prepare(const Points& /*x*/) { return false; }
 
+  // Threads that may share what prepare() does; what it does is the same whatever their number.
+  virtual void use_threads(const std::shared_ptr<ThreadTeam>& /*team*/) {}
+
   // Rounds the kinks of the law over at least this share of the length of each element, for continuation;
   // 0: as the law was given. Returns whether it has any.
   virtual bool round_kinks(double /*share*/) { return false; }

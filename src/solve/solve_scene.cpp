@@ -16,11 +16,21 @@ namespace {
 
 constexpr double kCollisionDistance = 0.3;  // of dynamics, over the mean edge length
 
-FactorisationFactory chosen_factorisation(const FactorisationTable& table, const std::string& name) {
+FactorisationFactory named_factorisation(const FactorisationTable& table, const std::string& name) {
   if (name == "auto") return make_multifrontal_factorisation;
   if (const auto found = table.find(name); found != table.end()) return found->second;
   throw InputError("factorisation \"" + name +
                    "\" is not in this build; use \"auto\", \"multifrontal\" or \"eigen\"");
+}
+
+// Those made by it share one team of threads, as they work one after the other.
+FactorisationFactory chosen_factorisation(const FactorisationTable& table, const SolverSpec& solver) {
+  return [make = named_factorisation(table, solver.factorisation),
+          team = std::make_shared<ThreadTeam>(thread_count(solver))] {
+    std::unique_ptr<Factorisation> factorisation = make();
+    factorisation->use_threads(team);
+    return factorisation;
+  };
 }
 
 SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name) {
@@ -89,7 +99,7 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   SolveSetup setup;
   setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
   const FactorisationFactory factorisation =
-      chosen_factorisation(options.factorisations, scene.solver.factorisation);
+      chosen_factorisation(options.factorisations, scene.solver);
   setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
                        factorisation](const Model& model) {
     return make(solver_options(spec, terms, factorisation, model));

@@ -78,7 +78,7 @@ StressOutcome same_bits_apart(StressSubject& subject) {
   return outcome;
 }
 
-// Elements of the largest term. ElementTerm shares out the elements of one batch after the other.
+// Elements of the largest term.
 long largest_term(const StressScene& scene) {
   const Model model = build(scene.scene, scene.geometry);
   long most = 0;
@@ -90,18 +90,18 @@ long largest_term(const StressScene& scene) {
 // The first iterations of `newton` on the scene's own mesh, whatever the scene's method: each assembles a
 // Hessian, and a bit that differs in one of them is seen in all that follows.
 StressOutcome same_bits_on_threads(StressSubject& subject) {
-  constexpr long kBatch = 4096;  // elements, of energy/element_term.hpp
+  constexpr long kWorthThreads = 512;  // elements, of energy/pour_elements.hpp
   constexpr int kIterations = 5;
   if (!subject.bench.has_solver("newton"))
     return {StressVerdict::NotApplicable, {}, {}, "this build has no newton, which assembles Hessians"};
   StressScene scene = copy_of(own_scene(subject));
   const long elements = largest_term(scene);
-  if (elements <= kBatch)
+  if (elements < kWorthThreads)
     return {
         StressVerdict::NotApplicable,
         {},
         {},
-        "no term has more than one batch of " + std::to_string(kBatch) + " elements: threads get no work"};
+        "no term has " + std::to_string(kWorthThreads) + " elements: threads get no work"};
   scene.scene.solver.cascade = false;
   scene.scene.solver.max_iterations = std::min(scene.scene.solver.max_iterations, kIterations);
   std::optional<StressRun> one;

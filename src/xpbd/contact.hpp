@@ -45,8 +45,8 @@ class XpbdContact {
   // node is predicted to go farther than longest_move().
   void begin_step(const Points& x, const Points& predicted);
 
-  void sweep(double dt2, const InverseMasses& w, Points& x, int threads) {
-    active_.sweep(dt2, w, x, threads);
+  void sweep(double dt2, const InverseMasses& w, Points& x, ThreadTeam& team) {
+    active_.sweep(dt2, w, x, team);
   }
 
   // The longest move that a step may predict for a node: what goes farther may have passed through a sheet

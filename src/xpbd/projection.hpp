@@ -5,7 +5,7 @@
 // that is slack corrects nothing at all.
 #pragma once
 
-#include "core/parallel.hpp"
+#include "core/thread_team.hpp"
 #include "xpbd/colouring.hpp"
 #include "xpbd/constraints.hpp"
 
@@ -92,18 +92,18 @@ class ColouredConstraints {
 
   void begin_step() { std::fill(lambda_.begin(), lambda_.end(), 0.0); }
 
-  // One projection of each. threads: that may share a class; small ones are not worth starting them.
-  void sweep(double dt2, const InverseMasses& w, Points& x, int threads) {
+  // One projection of each. team: may share a class.
+  void sweep(double dt2, const InverseMasses& w, Points& x, ThreadTeam& team) {
     for (size_t c = 0; c + 1 < first_.size(); ++c) {
       const auto from = static_cast<size_t>(first_[c]), count = static_cast<size_t>(first_[c + 1]) - from;
-      in_parallel(count < kWorthThreads ? 1 : threads, count, [&](size_t low, size_t high) {
+      team.run_ranges(count, kWorthThreads, [&](size_t low, size_t high) {
         for (size_t e = from + low; e < from + high; ++e) project(constraints_[e], dt2, w, x, lambda_[e]);
       });
     }
   }
 
  private:
-  static constexpr size_t kWorthThreads = 1024;  // constraints that are worth the start of a thread
+  static constexpr size_t kWorthThreads = 512;  // constraints that are worth waking a thread
 
   std::vector<K> constraints_;
   std::vector<int> first_;

@@ -119,7 +119,12 @@ std::vector<LineConstraint> line_constraints(const XpbdBody& body, const Hardnes
 XpbdSystem::XpbdSystem(const XpbdBody& body, const Points& x,
                        const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed, const Vector& masses,
                        const XpbdOptions& options)
-    : options_(options), dt2_(std::pow(xpbd_time_step(options), 2)), w_(3, x.cols()), x_(x), before_(x) {
+    : options_(options),
+      team_(options.threads),
+      dt2_(std::pow(xpbd_time_step(options), 2)),
+      w_(3, x.cols()),
+      x_(x),
+      before_(x) {
   const Hardness hardness{options.stiffness == XpbdStiffness::Paper, options.paper};
   for (Eigen::Index node = 0; node < x.cols(); ++node)
     for (int c = 0; c < 3; ++c) w_(c, node) = fixed(c, node) ? 0 : hardness.is_paper ? 1 : 1 / masses[node];
@@ -163,8 +168,8 @@ void XpbdSystem::step(const Points& force, const Points& prescribed) {
   each([](auto& constraints) { constraints.begin_step(); });
   if (contact_) contact_->begin_step(start, x_);
   for (int k = 0; k < options_.iterations; ++k) {
-    each([&](auto& constraints) { constraints.sweep(dt2_, w_, x_, options_.threads); });
-    if (contact_) contact_->sweep(dt2_, w_, x_, options_.threads);
+    each([&](auto& constraints) { constraints.sweep(dt2_, w_, x_, team_); });
+    if (contact_) contact_->sweep(dt2_, w_, x_, team_);
   }
 }
 

@@ -39,6 +39,7 @@ class XpbdSystem {
 
  private:
   XpbdOptions options_;
+  ThreadTeam team_;
   double dt2_;
   InverseMasses w_;
   Points x_, before_;

@@ -1,5 +1,6 @@
 #include "optim/linear/bordered_factor.hpp"
 #include "optim/linear/dense_front.hpp"
+#include "optim/linear/factorisation.hpp"
 #include "optim/linear/node_ordering.hpp"
 #include "optim/linear/supernodes.hpp"
 
@@ -58,6 +59,8 @@ std::vector<std::pair<int, int>> shapes() {
   std::vector<std::pair<int, int>> all;
   for (int columns = 3; columns <= 45; columns += 3)
     for (int below : {0, 3, 6, 9, 12, 15, 18, 21, 24, 63}) all.emplace_back(columns, below);
+  for (int columns : {48, 51, 54, 57, 60, 93, 96, 99, 108})
+    for (int below : {0, 3, 6, 9, 30}) all.emplace_back(columns, below);
   return all;
 }
 
@@ -77,6 +80,34 @@ TEST(DenseFront, CholeskyLeavesTheSchurComplement) {
                                   factor(i, j)));
     EXPECT_LT(error, 1e-12) << columns << " " << below;
     EXPECT_LT(filled.error_of_update(), 1e-11) << columns << " " << below;
+  }
+}
+
+// Wide and high enough to be shared, with every remainder of a share's rows and columns.
+TEST(DenseFront, ThreadsLeaveTheNumbersOfOne) {
+  for (const auto& [columns, below] : {std::pair{240, 0}, {243, 60}, {96, 333}, {195, 249}, {150, 306}}) {
+    FilledFront one(columns, below, 5);
+    one.matrix.diagonal().array() += 1000;
+    ASSERT_TRUE(eliminate_positive_definite(one.front()));
+    for (const int threads : {2, 3}) {
+      ThreadTeam team(threads);
+      FilledFront several(columns, below, 5);
+      several.matrix.diagonal().array() += 1000;
+      ASSERT_TRUE(eliminate_positive_definite(several.front(), &team));
+      for (int j = 0; j < columns; ++j)
+        for (int i = j; i < columns + below; ++i) {
+          const auto at = static_cast<size_t>(j) * static_cast<size_t>(DenseFront::stride(columns + below)) +
+                          static_cast<size_t>(i);
+          ASSERT_EQ(several.panel[at], one.panel[at]) << columns << " " << below << ": " << i << " " << j;
+        }
+      for (int j = 0; j < below; ++j)
+        for (int i = j; i < below; ++i) {
+          const auto at = static_cast<size_t>(j) * static_cast<size_t>(DenseFront::stride(below)) +
+                          static_cast<size_t>(i);
+          ASSERT_EQ(several.update[at], one.update[at]) << columns << " " << below << ": " << i << " " << j;
+        }
+    }
+    EXPECT_LT(one.error_of_update(), 1e-10);
   }
 }
 
@@ -243,6 +274,35 @@ SparseMatrix matrix_of(const NodeGraph& graph, unsigned seed) {
   SparseMatrix matrix(3 * graph.size(), 3 * graph.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
+}
+
+TEST(Multifrontal, ThreadsLeaveTheBitsOfOne) {
+  const NodeGraph graph = sheet_graph(70, 14);
+  const SparseMatrix lower = matrix_of(graph, 15);
+  SparseMatrix indefinite = lower;
+  for (int k = 0; k < 3 * graph.size(); k += 50) indefinite.coeffRef(k, k) = -40;
+  const Vector b = Vector::LinSpaced(lower.cols(), -1, 2);
+  Vector expected;
+  Inertia signs;
+  for (const int threads : {1, 2, 3, 8}) {
+    const auto factor = make_multifrontal_factorisation();
+    factor->use_threads(std::make_shared<ThreadTeam>(threads));
+    factor->analyse(lower);
+    Vector x;
+    for (int again = 0; again < 5; ++again) {
+      ASSERT_TRUE(factor->factorise(lower));
+      factor->solve(b, x);
+      if (expected.size() == 0) expected = x;
+      EXPECT_EQ(x, expected) << threads << " threads";
+      EXPECT_FALSE(factor->factorise(indefinite));
+    }
+    const Inertia counted = factor->inertia(indefinite);
+    if (threads == 1) signs = counted;
+    EXPECT_EQ(counted.negative, signs.negative);
+    EXPECT_EQ(counted.positive, signs.positive);
+  }
+  EXPECT_LT((lower.selfadjointView<Eigen::Lower>() * expected - b).norm(), 1e-12 * b.norm());
+  EXPECT_GT(signs.negative, 100);
 }
 
 TEST(BorderedFactor, SolvesWithASkewPartOfItsBorder) {

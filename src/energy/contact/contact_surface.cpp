@@ -28,10 +28,10 @@ struct PartBounds {
   }
 };
 
-// Written out, as this is what a search spends its time on.
+// Written out and without branches, as this is what a search spends its time on.
 bool overlap(const Bounds& a, const Bounds& b) {
-  return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] && b.low[1] <= a.high[1] &&
-         a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
+  return (a.low[0] <= b.high[0]) & (b.low[0] <= a.high[0]) & (a.low[1] <= b.high[1]) &
+         (b.low[1] <= a.high[1]) & (a.low[2] <= b.high[2]) & (b.low[2] <= a.high[2]);
 }
 
 // Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
@@ -58,8 +58,9 @@ bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double sl
     } else if (high_rate < 0) {
       to = std::min(to, -high / high_rate);
     }
+    if (from > to * (1 + 1e-12)) return false;
   }
-  return from <= to * (1 + 1e-12);
+  return true;
 }
 
 template <class Bound>
@@ -109,7 +110,6 @@ double ContactSurface::area(const FeaturePair& pair) const {
 
 bool ContactSurface::is_excluded(const std::vector<int>& around_first,
                                  const std::vector<int>& around_second) const {
-  if (excluded_.empty()) return false;
   for (const int s : around_first)
     for (const int t : around_second)
       if (!std::binary_search(excluded_.begin(), excluded_.end(),
@@ -119,50 +119,87 @@ bool ContactSurface::is_excluded(const std::vector<int>& around_first,
 }
 
 // bound_of_node: Bound of one node.
+template <class Bound, class BoundOfNode>
+ContactSurface::FeatureBounds<Bound> ContactSurface::feature_bounds(const BoundOfNode& bound_of_node,
+                                                                    bool with_edges) const {
+  FeatureBounds<Bound> of;
+  of.nodes.resize(around_.size());
+  of.triangles.resize(static_cast<size_t>(triangles_.cols()));
+  for (size_t node = 0; node < around_.size(); ++node)
+    if (!around_[node].empty()) of.nodes[node] = bound_of_node(static_cast<int>(node));
+  for (int t = 0; t < triangles_.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      of.triangles[static_cast<size_t>(t)].include(of.nodes[static_cast<size_t>(triangles_(k, t))]);
+  hierarchy_.fit(of.triangles, of.tree);
+  of.edges.reserve(edges_.size());
+  if (with_edges)
+    for (const SurfaceEdge& edge : edges_)
+      of.edges.push_back(
+          joined(of.nodes[static_cast<size_t>(edge.a)], of.nodes[static_cast<size_t>(edge.b)]));
+  return of;
+}
+
+// The pairs that two triangles own. Without bounds of edges: vertices and triangles alone.
+template <class Bound, class IsNear, class AnyVisit>
+void ContactSurface::visit_features(int s, int t, const FeatureBounds<Bound>& of, const IsNear& is_near,
+                                    const AnyVisit& visit) const {
+  const auto visit_points = [&](int from, int to) {
+    const int a = triangles_(0, to), b = triangles_(1, to), c = triangles_(2, to);
+    for (const int p : own_vertices_[static_cast<size_t>(from)]) {
+      if (p == a || p == b || p == c ||
+          !is_near(of.nodes[static_cast<size_t>(p)], of.triangles[static_cast<size_t>(to)]))
+        continue;
+      if (!excluded_.empty() && is_excluded(around_[static_cast<size_t>(p)], {to})) continue;
+      visit(FeaturePair{PairKind::PointTriangle, {p, a, b, c}, p, to});
+    }
+  };
+  visit_points(s, t);
+  visit_points(t, s);
+  if (of.edges.empty()) return;
+  for (const int e : own_edges_[static_cast<size_t>(s)]) {
+    const SurfaceEdge& first = edges_[static_cast<size_t>(e)];
+    for (const int f : own_edges_[static_cast<size_t>(t)]) {
+      const SurfaceEdge& second = edges_[static_cast<size_t>(f)];
+      if (first.a == second.a || first.a == second.b || first.b == second.a || first.b == second.b) continue;
+      if (!is_near(of.edges[static_cast<size_t>(e)], of.edges[static_cast<size_t>(f)])) continue;
+      if (!excluded_.empty() && is_excluded(first.triangles, second.triangles)) continue;
+      visit(FeaturePair{PairKind::EdgeEdge, {first.a, first.b, second.a, second.b}, e, f});
+    }
+  }
+}
+
 template <class Bound, class BoundOfNode, class IsNear>
 void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit,
                                  const SearchOmissions& omitted) const {
-  std::vector<Bound> nodes(around_.size()), of_triangles(static_cast<size_t>(triangles_.cols())), of_tree;
-  for (size_t node = 0; node < around_.size(); ++node)
-    if (!around_[node].empty()) nodes[node] = bound_of_node(static_cast<int>(node));
-  const auto bound = [&](int node) -> const Bound& { return nodes[static_cast<size_t>(node)]; };
-  for (int t = 0; t < triangles_.cols(); ++t)
-    for (int k = 0; k < 3; ++k) of_triangles[static_cast<size_t>(t)].include(bound(triangles_(k, t)));
-  hierarchy_.fit(of_triangles, of_tree);
-  std::vector<Bound> of_edges;
-  of_edges.reserve(edges_.size());
-  if (!omitted.edges)
-    for (const SurfaceEdge& edge : edges_) of_edges.push_back(joined(bound(edge.a), bound(edge.b)));
-
-  const auto visit_points = [&](int s, int t) {
-    const int a = triangles_(0, t), b = triangles_(1, t), c = triangles_(2, t);
-    for (const int p : own_vertices_[static_cast<size_t>(s)]) {
-      if (p == a || p == b || p == c || !is_near(bound(p), of_triangles[static_cast<size_t>(t)])) continue;
-      if (is_excluded(around_[static_cast<size_t>(p)], {t})) continue;
-      visit({PairKind::PointTriangle, {p, a, b, c}, p, t});
-    }
-  };
-  hierarchy_.for_each_pair(of_triangles, of_tree, is_near, [&](int s, int t) {
-    if (omitted.skips && omitted.skips(s, t)) return;
-    visit_points(s, t);
-    visit_points(t, s);
-    if (omitted.edges) return;
-    for (const int e : own_edges_[static_cast<size_t>(s)]) {
-      const SurfaceEdge& first = edges_[static_cast<size_t>(e)];
-      for (const int f : own_edges_[static_cast<size_t>(t)]) {
-        const SurfaceEdge& second = edges_[static_cast<size_t>(f)];
-        if (first.a == second.a || first.a == second.b || first.b == second.a || first.b == second.b)
-          continue;
-        if (!is_near(of_edges[static_cast<size_t>(e)], of_edges[static_cast<size_t>(f)])) continue;
-        if (is_excluded(first.triangles, second.triangles)) continue;
-        visit({PairKind::EdgeEdge, {first.a, first.b, second.a, second.b}, e, f});
-      }
-    }
+  const auto of = feature_bounds<Bound>(bound_of_node, !omitted.edges);
+  hierarchy_.for_each_pair(of.triangles, of.tree, is_near, [&](int s, int t) {
+    if (!omitted.skips || !omitted.skips(s, t)) visit_features(s, t, of, is_near, visit);
   });
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
   visit_pairs<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, overlap, visit, {});
+}
+
+std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, ThreadTeam& team) const {
+  constexpr size_t kShare = 256;  // pairs of triangles that a thread takes at once
+  const auto of =
+      feature_bounds<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, true);
+  std::vector<std::array<int, 2>> near;
+  hierarchy_.for_each_pair(of.triangles, of.tree, overlap,
+                           [&near](int s, int t) { near.push_back({s, t}); });
+  const size_t shares = (near.size() + kShare - 1) / kShare;
+  std::vector<std::vector<FeaturePair>> found(shares);
+  team.run(static_cast<int>(shares), [&](int share, int) {
+    const size_t first = static_cast<size_t>(share) * kShare;
+    for (size_t k = first; k < std::min(first + kShare, near.size()); ++k)
+      visit_features(near[k][0], near[k][1], of, overlap, [&](const FeaturePair& pair) {
+        found[static_cast<size_t>(share)].push_back(pair);
+      });
+  });
+  std::vector<FeaturePair> all;
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  return all;
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,

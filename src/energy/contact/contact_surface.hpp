@@ -2,6 +2,7 @@
 // search for pairs of them.
 #pragma once
 
+#include "core/thread_team.hpp"
 #include "energy/contact/pair_barrier.hpp"
 #include "energy/moving_part.hpp"
 #include "mesh/distance/box_hierarchy.hpp"
@@ -44,7 +45,9 @@ class ContactSurface {
   using Visit = std::function<void(const FeaturePair&)>;
 
   // Pairs whose boxes come within `reach` of each other at x, each once, in an order that does not depend on
-  // x.
+  // x, nor on the number of threads that gather them.
+  std::vector<FeaturePair> near_pairs(const Points& x, double reach, ThreadTeam& team) const;
+
   void visit_near(const Points& x, double reach, const Visit& visit) const;
 
   // The same, but only pairs of which some node is in a triangle with one that moves.
@@ -62,6 +65,17 @@ class ContactSurface {
     std::vector<int> triangles;
   };
 
+  // Bounds of all features.
+  template <class Bound>
+  struct FeatureBounds {
+    std::vector<Bound> nodes, edges, triangles, tree;
+  };
+
+  template <class Bound, class BoundOfNode>
+  FeatureBounds<Bound> feature_bounds(const BoundOfNode& bound_of_node, bool with_edges) const;
+  template <class Bound, class IsNear, class AnyVisit>
+  void visit_features(int s, int t, const FeatureBounds<Bound>& of, const IsNear& is_near,
+                      const AnyVisit& visit) const;
   template <class Bound, class BoundOfNode, class IsNear>
   void visit_pairs(const BoundOfNode& bound_of_node, const IsNear& is_near, const Visit& visit,
                    const SearchOmissions& omitted) const;

@@ -2,6 +2,8 @@
 // panels that fit the registers of the processor.
 #pragma once
 
+#include "core/thread_team.hpp"
+
 #include <cstddef>
 #include <vector>
 
@@ -24,8 +26,8 @@ struct DenseFront {
 };
 
 // update = -L21 L21^T, with L11 L11^T = the panel's top and L21 = the panel's bottom L11^-T. False at a pivot
-// that is not positive.
-bool eliminate_positive_definite(const DenseFront& front);
+// that is not positive. team: shares the front; null: it is too small for it, or the caller does.
+bool eliminate_positive_definite(const DenseFront& front, ThreadTeam* team = nullptr);
 
 // The same by L D L^T without pivoting, of which only the signs of D remain: adds them to the counts; false
 // at a pivot that is zero or not finite.

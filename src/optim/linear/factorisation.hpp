@@ -1,6 +1,7 @@
 // A sparse direct factorisation behind one interface, so that solvers do not know whose it is.
 #pragma once
 
+#include "core/thread_team.hpp"
 #include "core/types.hpp"
 
 #include <Eigen/SparseCore>
@@ -28,6 +29,9 @@ class Factorisation {
  public:
   virtual ~Factorisation() = default;
   virtual std::string_view name() const = 0;  // "cholmod", "eigen", "multifrontal"
+
+  // Threads that may share the work, before analyse(); factor and solutions are the same whatever their number.
+  virtual void use_threads(const std::shared_ptr<ThreadTeam>& /*team*/) {}
 
   // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
   virtual void analyse(const SparseMatrix& lower) = 0;

@@ -3,9 +3,11 @@
 // Softw. 9 (1983); Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992).
 #pragma once
 
+#include "core/thread_team.hpp"
 #include "optim/linear/dense_front.hpp"
 #include "optim/linear/supernodes.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace coapt {
@@ -13,6 +15,10 @@ namespace coapt {
 class MultifrontalFactor {
  public:
   using Panel = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+  // Threads share subtrees of the elimination tree and the greatest fronts; no number depends on how many
+  // there are. Before analyse().
+  void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
 
   // Lays out the factor of matrices with this graph. border: as in supernodes_of().
   void analyse(const NodeGraph& graph, Supernodes nodes, int border = 0);
@@ -50,43 +56,70 @@ class MultifrontalFactor {
     int to;
   };
 
-  // A matrix of updates from when its front is done until its parent takes it. Fronts of even and of odd
-  // depth have a stack each, as those of the children lie on top of theirs while the parent's is laid on the
-  // other.
+  // Where a supernode's matrix of updates lies from when its front is done until its parent takes it. Fronts
+  // of even and of odd depth have a stack each, as those of the children lie on top of theirs while the
+  // parent's is laid on the other; each thread has its own two. What a subtree leaves has a place of its own.
+  enum class Home : unsigned char { EvenStack, OddStack, Kept };
   struct UpdatePlan {
-    std::vector<size_t> place;  // of each supernode in its stack
-    std::vector<int> parity;    // which stack
-    size_t size[2] = {0, 0};
+    std::vector<size_t> place;  // of each supernode, where it is at home
+    std::vector<Home> home;
+    size_t size[3] = {0, 0, 0};  // of each home
+  };
+
+  // What a thread works with.
+  struct Workspace {
+    std::vector<double> stack[2], scaled, column;
   };
 
   enum class Part { Columns, Below };  // of a front
 
-  static UpdatePlan plan_updates(const Supernodes& nodes);
+  void part_tree();
+  void plan_updates();
+  void plan_update(int s, size_t (&top)[2]);
+  template <class Eliminate>
+  bool for_each_front(const Eliminate& eliminate);
+  template <class Visit>
+  void in_subtrees(const Visit& visit);
+  bool is_shared() const { return team_->size() > 1 && work_ > kWorthThreads; }
   int height(int s) const { return 3 * (nodes_.columns(s) + nodes_.rows_below(s)); }
   int stride(int s) const { return DenseFront::stride(height(s)); }
   Panel panel(int s) const {
     return {values_.data() + panel_[s], height(s), 3 * nodes_.columns(s), Eigen::OuterStride<>(stride(s))};
   }
-  double* update_of(int s) { return stack_[plan_.parity[s]].data() + plan_.place[s]; }
-  DenseFront front_of(int s) {
-    return {3 * nodes_.columns(s), 3 * nodes_.rows_below(s), values_.data() + panel_[s], update_of(s)};
+  double* update_of(int s, Workspace& own) {
+    const Home home = plan_.home[s];
+    return (home == Home::Kept ? kept_.data() : own.stack[home == Home::OddStack ? 1 : 0].data()) +
+           plan_.place[s];
+  }
+  DenseFront front_of(int s, double* update) {
+    return {3 * nodes_.columns(s), 3 * nodes_.rows_below(s), values_.data() + panel_[s], update};
   }
   void place_blocks(const NodeGraph& graph);
-  DenseFront assembled_front(int s, const double* source);
-  void add_updates(int s, const DenseFront& front, Part part);
-  void add_columns(int child, int first, int last, int begin, double* target, int stride);
+  DenseFront assembled_front(int s, const double* source, Workspace& own);
+  void add_updates(int s, const DenseFront& front, Part part, Workspace& own);
+  void add_columns(const double* update, int child, int first, int last, int begin, double* target,
+                   int stride);
+  void solve_front_forward(int s, Vector& x, std::vector<double>& column);
+  void solve_front_backward(int s, Vector& x, std::vector<double>& column);
   bool measure_pivots();
+
+  static constexpr double kWorthThreads = 2e6;  // multiplications of a factor, some 0.5 ms of one thread
 
   Supernodes nodes_;
   int eliminated_ = 0;         // supernodes, all but the border
   std::vector<size_t> panel_;  // where each supernode's columns begin in the values
   std::vector<double> values_;
+  double work_ = 0;                           // multiplications of a factor
+  std::vector<std::pair<int, int>> subtrees_;  // first and last supernode of those that threads share
+  std::vector<int> top_;                      // the supernodes above them, ascending
   UpdatePlan plan_;
-  std::vector<double> stack_[2], scaled_;
+  std::vector<double> kept_;           // what subtrees leave
+  std::vector<Workspace> workspaces_;  // of each thread
   std::vector<BlockMove> moves_;
   std::vector<int> first_move_;  // of each supernode
-  std::vector<double> column_;   // of a front, in a solve
+  std::vector<double> passed_;   // from each front to its parent's, in a forward solve
   double pivot_ratio_ = 1;
+  std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
 };
 
 }  // namespace coapt

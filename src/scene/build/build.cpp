@@ -97,6 +97,10 @@ Model build(const Scene& scene, const SceneGeometry& geometry) {
   return build(scene, geometry, GivenTerms());
 }
 
+int thread_count(const SolverSpec& solver) {
+  return solver.threads > 0 ? solver.threads : available_processors();
+}
+
 Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms& given) {
   Model model = model_of(geometry);
   const Prescribed& prescribed = geometry.prescribed;
@@ -109,7 +113,7 @@ Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms&
   model.wants_first_piola = scene.wants_first_piola;
   model.motion = motion_path(prescribed, model.X, scene.motion_steps);
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
-  model.objective->use_threads(scene.solver.threads);
+  model.objective->use_threads(thread_count(scene.solver));
   model.q0 = model.objective->unknowns(model.X);
   return model;
 }

@@ -8,6 +8,9 @@ namespace coapt {
 
 struct SceneGeometry;
 
+// Threads that a solve of the scene may use, at least 1.
+int thread_count(const SolverSpec& solver);
+
 // Reads the scene's files, checks the mesh, numbers the nodes, and builds motion, terms and objective.
 // What is doubtful but usable is said in Model::warnings: slack rest data, isolated vertices (prescribed, so
 // that they carry no unknowns), parts that nothing keeps from shifting.

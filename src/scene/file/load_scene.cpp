@@ -258,7 +258,7 @@ SolverSpec solver_from(const Parameters& values) {
   }
   if (values.has("dynamics")) solver.dynamic = dynamics_from(values.object("dynamics"));
   XpbdOptions xpbd = values.has("xpbd") ? xpbd_from(values.object("xpbd")) : XpbdOptions{};
-  xpbd.threads = solver.threads;
+  xpbd.threads = std::max(1, solver.threads);
   solver.xpbd = std::make_shared<const XpbdOptions>(xpbd);
   solver.cascade = values.flag("cascade");
   if (values.has("certificate")) solver.modes = values.object("certificate").integer("modes");

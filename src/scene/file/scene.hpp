@@ -85,7 +85,7 @@ struct SolverSpec : MethodOptions, StopRule {
   bool cascade = false;                // coarser meshes first
   std::string factorisation = "auto";  // name in the table of the build
   Continuation continuation;
-  int threads = 1;           // that assemble the Hessian
+  int threads = 0;           // that share the work; 0: as many as there are processors
   double density = 1.06e-9;  // of membrane and lines, for methods that move masses [t/mm3]
   int modes = 0;             // smallest eigenvalues in the certificate
 };

@@ -265,12 +265,12 @@ std::vector<KeySpec> option_keys() {
           continuation_key(),
           {.name = "threads",
            .kind = KeyKind::Integer,
-           .fallback = "1",
-           .min = 1,
+           .fallback = "0",
+           .min = 0,
            .max = 256,
-           .doc = "Threads that assemble the Hessian or sweep the constraints of xpbd; the "
-                  "result does "
-                  "not depend on them."},
+           .doc = "Threads that share assembly, contact search and factorisation, or the constraints of xpbd, "
+                  "wherever there is enough to share; the result does not depend on them. 0: as many as the "
+                  "process may use processors (xpbd: 1)."},
           {.name = "density",
            .dimension = kDensity,
            .fallback = "\"1060 kg/m^3\"",

@@ -1,0 +1,106 @@
+#include "core/thread_team.hpp"
+
+#include <algorithm>
+
+#ifdef __linux__
+#include <sched.h>
+#endif
+#ifndef _WIN32
+#include <unistd.h>
+#endif
+
+namespace coapt {
+
+int available_processors() {
+#ifdef __linux__
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return std::max(1, CPU_COUNT(&set));
+#endif
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// After fork() the others are not there.
+bool ThreadTeam::is_copy() const {
+#ifndef _WIN32
+  return !others_.empty() && process_ != getpid();
+#else
+  return false;
+#endif
+}
+
+ThreadTeam::~ThreadTeam() {
+  if (is_copy()) {
+    for (std::jthread& thread : others_) thread.detach();
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    closes_ = true;
+  }
+  begins_.notify_all();
+  others_.clear();  // joins them while what they wait for is still there
+}
+
+void ThreadTeam::start() {
+#ifndef _WIN32
+  process_ = getpid();
+#endif
+  try {
+    for (int thread = 1; thread < size_; ++thread)
+      others_.emplace_back([this, thread] { serve(thread); });
+  } catch (const std::system_error&) {
+    // No more threads to be had: those there are do the work.
+  }
+}
+
+void ThreadTeam::run(int count, const Work& work) {
+  if (size_ == 1 || count <= 1) {
+    for (int part = 0; part < count; ++part) work(part, 0);
+    return;
+  }
+  if (is_copy()) {
+    for (std::jthread& thread : others_) thread.detach();
+    others_.clear();
+  }
+  if (others_.empty()) start();
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = &work;
+    count_ = count;
+    next_ = 0;
+  }
+  begins_.notify_all();
+  take_parts(work, count, 0);
+  std::unique_lock lock(mutex_);
+  work_ = nullptr;
+  ends_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void ThreadTeam::take_parts(const Work& work, int count, int thread) {
+  while (true) {
+    int part = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      part = next_++;
+    }
+    if (part >= count) return;
+    work(part, thread);
+  }
+}
+
+void ThreadTeam::serve(int thread) {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    begins_.wait(lock, [this] { return closes_ || (work_ != nullptr && next_ < count_); });
+    if (closes_) return;
+    ++busy_;
+    const Work& work = *work_;
+    const int count = count_;
+    lock.unlock();
+    take_parts(work, count, thread);
+    lock.lock();
+    if (--busy_ == 0) ends_.notify_one();
+  }
+}
+
+}  // namespace coapt
