@@ -8,6 +8,7 @@
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -67,42 +68,40 @@ struct Candidates {
   // Energy at x; counts the pairs that are within range.
   double evaluate(const Points& x, double pressure, Sink& sink, long& active) const {
     const bool wants_gradient = sink.wants_gradient(), wants_hessian = sink.wants_hessian();
-    active = 0;
-    return pour_elements<Evaluated>(
-        rest.size(), sink,
+    std::atomic<long> within = 0;
+    const double energy = pour_elements<Evaluated>(
+        stencils, sink,
         [&](size_t k, Evaluated& out) {
           const PairCorners corners = gather(x, &stencils.nodes[4 * k]);
           out.is_active = false;
-          if (are_apart(rest[k].kind, corners, rest[k].range)) return;
+          if (are_apart(rest[k].kind, corners, rest[k].range)) return 0.0;
           const ClosestPair closest = closest_points(rest[k].kind, corners);
-          if (closest.distance >= rest[k].range) return;
+          if (closest.distance >= rest[k].range) return 0.0;
           out.is_active = true;
-          out.energy =
+          const double own =
               pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(),
                                           wants_gradient ? &out.g : nullptr, wants_hessian ? &out.h : nullptr);
           if (wants_gradient) out.g *= pressure;
           if (wants_hessian) out.h *= pressure;
+          return own;
         },
         [&](size_t k, const Evaluated& in, Sink& to) {
-          if (!in.is_active) return 0.0;
-          ++active;
-          for (int a = 0; wants_gradient && a < 4; ++a)
-            to.add_gradient(stencils.nodes[4 * k + static_cast<size_t>(a)], in.g.segment<3>(3 * a));
-          return in.energy;
-        },
-        [&](size_t k, const Evaluated& in, Sink& to) {
-          if (!in.is_active || !wants_hessian) return;
-          for (int a = 0; a < 4; ++a)
+          if (!in.is_active) return;
+          const int* nodes = &stencils.nodes[4 * k];
+          if (to.has_node(nodes[0])) within.fetch_add(1, std::memory_order_relaxed);
+          for (int a = 0; wants_gradient && a < 4; ++a) to.add_gradient(nodes[a], in.g.segment<3>(3 * a));
+          for (int a = 0; wants_hessian && a < 4; ++a)
             for (int b = 0; b < 4; ++b)
               to.add_block(16 * static_cast<long>(k), 4, a, b, in.h.block<3, 3>(3 * a, 3 * b));
         });
+    active = within;
+    return energy;
   }
 
  private:
-  // Everything of a pair, between its evaluation and its scatter.
+  // Derivatives of a pair, between its evaluation and its scatter.
   struct Evaluated {
     bool is_active;
-    double energy;
     PairVector g;
     PairMatrix h;
   };

@@ -311,21 +311,21 @@ class ElementTerm final : public EnergyTerm, public TermAccess {
     }
   }
 
-  // Everything of one element, between its evaluation and its scatter.
+  // Derivatives of one element, between its evaluation and its scatter.
   struct Evaluated {
-    double energy;
     ElementVector g;
     ElementMatrix h;
   };
 
-  void evaluate_element(const Points& x, size_t e, Projection projection, Evaluated& out) const {
+  double evaluate_element(const Points& x, size_t e, Projection projection, Evaluated& out) const {
     const ElementVector local = gather(x, stencils_.nodes.data() + e * K::kNodes);
-    out.energy = projection == Projection::PositiveSemidefinite
-                     ? evaluate_projected(rest_[e], local, out.g, out.h)
-                     : K::evaluate(rest_[e], local, &out.g, &out.h);
+    return projection == Projection::PositiveSemidefinite
+               ? evaluate_projected(rest_[e], local, out.g, out.h)
+               : K::evaluate(rest_[e], local, &out.g, &out.h);
   }
 
-  void scatter_blocks(size_t e, const Evaluated& in, Sink& sink) const {
+  void scatter_element(size_t e, const Evaluated& in, Sink& sink) const {
+    scatter(in.g, stencils_.nodes.data() + e * K::kNodes, sink);
     const long offset = static_cast<long>(e) * K::kNodes * K::kNodes;
     for (int a = 0; a < K::kNodes; ++a)
       for (int b = 0; b < K::kNodes; ++b)
@@ -334,13 +334,9 @@ class ElementTerm final : public EnergyTerm, public TermAccess {
 
   double evaluate_with_hessian(const Points& x, Sink& sink) const {
     return pour_elements<Evaluated>(
-        rest_.size(), sink,
-        [&](size_t e, Evaluated& out) { evaluate_element(x, e, sink.projection(), out); },
-        [&](size_t e, const Evaluated& in, Sink& to) {
-          scatter(in.g, stencils_.nodes.data() + e * K::kNodes, to);
-          return in.energy;
-        },
-        [&](size_t e, const Evaluated& in, Sink& to) { scatter_blocks(e, in, to); });
+        stencils_, sink,
+        [&](size_t e, Evaluated& out) { return evaluate_element(x, e, sink.projection(), out); },
+        [&](size_t e, const Evaluated& in, Sink& to) { scatter_element(e, in, to); });
   }
 
   Stencils stencils_;

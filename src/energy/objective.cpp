@@ -117,6 +117,8 @@ void Objective::release_stress_limits() {
 
 void Objective::use_threads(int count) {
   team_ = std::make_shared<ThreadTeam>(count);
+  pattern_is_current_ = false;
+  sink_parts_.clear();  // come with the pattern
   for (const auto& term : terms_) term->use_threads(team_);
 }
 
@@ -181,6 +183,27 @@ void Objective::update_pattern() {
   pattern_ = HessianPattern(terms_, block_, static_cast<int>(active_.size()), fixed_);
   pattern_is_current_ = true;
   ++pattern_version_;
+  part_sink();
+}
+
+// One part for each thread, with alike numbers of values.
+void Objective::part_sink() {
+  const int* outer = pattern_.zero_matrix().outerIndexPtr();
+  const auto values = static_cast<double>(pattern_.zero_matrix().nonZeros());
+  sink_parts_.assign(static_cast<size_t>(team_->size()), {});
+  unsigned first_node = 0, first_value = 0;
+  for (int k = 0; k < team_->size(); ++k) {
+    size_t block = active_.size();
+    if (k + 1 < team_->size())
+      for (block = 0; block < active_.size() && outer[3 * block] < values * (k + 1) / team_->size();) ++block;
+    const bool is_last = block == active_.size();
+    const auto end_node = static_cast<unsigned>(is_last ? node_count() : active_[block]);
+    const auto end_value = static_cast<unsigned>(outer[3 * block]);
+    sink_parts_[static_cast<size_t>(k)] = {first_node, end_node - first_node, first_value,
+                                           end_value - first_value};
+    first_node = end_node;
+    first_value = end_value;
+  }
 }
 
 // The free part of a nodal gradient becomes the unknowns' gradient; the rest is the reactions.
@@ -227,7 +250,7 @@ double Objective::evaluate(const Vector& q, Vector* g, Eigen::SparseMatrix<doubl
   for (size_t k = 0; k < terms_.size(); ++k) {
     if (terms_[k]->role() != TermRole::Load) read_off_loads();
     Sink sink = h != nullptr ? Sink(gradient, h->valuePtr(), pattern_.slots(k), projection) : Sink(gradient);
-    if (h != nullptr) sink.share(team_.get(), h->nonZeros());
+    if (!sink_parts_.empty()) sink.share(team_.get(), &sink_parts_);
     energy += pour(*terms_[k], sink);
   }
   read_off_loads();

@@ -206,6 +206,7 @@ class Objective {
   double add_dampers(const Vector& q, Vector* g, Eigen::SparseMatrix<double>* h) const;
   const ForceScale& scale_at(const Vector& q);
   void measure_reference();
+  void part_sink();
 
   Points x_;  // work space: prescribed coordinates stay, free ones follow q
   FixedMask fixed_;
@@ -216,6 +217,7 @@ class Objective {
   double load_factor_ = 1, stiffness_factor_ = 1;
   Vector damping_, damped_from_;  // of each unknown; empty: no dampers
   std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
+  std::vector<SinkPart> sink_parts_;  // of each thread
   bool has_stress_limits_ = false;
 
   enum class Circulatory { None, Lagged, PathWork };

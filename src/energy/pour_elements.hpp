@@ -2,44 +2,60 @@
 #pragma once
 
 #include "energy/sink.hpp"
+#include "energy/term.hpp"
 
 #include <algorithm>
 #include <vector>
 
 namespace coapt {
 
-// evaluate(e, out): everything of element e; scatter(e, out, sink): its gradient, returns its energy;
-// scatter_blocks(e, out, sink): its Hessian. Threads evaluate a batch of elements, and then each scatters all
-// of it into its own part of the Hessian: every sum runs in the order of the elements, the same bits whatever
-// their number.
-template <class Evaluated, class Evaluate, class Scatter, class ScatterBlocks>
-double pour_elements(size_t count, Sink& sink, const Evaluate& evaluate, const Scatter& scatter,
-                     const ScatterBlocks& scatter_blocks) {
-  constexpr size_t kBatch = 4096;  // elements: worth waking a thread for, and few enough for the cache
-  constexpr size_t kWorthThreads = 512, kShare = 128;
+// Whether the parts of a sink have few elements in common, which all of them evaluate: so it is where nodes are
+// numbered as they lie. Looks at some of the elements.
+inline bool parts_are_apart(const Stencils& stencils, const std::vector<Sink>& parts) {
+  constexpr size_t kLooks = 256;
+  constexpr double kMostShared = 0.3;  // of the elements seen
+  const size_t count = static_cast<size_t>(stencils.count()), step = std::max<size_t>(1, count / kLooks);
+  size_t seen = 0, touched = 0;
+  for (size_t e = 0; e < count; e += step, ++seen)
+    for (const Sink& part : parts) {
+      const int* nodes = &stencils.nodes[e * static_cast<size_t>(stencils.width)];
+      touched += std::any_of(nodes, nodes + stencils.width, [&](int node) { return part.has_node(node); });
+    }
+  return static_cast<double>(touched) <= (1 + kMostShared) * static_cast<double>(seen);
+}
+
+// evaluate(e, out): everything of element e, returns its energy; scatter(e, out, sink): its gradient and
+// Hessian. Each thread pours one part of the sink, so that every sum runs in the order of the elements: the
+// same bits whatever their number.
+template <class Evaluated, class Evaluate, class Scatter>
+double pour_elements(const Stencils& stencils, Sink& sink, const Evaluate& evaluate, const Scatter& scatter) {
+  constexpr size_t kWorthThreads = 1000;  // elements
+  const auto count = static_cast<size_t>(stencils.count());
   double energy = 0;
-  if (!sink.is_shared() || count < kWorthThreads) {
-    Evaluated element;
+  std::vector<Sink> parts;
+  for (int k = 0; sink.is_shared() && count >= kWorthThreads && k < sink.team().size(); ++k)
+    parts.push_back(sink.part(k));
+  if (parts.empty() || !parts_are_apart(stencils, parts)) {
+    Evaluated out;
     for (size_t e = 0; e < count; ++e) {
-      evaluate(e, element);
-      energy += scatter(e, element, sink);
-      scatter_blocks(e, element, sink);
+      energy += evaluate(e, out);
+      scatter(e, out, sink);
     }
     return energy;
   }
-  const int threads = sink.team().size();
-  std::vector<Evaluated> batch(std::min(kBatch, count));
-  for (size_t first = 0; first < count; first += kBatch) {
-    const size_t size = std::min(kBatch, count - first);
-    sink.team().run_ranges(size, kShare, [&](size_t from, size_t to) {
-      for (size_t k = from; k < to; ++k) evaluate(first + k, batch[k]);
-    });
-    sink.team().run(threads, [&](int part, int) {
-      Sink own = sink.part(part, threads);
-      for (size_t k = 0; k < size; ++k) scatter_blocks(first + k, batch[k], own);
-      for (size_t k = 0; part == 0 && k < size; ++k) energy += scatter(first + k, batch[k], own);
-    });
-  }
+  std::vector<double> energies(count);
+  sink.team().run(static_cast<int>(parts.size()), [&](int k, int) {
+    Sink& part = parts[static_cast<size_t>(k)];
+    Evaluated out;
+    for (size_t e = 0; e < count; ++e) {
+      const int* nodes = &stencils.nodes[e * static_cast<size_t>(stencils.width)];
+      if (std::none_of(nodes, nodes + stencils.width, [&](int node) { return part.has_node(node); })) continue;
+      const double own = evaluate(e, out);
+      if (part.has_node(nodes[0])) energies[e] = own;
+      scatter(e, out, part);
+    }
+  });
+  for (const double own : energies) energy += own;
   return energy;
 }
 

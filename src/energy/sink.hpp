@@ -4,6 +4,8 @@
 #include "core/thread_team.hpp"
 #include "core/types.hpp"
 
+#include <vector>
+
 namespace coapt {
 
 // How element Hessians enter the assembled one.
@@ -19,6 +21,13 @@ struct BlockSlot {
   int stride = 0;
 };
 
+// What one of several threads pours: into these nodes of the gradient, and these values of the Hessian, which are
+// the columns of the same nodes.
+struct SinkPart {
+  unsigned first_node = 0, nodes = 0xFFFFFFFF;
+  unsigned first_value = 0, values = 0xFFFFFFFF;
+};
+
 class Sink {
  public:
   // Energy alone.
@@ -31,14 +40,20 @@ class Sink {
   Sink(double* gradient, double* hessian, const BlockSlot* slots, Projection projection)
       : gradient_(gradient), hessian_(hessian), slots_(slots), projection_(projection) {}
 
-  // Threads that may evaluate elements and scatter them; what is poured, and in which order, does not depend on
-  // them. value_count: of the Hessian.
-  void share(ThreadTeam* team, long value_count) {
+  // Threads that may each pour one part, all elements that touch it in their order: the sums are those of one
+  // thread. parts: as many as there are threads; they must outlive the sink.
+  void share(ThreadTeam* team, const std::vector<SinkPart>* parts) {
     team_ = team;
-    value_count_ = value_count;
+    parts_ = parts;
   }
   bool is_shared() const { return team_ != nullptr && team_->size() > 1; }
   ThreadTeam& team() const { return *team_; }
+  Sink part(int k) const {
+    Sink sink = *this;
+    sink.part_ = (*parts_)[static_cast<size_t>(k)];
+    return sink;
+  }
+  bool has_node(int node) const { return static_cast<unsigned>(node) - part_.first_node < part_.nodes; }
 
   bool wants_gradient() const { return gradient_ != nullptr; }
   bool wants_hessian() const { return hessian_ != nullptr; }
@@ -49,26 +64,18 @@ class Sink {
   void set_factor(double factor) { factor_ = factor; }
 
   void add_gradient(int node, const Vec3& g) {
+    if (!has_node(node)) return;
     double* to = gradient_ + 3 * static_cast<long>(node);
     to[0] += factor_ * g[0];
     to[1] += factor_ * g[1];
     to[2] += factor_ * g[2];
   }
 
-  // Of this sink the k-th of `count` parts of the Hessian's values: threads that each pour all blocks into one
-  // part add up what this one would.
-  Sink part(int k, int count) const {
-    Sink part = *this;
-    part.first_value_ = static_cast<unsigned>(value_count_ * k / count);
-    part.values_ = static_cast<unsigned>(value_count_ * (k + 1) / count) - part.first_value_;
-    return part;
-  }
-
   // Adds the block of one element's local nodes (a, b); element_offset = element * width * width.
   template <typename Block>
   void add_block(long element_offset, int width, int a, int b, const Block& block) {
     const BlockSlot slot = slots_[element_offset + a * width + b];
-    if (static_cast<unsigned>(slot.base) - first_value_ >= values_) return;
+    if (static_cast<unsigned>(slot.base) - part_.first_value >= part_.values) return;  // or above the diagonal
     double* to = hessian_ + slot.base;
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) to[c * slot.stride + r] += factor_ * block(r, c);
@@ -80,8 +87,8 @@ class Sink {
   const BlockSlot* slots_ = nullptr;
   Projection projection_ = Projection::None;
   ThreadTeam* team_ = nullptr;
-  long value_count_ = 0;
-  unsigned first_value_ = 0, values_ = 0xFFFFFFFF;  // blocks that begin here; one that is not stored never does
+  const std::vector<SinkPart>* parts_ = nullptr;
+  SinkPart part_;
   double factor_ = 1;
 };
 
