@@ -13,6 +13,9 @@ namespace coapt {
 
 class BorderedFactor {
  public:
+  // As MultifrontalFactor::use_threads().
+  void use_threads(std::shared_ptr<ThreadTeam> team) { factor_.use_threads(std::move(team)); }
+
   // lower: the pattern of K, as Factorisation has it. border: the nodes that W couples.
   void analyse(const SparseMatrix& lower, const std::vector<int>& border);
 

@@ -31,7 +31,8 @@ class Factorisation {
   virtual std::string_view name() const = 0;  // "cholmod", "eigen", "multifrontal"
 
   // Threads that may share the work, before analyse(); factor and solutions are the same whatever their number.
-  virtual void use_threads(const std::shared_ptr<ThreadTeam>& /*team*/) {}
+  void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
+  const std::shared_ptr<ThreadTeam>& team() const { return team_; }
 
   // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
   virtual void analyse(const SparseMatrix& lower) = 0;
@@ -51,6 +52,9 @@ class Factorisation {
   // Inertia by L D L^T without pivoting for size; discards the Cholesky factor. Works for an indefinite
   // matrix unless a leading minor vanishes, which a small shift of the diagonal avoids.
   virtual Inertia inertia(const SparseMatrix& lower) = 0;
+
+ private:
+  std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
 };
 
 using FactorisationFactory = std::function<std::unique_ptr<Factorisation>()>;

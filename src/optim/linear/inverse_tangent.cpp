@@ -65,13 +65,14 @@ SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, c
 }  // namespace
 
 InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                               double shift)
+                               double shift, const std::shared_ptr<ThreadTeam>& team)
     : size_(lower.cols()) {
   const std::vector<int> border = coupled_nodes(skew, start);
   if (border.size() <= kMostBorder) {
     SparseMatrix shifted = lower;
     shifted.diagonal().array() += shift;
     bordered_.emplace();
+    bordered_->use_threads(team);
     bordered_->analyse(shifted, border);
     is_made_ = bordered_->factorise(shifted, part_of(skew, border, size_));
     return;

@@ -17,8 +17,9 @@ class InverseTangent {
 
   // Of K + W + shift, where K + shift is positive definite. lower: K as Factorisation wants it. start: with
   // no zero where W couples. Where W couples few nodes they are eliminated last, which takes a tenth of the
-  // time of a sparse L U.
-  InverseTangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start, double shift);
+  // time of a sparse L U. team: may share that work.
+  InverseTangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start, double shift,
+                 const std::shared_ptr<ThreadTeam>& team);
 
   bool is_made() const { return is_made_; }
   Eigen::Index rows() const { return size_; }

@@ -115,7 +115,7 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   const double reach =
       std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factor));
   if (!std::isfinite(reach)) return found;
-  InverseTangent inverse(lower, skew, start, shift);
+  InverseTangent inverse(lower, skew, start, shift, factor.team());
   if (!inverse.is_made()) return found;
 
   const auto free = static_cast<int>((start.array() != 0).count());

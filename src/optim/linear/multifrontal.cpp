@@ -18,10 +18,9 @@ class Multifrontal final : public Factorisation {
  public:
   std::string_view name() const override { return "multifrontal"; }
 
-  void use_threads(const std::shared_ptr<ThreadTeam>& team) override { factor_.use_threads(team); }
-
   void analyse(const SparseMatrix& lower) override {
     const NodeGraph graph = node_graph(lower);
+    factor_.use_threads(team());
     factor_.analyse(graph, ordered(graph));
   }
 
