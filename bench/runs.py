@@ -16,10 +16,17 @@ def parsed_arguments(description: str, **more: float) -> argparse.Namespace:
     return parser.parse_args()
 
 
-def solved(coapt: str, scene: pathlib.Path, *arguments: str) -> dict:
+def knows_threads(coapt: str) -> bool:
+    """Builds before `--threads` solve in one."""
+    said = subprocess.run([coapt, "solve", "--help"], stdout=subprocess.PIPE, text=True, check=False).stdout
+    return "--threads" in said
+
+
+def solved(coapt: str, scene: pathlib.Path, *arguments: str, threads: int = 1) -> dict:
     out = scene.parent / "out"
     (out / "result.json").unlink(missing_ok=True)  # never that of another scene
-    run = subprocess.run([coapt, "solve", str(scene), "-o", str(out), *arguments], stdout=subprocess.DEVNULL,
+    asked = ["--threads", str(threads)] if knows_threads(coapt) else []
+    run = subprocess.run([coapt, "solve", str(scene), "-o", str(out), *asked, *arguments], stdout=subprocess.DEVNULL,
                          stderr=subprocess.PIPE, text=True, check=False)
     if not (out / "result.json").exists():
         raise SystemExit(f"{scene}: {run.stderr}")

@@ -7,8 +7,9 @@ Cases: the generated mitral valve with and without contact, by the method that a
 airbag. Valves are solved for the seeds 0 to N - 1 of their dimensions (default 3), each by both builds in turn, and every
 number is the median over the seeds. CPU s: of the solve with its certificate, to a residual of 1e-8, and of one thread. floor: iterations
 times one factorisation and one assembly of the Hessian, both timed in the same run, with those of coarser meshes. shares: of the
-time of the processor (`time.cpu_by_phase` of result.json), in percent. ratio: the time over that of OTHER, which may be the
-program of the last release.
+time of the processor (`time.cpu_by_phase` of result.json), in percent. 2 threads: time by the clock with two over that with one,
+which means something only on a machine that does nothing else. ratio: the time over that of OTHER, which may be the program
+of the last release.
 """
 import argparse
 import pathlib
@@ -52,23 +53,26 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--largest", type=int, default=40000)
     options = parser.parse_args()
-    print_header("case", "triangles", "seeds", "converged", "iterations", "factorisations", "CPU s", "floor s", *PHASES, "ratio")
+    print_header("case", "triangles", "seeds", "converged", "iterations", "factorisations", "CPU s", "floor s", *PHASES, "2 threads", "ratio")
     for shape, contact, triangles in [case for case in CASES if case[2] <= options.largest]:
         seeds = options.seeds if shape == "mitral" else 1
         ours, theirs, converged = [], [], 0
         for seed in range(seeds):
             with tempfile.TemporaryDirectory() as folder:
                 scene = generated(options.coapt, shape, contact, triangles, seed, pathlib.Path(folder))
-                for coapt, rows in [(options.coapt, ours)] + ([(options.against, theirs)] if options.against else []):
-                    result = solved(coapt, scene, "--tolerance", "1e-8", "--max-seconds", "900", "--no-report")
-                    rows.append(figures(result))
-                    converged += coapt == options.coapt and result["converged"]
+                asked = ("--tolerance", "1e-8", "--max-seconds", "900", "--no-report")
+                one = solved(options.coapt, scene, *asked)
+                two = solved(options.coapt, scene, *asked, threads=2)
+                ours.append(figures(one) | {"two": two["time"]["wall_s"] / one["time"]["wall_s"]})
+                converged += one["converged"]
+                if options.against:
+                    theirs.append(figures(solved(options.against, scene, *asked)))
         row = medians(ours)
         name = shape + (", contact" if contact == "barrier" else "")
         shares = " | ".join(f"{row[phase]:.0f}" for phase in PHASES)
         ratio = f"{row['cpu'] / medians(theirs)['cpu']:.2f}" if theirs else ""
         print(f"| {name} | {triangles} | {seeds} | {converged} | {row['iterations']:.0f} | {row['factorisations']:.0f} | "
-              f"{row['cpu']:.3f} | {row['floor']:.3f} | {shares} | {ratio} |", flush=True)
+              f"{row['cpu']:.3f} | {row['floor']:.3f} | {shares} | {row['two']:.2f} | {ratio} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ struct SolveArguments {
   std::string scene, folder, solver, accuracy;
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
-  std::optional<int> damped_steps;
+  std::optional<int> damped_steps, threads;
   bool has_no_report = false, has_sliders = false;
   BranchSearch branches = {.starts = 0};
   SolveCheckpointArguments checkpoint;
@@ -225,7 +225,8 @@ Report completed(std::vector<std::string>& unwritten, const std::function<Report
 
 // Returns the exit code.
 int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session& session) {
-  const Scene scene = load_scene(arguments.scene);
+  Scene scene = load_scene(arguments.scene);
+  scene.solver.threads = arguments.threads.value_or(scene.solver.threads);
   const OutputFolder output(arguments.folder.empty() ? result_folder(scene)
                                                      : std::filesystem::path(arguments.folder));
   std::vector<std::string> unwritten;
@@ -293,6 +294,11 @@ void add_solve_command(CLI::App& app, Session& session) {
                                         "Write every N-th iterate as a frame of an animation (frames.pvd)")
                            ->check(CLI::Range(1, 1000000000));
   add_path_option(*command, arguments->damped_steps);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Threads that share the work, which change nothing but its time; 0: as many as there are "
+                   "processors (default: the scene's)")
+      ->check(CLI::Range(0, 256));
   add_branch_options(*command, arguments->branches);
   add_solve_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
