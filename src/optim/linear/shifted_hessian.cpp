@@ -46,10 +46,21 @@ bool ShiftedHessian::factorise(Objective& objective, Monitor& monitor, const Vec
     if (!std::isfinite(mean)) return false;
     shift_ = 0;
     least_shift_ = kLeastShift * std::abs(mean) / (weights_ ? weights_->mean() : 1);
-    if (is_exact_) exact_ = Eigen::Map<const Vector>(h_.valuePtr(), h_.nonZeros());
+    keep_diagonal();
     if (factorise_shifted(monitor, shift)) return true;
+    if (is_exact_) keep_exact();
   }
   return raise(monitor, shift);
+}
+
+void ShiftedHessian::keep_diagonal() {
+  unshifted_.resize(static_cast<Eigen::Index>(diagonal_.size()));
+  for (size_t i = 0; i < diagonal_.size(); ++i) unshifted_[static_cast<int>(i)] = h_.valuePtr()[diagonal_[i]];
+}
+
+void ShiftedHessian::keep_exact() {
+  exact_ = Eigen::Map<const Vector>(h_.valuePtr(), h_.nonZeros());
+  for (size_t i = 0; i < diagonal_.size(); ++i) exact_[diagonal_[i]] = unshifted_[static_cast<int>(i)];
 }
 
 void ShiftedHessian::add_exact_product(const Vector& v, Vector& product) const {

@@ -39,11 +39,14 @@ class ShiftedHessian {
  private:
   void analyse(Monitor& monitor);
   bool factorise_shifted(Monitor& monitor, double shift);
+  void keep_diagonal();
+  void keep_exact();
 
   std::unique_ptr<Factorisation> factor_;
   const Vector* weights_;
   SparseMatrix h_;
   Vector exact_;               // values of the exact Hessian, where it was not positive definite
+  Vector unshifted_;           // the diagonal of the last evaluation
   std::vector<int> diagonal_;  // places of the diagonal among the values
   long pattern_version_ = -1;  // that was analysed
   double shift_ = 0;           // that the diagonal carries now
