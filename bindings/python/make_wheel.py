@@ -69,7 +69,7 @@ def contents(arguments: argparse.Namespace) -> tuple[str, dict[str, bytes]]:
     name, version = (re.search(rb"^%s: (\S+)$" % key, metadata, re.MULTILINE)[1].decode() for key in (b"Name", b"Version"))
     package = name.replace("-", "_")
     info = f"{package}-{version}.dist-info"
-    modules = list((tree / package).glob("*.so"))
+    modules = [path for path in (tree / package).iterdir() if path.suffix in (".so", ".pyd")]
     if len(modules) != 1:
         raise SystemExit(f"{tree / package}: holds {len(modules)} compiled modules; expected one, build it first")
     fits = tag(modules[0], arguments.manylinux)
