@@ -10,8 +10,27 @@ string(REGEX REPLACE "/$" "" coapt_prefix_of_pkgconfig "${coapt_prefix_of_pkgcon
 # What else a consumer must find and link: whatever is private to a static library goes to the final link.
 set(coapt_finds_core Eigen3)
 set(coapt_requires_core "")
+set(coapt_archives "")  # TARGET=FILE, of the archives that a portable build ships beside its own
+
+# coapt_ship(<component> <target>): its archive is installed, and those who link the library by pkg-config link it.
+function(coapt_ship component target)
+  get_target_property(archive ${target} LOCATION)
+  cmake_path(GET archive FILENAME name)
+  install(FILES ${archive} DESTINATION ${CMAKE_INSTALL_LIBDIR}/coapt COMPONENT ${component})
+  set(coapt_archives ${coapt_archives} ${target}=${name} PARENT_SCOPE)
+  set(coapt_libs_${component} "${coapt_libs_${component}} -l:${name}" PARENT_SCOPE)
+endfunction()
+
 get_target_property(coapt_type coapt_room_core TYPE)
-if(coapt_type STREQUAL "STATIC_LIBRARY")
+if(coapt_type STREQUAL "STATIC_LIBRARY" AND COAPT_PORTABLE)
+  set(coapt_libs_core "-L\${libdir}/coapt")
+  foreach(part IN ITEMS PUGIXML=${COAPT_PUGIXML} ZLIB=ZLIB::ZLIB METIS=METIS::METIS)
+    string(REGEX MATCH "^([A-Z]+)=(.+)$" part ${part})
+    if(COAPT_HAS_${CMAKE_MATCH_1})
+      coapt_ship(core ${CMAKE_MATCH_2})
+    endif()
+  endforeach()
+elseif(coapt_type STREQUAL "STATIC_LIBRARY")
   if(COAPT_HAS_PUGIXML)
     list(APPEND coapt_finds_core pugixml)
     list(APPEND coapt_requires_core pugixml)
@@ -110,6 +129,8 @@ if(TARGET coapt_command)
   install(FILES ${PROJECT_SOURCE_DIR}/schema/scene.schema.json ${PROJECT_SOURCE_DIR}/schema/result.schema.json
           DESTINATION ${CMAKE_INSTALL_DATADIR}/coapt/schema COMPONENT command)
 endif()
-if(coapt_type STREQUAL "STATIC_LIBRARY")
+if(COAPT_PORTABLE)
+  include(CoaptTarball)
+elseif(coapt_type STREQUAL "STATIC_LIBRARY")
   include(CoaptDebian)  # a shared library would want a package of its own beside the one for development
 endif()

@@ -1,6 +1,11 @@
-# Finds METIS, which ships no CMake configuration in Debian 12: target METIS::METIS.
+# Finds METIS, which ships no CMake configuration in Debian 12: target METIS::METIS. A portable build takes an archive
+# alone, and Debian has none.
 find_path(METIS_INCLUDE_DIR metis.h)
-find_library(METIS_LIBRARY metis)
+if(COAPT_PORTABLE)
+  find_library(METIS_LIBRARY libmetis.a)
+else()
+  find_library(METIS_LIBRARY metis)
+endif()
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(METIS REQUIRED_VARS METIS_LIBRARY METIS_INCLUDE_DIR)
 if(METIS_FOUND AND NOT TARGET METIS::METIS)

@@ -1,6 +1,7 @@
 // Equilibria that are followed: made from a scene, changed, solved again.
 #include "equilibrium.hpp"
 
+#include "adapters.hpp"
 #include "cli/solvers.hpp"
 #include "input.hpp"
 #include "sensitivity/parameters/dead_load.hpp"
@@ -30,7 +31,7 @@ std::shared_ptr<Followed> follow(const Input& input, const std::vector<std::stri
   RunOptions options;
   options.solver = solver;
   options.max_seconds = max_seconds;
-  options.factorisations = cli::all_factorisations();
+  options.factorisations = factorisations();
   options.observer = watch_for_signals(followed->failure);
   TrackingOptions tracking;
   tracking.tolerance = tolerance;

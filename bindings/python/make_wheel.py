@@ -1,10 +1,14 @@
 """Makes the wheel of a build tree, with the standard library alone and without a network.
 
-    make_wheel.py BUILD/python LICENSE OUTPUT_FOLDER
+    make_wheel.py BUILD/python LICENSE OUTPUT_FOLDER [--manylinux NEWEST_GLIBC] [--notices FOLDER]
 
-Prints the path of the wheel. It fits the Python that runs this script and this machine, as the compiled module does;
-the same files give the same bytes on machines with the same packages: METADATA names those whose libraries it loads.
+Prints the path of the wheel. It fits the Python that runs this script and, with --manylinux, every Linux whose C library
+is as new as the one that the module asks for, which must not be newer than NEWEST_GLIBC (such as 2.35); a module that
+loads anything else is refused. Without it the wheel fits this machine, and METADATA names Debian's packages whose
+libraries the module loads. The same files give the same bytes on machines with the same packages. The files of the
+folder of notices, of what is linked in, stand beside the licence.
 """
+import argparse
 import base64
 import hashlib
 import pathlib
@@ -16,11 +20,15 @@ import sysconfig
 import tempfile
 import zipfile
 
+import portability
+
 GIVEN = {"libc6", "libgcc-s1", "libstdc++6"}  # every C++ program needs them
 
 
-def tag() -> str:
+def tag(module: pathlib.Path, manylinux: str | None) -> str:
     version = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    if manylinux:
+        return f"{version}-{version}-{portability.manylinux(module, manylinux)}"
     platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
     return f"{version}-{version}-{platform}"
 
@@ -46,29 +54,46 @@ def external_needs(module: pathlib.Path) -> list[str]:
     return sorted({re.split(r"[ (|]", part.strip())[0] for part in depends.split(",")} - GIVEN - {""})
 
 
-def contents(tree: pathlib.Path, licence: pathlib.Path) -> tuple[str, dict[str, bytes]]:
+def licences(licence: pathlib.Path, notices: pathlib.Path | None) -> dict[str, bytes]:
+    """The texts that go beside METADATA, by path."""
+    files = {"LICENSE": licence.read_bytes()}
+    if notices:
+        files |= {f"licenses/{path.name}": path.read_bytes() for path in sorted(notices.iterdir())}
+    return files
+
+
+def contents(arguments: argparse.Namespace) -> tuple[str, dict[str, bytes]]:
     """Name of the wheel without extension, and its files by path."""
+    tree = arguments.tree
     metadata = (tree / "METADATA").read_bytes()
-    version = re.search(rb"^Version: (\S+)$", metadata, re.MULTILINE)[1].decode()
-    info = f"coapt-{version}.dist-info"
-    modules = [path for path in (tree / "coapt").glob("_core.*.so")]
+    name, version = (re.search(rb"^%s: (\S+)$" % key, metadata, re.MULTILINE)[1].decode() for key in (b"Name", b"Version"))
+    package = name.replace("-", "_")
+    info = f"{package}-{version}.dist-info"
+    modules = [path for path in (tree / package).iterdir() if path.suffix in (".so", ".pyd")]
     if len(modules) != 1:
-        raise SystemExit(f"{tree / 'coapt'}: holds {len(modules)} compiled modules; expected one, build it first")
-    sources = [path for path in (tree / "coapt").iterdir() if path.suffix in (".py", ".pyi") or path.name == "py.typed"]
-    files = {f"coapt/{path.name}": path.read_bytes() for path in sorted(sources) + modules}
-    needs = "".join(f"Requires-External: {package}\n" for package in external_needs(modules[0]))
+        raise SystemExit(f"{tree / package}: holds {len(modules)} compiled modules; expected one, build it first")
+    fits = tag(modules[0], arguments.manylinux)
+    sources = [path for path in (tree / package).iterdir() if path.suffix in (".py", ".pyi") or path.name == "py.typed"]
+    files = {f"{package}/{path.name}": path.read_bytes() for path in sorted(sources) + modules}
+    needs = "" if arguments.manylinux else "".join(f"Requires-External: {need}\n" for need in external_needs(modules[0]))
     files[f"{info}/METADATA"] = metadata + needs.encode()
-    files[f"{info}/LICENSE"] = licence.read_bytes()
+    files |= {f"{info}/{path}": text for path, text in licences(arguments.licence, arguments.notices).items()}
     files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: coapt {version}\nRoot-Is-Purelib: false\n"
-                              f"Tag: {tag()}\n").encode()
-    record = "".join(record_line(name, content) + "\n" for name, content in files.items())
+                              f"Tag: {fits}\n").encode()
+    record = "".join(record_line(path, content) + "\n" for path, content in files.items())
     files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
-    return f"coapt-{version}-{tag()}", files
+    return f"{package}-{version}-{fits}", files
 
 
 def main() -> None:
-    tree, licence, output = (pathlib.Path(argument) for argument in sys.argv[1:4])
-    name, files = contents(tree, licence)
+    parser = argparse.ArgumentParser()
+    for name in ("tree", "licence", "output"):
+        parser.add_argument(name, type=pathlib.Path)
+    parser.add_argument("--manylinux", metavar="NEWEST_GLIBC")
+    parser.add_argument("--notices", type=pathlib.Path)
+    arguments = parser.parse_args()
+    output = arguments.output
+    name, files = contents(arguments)
     output.mkdir(parents=True, exist_ok=True)
     part = output / f"{name}.whl.part"
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as wheel:

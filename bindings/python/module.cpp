@@ -20,13 +20,6 @@ void translate(std::exception_ptr pointer) {
   }
 }
 
-py::list component_list() {
-  py::list list;
-  for (const Component& part : components())
-    list.append(py::make_tuple(part.name, part.licence, part.gives, part.present));
-  return list;
-}
-
 }  // namespace
 
 py::str text_of(const std::string& text) {
@@ -44,8 +37,6 @@ py::array_t<double> array_of(Points points) {
 void define_core(py::module_& module) {
   py::register_exception_translator(translate);
   module.def("version", &version, "Version of the library, \"major.minor.patch\".");
-  module.def("licence", &combined_licence, "SPDX expression of the module with all that it is linked to.");
-  module.def("components", component_list, "(package, licence, what it gives, whether it is in), each.");
 }
 
 }  // namespace coapt::python
@@ -53,6 +44,7 @@ void define_core(py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   module.doc() = "What the package coapt is made of: the library behind its functions.";
   coapt::python::define_core(module);
+  coapt::python::define_adapters(module);
   coapt::python::define_energy(module);
   coapt::python::define_optim(module);
   coapt::python::define_scene(module);

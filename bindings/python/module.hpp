@@ -17,6 +17,7 @@ namespace coapt::python {
 namespace py = pybind11;
 
 void define_core(py::module_& module);
+void define_adapters(py::module_& module);
 void define_energy(py::module_& module);
 void define_optim(py::module_& module);
 void define_scene(py::module_& module);

@@ -1,4 +1,5 @@
 // Scenes solved, and what comes out.
+#include "adapters.hpp"
 #include "cli/solvers.hpp"
 #include "core/timing.hpp"
 #include "exchange/import.hpp"
@@ -32,8 +33,8 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
   options.writes_page = page;
   options.writes = folder.has_value();
   if (folder) options.folder = *folder;
-  options.factorisations = cli::all_factorisations();
-  options.checker = cli::intersection_checker();
+  options.factorisations = factorisations();
+  options.checker = checker();
   Failure failure;
   Given given = input.given(failure);
   const bool is_from_given_start = given.start.has_value();

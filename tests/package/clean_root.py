@@ -11,8 +11,9 @@ import shutil
 import stat
 import subprocess
 
-# Nothing runs or loads these.
-LEFT_OUT = re.compile(r"/usr/(include|share/(doc|info|lintian|locale|man))/")
+# Nothing runs or loads these; compilers read the headers.
+PAPERS = re.compile(r"/usr/share/(doc|info|lintian|locale|man)/")
+LEFT_OUT = re.compile(rf"/usr/include/|{PAPERS.pattern}")
 
 
 def run(*command, **options) -> str:
@@ -22,9 +23,9 @@ def run(*command, **options) -> str:
     return done.stdout
 
 
-def chroot(root: pathlib.Path, *command) -> str:
-    """Runs the command in the root with an empty environment."""
-    return run("/usr/sbin/chroot", root, *command, env={})
+def chroot(root: pathlib.Path, *command, environment: dict[str, str] | None = None) -> str:
+    """Runs the command in the root with this environment alone, none unless it is given."""
+    return run("/usr/sbin/chroot", root, *command, env=environment or {})
 
 
 def names_in(choices: str) -> list[str]:
@@ -65,7 +66,7 @@ def make_database(root: pathlib.Path, relation: str) -> None:
     (database / "status").write_text(run("dpkg-query", "-s", *sorted(closure(relation))))
 
 
-def copy_files(root: pathlib.Path, packages: set[str]) -> None:
+def copy_files(root: pathlib.Path, packages: set[str], left_out: re.Pattern) -> None:
     for name in ("bin", "lib", "lib32", "lib64", "libx32", "sbin"):
         link = pathlib.Path("/", name)
         if link.is_symlink():  # merged /usr: many packages still name their files by the link
@@ -73,7 +74,7 @@ def copy_files(root: pathlib.Path, packages: set[str]) -> None:
             (root / name).symlink_to(link.readlink())
     for path in run("dpkg-query", "-L", *sorted(packages)).splitlines():
         copy = root / path.lstrip("/")
-        if not path.startswith("/") or LEFT_OUT.match(path) or os.path.lexists(copy):
+        if not path.startswith("/") or left_out.match(path) or os.path.lexists(copy):
             continue  # "diverted by ...", a folder of several packages
         if os.path.isdir(path) and not os.path.islink(path):
             copy.mkdir(parents=True)
@@ -92,10 +93,10 @@ def make_links(root: pathlib.Path) -> None:
     run("/sbin/ldconfig", "-r", root)
 
 
-def make(root: pathlib.Path, relation: str) -> None:
+def make(root: pathlib.Path, relation: str, left_out: re.Pattern = LEFT_OUT) -> None:
     """Makes the root for a relation as in the field Depends; the caller is root."""
     make_database(root, relation)
-    copy_files(root, closure(relation))
+    copy_files(root, closure(relation), left_out)
     make_links(root)
     (root / "tmp").mkdir(exist_ok=True)
     (root / "tmp").chmod(0o1777)

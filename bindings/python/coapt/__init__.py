@@ -14,6 +14,7 @@
 Lengths are mm, forces N, stresses MPa, energies mJ. Arrays of points have shape (n, 3).
 """
 from . import _core, autograd, metrics, plot, symbolic
+from ._adapters import add_installed as _add_installed
 from ._api import minimize, solve
 from ._core import Iterate
 from ._documents import Branches, Certificate, Metrics
@@ -29,6 +30,7 @@ from ._terms import Term, check_term
 from ._warm_solve import AnchorCheck, KinkWarning, LostBranch, Switch, WarmSolve
 
 __version__ = _core.version()
+_add_installed()
 __all__ = ["AnchorCheck", "Branches", "Certificate", "Energy", "Equilibrium", "Imported", "InputError", "Iterate", "KinkWarning",
            "LostBranch", "LostBranchWarning", "Metrics", "Objective", "Registration", "Result", "Status", "Switch", "Term",
            "WarmSolve", "autograd", "check_term", "components", "energy", "generate_mitral", "import_valve", "licence", "methods",

@@ -38,7 +38,7 @@ def methods() -> list[str]:
 
 
 def components() -> dict[str, bool]:
-    """Optional packages, and whether this build holds them."""
+    """Optional packages, and whether this build, or coapt-gpl beside it, holds them."""
     return {name: present for name, _, _, present in _core.components()}
 
 
