@@ -1,6 +1,7 @@
 #include "valve/generators/mitral_chords.hpp"
 
 #include "valve/generators/chord_junctions.hpp"
+#include "valve/generators/clear_junctions.hpp"
 #include "valve/generators/mitral_chord_plan.hpp"
 
 #include <Eigen/Geometry>
@@ -12,8 +13,11 @@
 namespace coapt {
 namespace {
 
-constexpr int kTips = 4;               // per muscle
-constexpr int kMuscles = 2;            // anterolateral, posteromedial
+constexpr int kTips = 4;     // per muscle
+constexpr int kMuscles = 2;  // anterolateral, posteromedial
+// Of the way to the middle of the insertions, of fans to the rough zone: a trunk must reach below the free
+// edge to its other side.
+constexpr double kRoughJunctionPlace = 0.7;
 constexpr double kSystolicMotion = 1;  // of the tips towards the mid-anterior annulus [mm]
 
 Points papillary_tips(const MitralDimensions& d) {
@@ -22,9 +26,9 @@ Points papillary_tips(const MitralDimensions& d) {
     const double side = muscle == 0 ? 1 : -1;
     const Vec3 centre(side * d.papillary_distance / 2, d.papillary_offset, -d.papillary_depth);
     int tip = muscle * kTips;
-    tips.col(tip++) = centre + Vec3(-side * 1.0, 3.5, 0);   // towards the anterior leaflet
-    tips.col(tip++) = centre + Vec3(side * 1.5, 1.0, 0.8);  // towards the commissure
-    tips.col(tip++) = centre + Vec3(side * 1.0, -2, 0.4);   // towards the posterior leaflet, lateral
+    tips.col(tip++) = centre + Vec3(-side * 1.0, d.anterior_tip_offset, 0);  // towards the anterior leaflet
+    tips.col(tip++) = centre + Vec3(side * 1.5, 1.0, 0.8);                   // towards the commissure
+    tips.col(tip++) = centre + Vec3(side * 1.0, -2, 0.4);  // towards the posterior leaflet, lateral
     tips.col(tip++) = centre + Vec3(-side * 0.5, -5, -0.6);
   }
   return tips;
@@ -90,28 +94,31 @@ struct MitralChordBuilder {
         nearest_tip(network.papillary, muscle == 0 ? 0 : first_count,
                     muscle == 0 ? first_count : static_cast<int>(network.papillary.cols()), open_middle);
     const Vec3 closed_tip = network.papillary_closed.col(tip), open_tip = network.papillary.col(tip);
-    const Vec3 closed_junction = closed_tip + kJunctionPlace * (closed_middle - closed_tip);
+    const bool is_rough = shape.dimensions.chords == MitralChords::RoughZone;
+    const double place = is_rough ? kRoughJunctionPlace : kJunctionPlace;
+    const Vec3 closed_junction = closed_tip + place * (closed_middle - closed_tip);
 
     const int count = static_cast<int>(fan.insertions.size());
     JunctionLimits limits;  // ends and lengths: of the trunk, then of the branches
     limits.ends.resize(3, count + 1);
     limits.ends.col(0) = open_tip;
     limits.rest_lengths = {(closed_junction - closed_tip).norm()};
-    std::vector<int> vertices;
+    OpenFan open = {mesh.leaflets, {}, {}};
     for (int i = 0; i < count; ++i) {
       const ChordInsertion& insertion = fan.insertions[i];
       const bool is_inside = insertion.t < 1;
       const int v = nearest_vertex(shape, mesh, is_inside ? sites.inside : sites.free_edge, insertion);
       const double u = mesh.coordinates(0, v), t = mesh.coordinates(1, v);
-      vertices.push_back(v);
+      open.vertices.push_back(v);
+      open.is_inside.push_back(is_inside);
       limits.ends.col(i + 1) = mesh.leaflets.vertices.col(v);
       limits.rest_lengths.push_back((mitral_closed_point(shape, u, t) - closed_junction).norm());
       if (!is_inside) continue;  // a chord to the belly must not run through the leaflet below its insertion
       for (const double height : {t, 1.0})
         limits.planes.push_back({mitral_open_point(shape, u, height), mitral_open_normal(shape, u, height)});
     }
-    const Vec3 start = open_tip + kJunctionPlace * (open_middle - open_tip);
-    const Vec3 junction = place_junction(start, limits);
+    Vec3 junction = place_junction(open_tip + place * (open_middle - open_tip), limits);
+    if (is_rough) junction = place_clear_junction(junction, limits, open);
     std::vector<double>& rest_lengths = limits.rest_lengths;
     for (int i = 0; i <= count; ++i)
       rest_lengths[i] = std::max(rest_lengths[i], (junction - limits.ends.col(i)).norm());
@@ -122,7 +129,7 @@ struct MitralChordBuilder {
         {{ChordEnd::Kind::Papillary, tip}, node, rest_lengths[0], fan.area, fan.material, 1});
     for (int i = 0; i < count; ++i)
       network.chords.push_back({node,
-                                {ChordEnd::Kind::Leaflet, vertices[i]},
+                                {ChordEnd::Kind::Leaflet, open.vertices[i]},
                                 rest_lengths[i + 1],
                                 fan.area / count,
                                 fan.material,

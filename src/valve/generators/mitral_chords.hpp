@@ -15,8 +15,10 @@ namespace coapt {
 // vertex (of the free edge for primary chords, not of the boundary for the others). The rest length
 // of a branch is its length in the closed shape, with the vertex at mitral_closed_point, but at least its
 // length at the start, so that no chord is stretched in the open valve; trunks do not depend on the mesh
-// unless this last rule applies. Materials "primary", "secondary", "strut". Papillary points 0-3 and
-// junctions 0-11 belong to the anterolateral muscle, the others to the posteromedial one.
+// unless this last rule applies. Of RoughZone no segment passes through a leaflet in the open shape where
+// there is a place of the junction for that (clear_junctions.hpp). Materials "primary", "secondary", "strut".
+// Papillary points 0-3 and junctions 0-11 belong to the anterolateral muscle, the others to the posteromedial
+// one.
 //
 // Given `tips` (3 x n, in the frame of the shape) take the place of those eight: the anterolateral muscle has
 // those of positive x. They are numbered muscle by muscle, else in their order.

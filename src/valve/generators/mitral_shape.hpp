@@ -31,15 +31,16 @@ struct MitralDimensions {
   double anterior_height_ratio = 0.83;     // height of the leaflets / anteroposterior diameter:
   double posterior_height_ratio = 0.53;    //   both at mid-leaflet,
   double commissural_height_ratio = 0.34;  //   and at the commissures
-  double hinge_angle = 55;         // of the open leaflet below the horizontal, at the annulus [degrees]
-  double edge_angle = 76;          // the same at the free edge [degrees]
-  double tenting_height = 5;       // of the closed coaptation line below the annulus, mid-valve [mm]
-  double papillary_depth = 24;     // of the muscles' tips below the annulus plane [mm]
-  double papillary_distance = 33;  // between the centres of the two groups of tips [mm]
-  double papillary_offset = 2;     // of the tips from the annulus centre towards anterior [mm]
-  double chord_area_scale = 1;     // factor on all cross-sections of chords
-  double thickness = 0.8;          // of the leaflets [mm]
-  double dome = 0.08;              // rise of a closed leaflet over its chord line / length of that line
+  double hinge_angle = 55;           // of the open leaflet below the horizontal, at the annulus [degrees]
+  double edge_angle = 76;            // the same at the free edge [degrees]
+  double tenting_height = 5;         // of the closed coaptation line below the annulus, mid-valve [mm]
+  double papillary_depth = 24;       // of the muscles' tips below the annulus plane [mm]
+  double papillary_distance = 33;    // between the centres of the two groups of tips [mm]
+  double papillary_offset = 2;       // of the tips from the annulus centre towards anterior [mm]
+  double anterior_tip_offset = 3.5;  // the same, of the tip of anterior chords from its muscle [mm]
+  double chord_area_scale = 1;       // factor on all cross-sections of chords
+  double thickness = 0.8;            // of the leaflets [mm]
+  double dome = 0.08;                // rise of a closed leaflet over its chord line / length of that line
   MitralChords chords = MitralChords::Even;
   double young = 0;  // of the leaflets [MPa]; 0: the valve states none
 };
