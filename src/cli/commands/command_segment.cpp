@@ -1,7 +1,7 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
+#include "cli/images/segment_arguments.hpp"
 #include "cli/output_folder.hpp"
-#include "cli/segment_arguments.hpp"
 #include "cli/session.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/utf8.hpp"

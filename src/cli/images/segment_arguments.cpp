@@ -1,4 +1,4 @@
-#include "cli/segment_arguments.hpp"
+#include "cli/images/segment_arguments.hpp"
 
 #include "cli/command_line.hpp"
 #include "cli/length_argument.hpp"
