@@ -34,11 +34,11 @@ class InstallDependencies(unittest.TestCase):
         (self.folder / name).write_text(text)
         (self.folder / name).chmod(0o755)
 
-    def run_script(self, user: int, **environment: str) -> subprocess.CompletedProcess:
+    def run_script(self, user: int, what: str = "minimal", **environment: str) -> subprocess.CompletedProcess:
         self.stand_in("id", f"#!/bin/bash\necho {user}\n")
         calls = self.folder / "calls"
         calls.touch()
-        done = subprocess.run([SCRIPT, "minimal"], capture_output=True, text=True,
+        done = subprocess.run([SCRIPT, what], capture_output=True, text=True,
                               env={"PATH": str(self.folder), "CALLS": str(calls), **environment})
         self.calls = calls.read_text()
         return done
@@ -63,6 +63,15 @@ class InstallDependencies(unittest.TestCase):
         self.assertIn("Unpacking part 1", after)
         self.assertLess(after.count("Unpacking"), 5)  # one line in five seconds
         self.assertNotIn("Reading", after)
+
+    def test_the_demo_asks_for_less_than_the_command(self):
+        self.stand_in("npm", "#!/bin/bash\n")
+        wanted = {}
+        for what in ("demo", "build"):
+            self.assertEqual(self.run_script(0, what).returncode, 0)
+            wanted[what] = set(self.calls.splitlines()[-1].split())
+        self.assertLess(wanted["demo"], wanted["build"])
+        self.assertFalse(wanted["demo"] & {"libcgal-dev", "libceres-dev", "libsuitesparse-dev", "libcli11-dev"})
 
     def test_what_apt_cannot_install_is_an_error(self):
         self.assertNotEqual(self.run_script(0, APT_EXIT="100").returncode, 0)
