@@ -1,11 +1,10 @@
 #include "image/segment/free_edge.hpp"
 
 #include "core/error.hpp"
-#include "image/segment/closed_path.hpp"
+#include "image/segment/closed_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace coapt {
@@ -16,11 +15,18 @@ constexpr double kNearSide = 1.5, kFarSide = 2.5;  // of what lies beside it [mm
 constexpr double kEdgeReadingStep = 0.25;          // [mm]
 constexpr double kLevelFrom = 2, kLevelTo = 6;     // from the annulus, where all leaflets are [mm]
 constexpr double kShortest = 3;                    // leaflet [mm]
-constexpr double kLeastContrast = -0.5, kGreatestContrast = 1.5;  // counted
-constexpr double kSheetFactor = 1;      // of the evidence, above which contrast counts no more
-constexpr int kClimb = 4;               // rows from one column to the next
-constexpr double kClimbCost = 0.08;     // of a row, in contrasts times rows
-constexpr double kEdgeSmoothing = 1.2;  // along the ring [mm]
+constexpr double kBrighterSideShare = 0.5;         // of the contrast in the evidence, over that of the sheet
+constexpr double kLeaflet = 0.75;      // evidence over that of the leaflets, from which there is leaflet
+constexpr double kChords = 0.55;       // what fans of chords have
+constexpr double kEchoGap = 0.2;       // what gaps in the echoes have, and blood
+constexpr double kGreatestGain = 0.3;  // of evidence above that of leaflets, counted
+constexpr double kChordLoss = 0.25, kGapLoss = 0.02;  // what chords and gaps speak against a leaflet
+constexpr double kStateStep = 0.5;                    // of the places where a column can end [mm]
+constexpr int kBeside = 2;           // columns to each side that evidence at the edge is the mean of
+constexpr double kEndInBlood = 0.5;  // evidence at an end that blood follows
+constexpr double kBeyondFrom = 2.5, kBeyondTo = 4;  // from the edge, where chords are looked for [mm]
+constexpr double kFarthestMove = 1.5;               // of the edge into blood [mm]
+constexpr double kEdgeSmoothing = 1.2;              // along the ring [mm]
 
 double mean_between(const Volume& volume, const Vec3& x, const Vec3& normal, double from, double to) {
   double sum = 0;
@@ -30,16 +36,21 @@ double mean_between(const Volume& volume, const Vec3& x, const Vec3& normal, dou
   return sum / count;
 }
 
-// In values of the volume; NaN where a side lies outside of it.
-Eigen::MatrixXd contrasts(const Volume& volume, const LayerGrid& grid) {
-  Eigen::MatrixXd contrast(grid.rows, grid.columns);
+// To the darker and to the brighter side, in values of the volume; NaN where a side lies outside of it.
+struct Contrasts {
+  Eigen::MatrixXd darker, brighter;
+};
+
+Contrasts contrasts(const Volume& volume, const LayerGrid& grid) {
+  Contrasts contrast{Eigen::MatrixXd(grid.rows, grid.columns), Eigen::MatrixXd(grid.rows, grid.columns)};
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const Vec3 x = grid.at(column, row), normal = grid.normals.col(grid.node(column, row));
       const double inside = mean_between(volume, x, normal, -kInside, kInside);
       const double outer = mean_between(volume, x, normal, kNearSide, kFarSide);
       const double inner = mean_between(volume, x, normal, -kFarSide, -kNearSide);
-      contrast(row, column) = inside - std::min(outer, inner);
+      contrast.darker(row, column) = inside - std::min(outer, inner);
+      contrast.brighter(row, column) = inside - std::max(outer, inner);
     }
   return contrast;
 }
@@ -54,53 +65,70 @@ Eigen::MatrixXd strengths(const SheetEvidence& evidence, const LayerGrid& grid) 
   return strength;
 }
 
-double level_of(const Eigen::MatrixXd& contrast, const Eigen::MatrixXd& lengths) {
+// The median where all leaflets are; NaN where nothing is known there.
+double level_of(const Eigen::MatrixXd& values, const Eigen::MatrixXd& lengths) {
   std::vector<double> level;
-  for (Eigen::Index column = 0; column < contrast.cols(); ++column)
-    for (Eigen::Index row = 0; row < contrast.rows(); ++row)
+  for (Eigen::Index column = 0; column < values.cols(); ++column)
+    for (Eigen::Index row = 0; row < values.rows(); ++row)
       if (lengths(row, column) >= kLevelFrom && lengths(row, column) <= kLevelTo &&
-          std::isfinite(contrast(row, column)))
-        level.push_back(contrast(row, column));
-  if (level.empty())
-    throw InputError("the leaflets lie outside of the volume; is the annulus in its frame (LPS)?");
+          std::isfinite(values(row, column)))
+        level.push_back(values(row, column));
+  if (level.empty()) return kNaN;
   const auto middle = level.begin() + static_cast<std::ptrdiff_t>(level.size() / 2);
   std::nth_element(level.begin(), middle, level.end());
-  if (*middle <= 0)
-    throw InputError(
-        "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
-        "volume's "
-        "frame (LPS), and are the leaflets bright in it?");
   return *middle;
 }
 
-// State k: the leaflet ends between the rows k - 1 and k.
-Eigen::MatrixXd end_costs(const Eigen::MatrixXd& contrast, const Eigen::MatrixXd& lengths) {
-  Eigen::MatrixXd costs(contrast.rows() + 1, contrast.cols());
-  for (Eigen::Index column = 0; column < contrast.cols(); ++column) {
-    double sum = 0;
+// 1 where leaflets are, on the median; 0 where nothing is known.
+Eigen::MatrixXd leaflet_evidence(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& brighter,
+                                 const Eigen::MatrixXd& lengths) {
+  const double sheet = level_of(strength, lengths), side = level_of(brighter, lengths);
+  Eigen::MatrixXd evidence = sheet > 0 ? Eigen::MatrixXd(strength / sheet) : strength;
+  if (side > 0) evidence = (evidence + kBrighterSideShare / side * brighter) / (1 + kBrighterSideShare);
+  return evidence.unaryExpr([](double value) { return std::isfinite(value) ? value : 0; });
+}
+
+// What a millimetre speaks for leaflet. Least of all where chords fan out: a gap may be one of the echoes.
+double gain_of(double evidence) {
+  if (evidence >= kLeaflet) return std::min(evidence - kLeaflet, kGreatestGain);
+  if (evidence >= kChords) return -kChordLoss * (kLeaflet - evidence) / (kLeaflet - kChords);
+  const double share = std::clamp((evidence - kEchoGap) / (kChords - kEchoGap), 0.0, 1.0);
+  return -(kGapLoss + (kChordLoss - kGapLoss) * share);
+}
+
+// State k: the leaflet ends k steps from the annulus.
+Eigen::MatrixXd end_costs(const Eigen::MatrixXd& evidence, const Eigen::MatrixXd& lengths) {
+  const Eigen::Index rows = evidence.rows();
+  const double longest = lengths.row(rows - 1).maxCoeff();
+  Eigen::MatrixXd costs(static_cast<Eigen::Index>(longest / kStateStep) + 2, evidence.cols());
+  for (Eigen::Index column = 0; column < evidence.cols(); ++column) {
+    const auto at = [&](Eigen::Index row) { return lengths(std::min(row, rows - 1), column); };
     costs(0, column) = 0;
-    for (Eigen::Index row = 0; row < contrast.rows(); ++row) {
-      const double value = std::isfinite(contrast(row, column)) ? contrast(row, column) : 0.0;
-      sum +=
-          lengths(row, column) < kShortest ? 1 : std::clamp(value, kLeastContrast, kGreatestContrast) - 0.5;
-      costs(row + 1, column) = -sum;
+    Eigen::Index row = 0;
+    for (Eigen::Index state = 1; state < costs.rows(); ++state) {
+      const double middle = (static_cast<double>(state) - 0.5) * kStateStep;
+      while (row + 1 < rows && 0.5 * (at(row) + at(row + 1)) < middle) ++row;
+      const double gain = middle < kShortest ? 1 : middle > at(rows) ? -1 : gain_of(evidence(row, column));
+      costs(state, column) = costs(state - 1, column) - kStateStep * gain;
     }
   }
   return costs;
 }
 
 // The mean of the neighbours, weighted by a Gaussian of the distance along the ring at the edge.
-Vector smoothed(const Vector& lengths, const LayerGrid& grid, const std::vector<int>& path) {
+Vector smoothed(const Vector& lengths, const LayerGrid& grid, const Eigen::MatrixXd& along) {
   const int n = grid.columns;
   Vector smooth(n);
-  const auto place = [&](int column) {
-    return grid.at(column, std::clamp(path[static_cast<size_t>((column + n) % n)] - 1, 0, grid.rows - 1));
+  const auto row_of = [&](int column) {
+    int row = 0;
+    while (row + 1 < grid.rows && along(row + 1, column) < lengths[column]) ++row;
+    return row;
   };
   for (int column = 0; column < n; ++column) {
-    const int row = std::clamp(path[static_cast<size_t>(column)] - 1, 0, grid.rows - 1);
+    const int row = row_of(column);
     double sum = 0, weights = 0;
     for (int other = column - n / 8; other <= column + n / 8; ++other) {
-      const double distance = (grid.at(other, row) - place(column)).norm();
+      const double distance = (grid.at(other, row) - grid.at(column, row)).norm();
       const double weight = std::exp(-0.5 * distance * distance / (kEdgeSmoothing * kEdgeSmoothing));
       sum += weight * lengths[(other + n) % n];
       weights += weight;
@@ -110,40 +138,58 @@ Vector smoothed(const Vector& lengths, const LayerGrid& grid, const std::vector<
   return smooth;
 }
 
-// How far beyond the edge the contrast is half: where the Gaussian integral has the share of the signal [mm].
-double overshoot(double blur, double contrast, const GreyScale& scale) {
-  if (!scale.is_logarithmic()) return 0;
-  const double weakest = std::pow(10, -0.1 * scale.decibels_per_value * contrast);
-  const double share = (std::sqrt(weakest) - weakest) / (1 - weakest);
-  double low = 0, high = 6;  // of standard deviations; halved until it is found
-  for (int k = 0; k < 40; ++k) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(middle / std::numbers::sqrt2) > share ? low : high) = middle;
+// Evidence at a length along a column, the mean of the columns beside it [mm].
+double evidence_at(const Eigen::MatrixXd& evidence, const Eigen::MatrixXd& lengths, int column,
+                   double length) {
+  const auto columns = static_cast<int>(lengths.cols());
+  double sum = 0;
+  for (int other = column - kBeside; other <= column + kBeside; ++other) {
+    const int c = (other + columns) % columns;
+    Eigen::Index row = 0;
+    while (row + 1 < lengths.rows() && lengths(row, c) < length) ++row;
+    sum += evidence(row, c);
   }
-  return blur * low;
+  return sum / (2 * kBeside + 1);
+}
+
+// Where blood and no chords follow, an end that blurs fades sooner: there the edge lies where the evidence
+// has fallen further.
+Vector moved_to_blood(const Vector& ends, const Eigen::MatrixXd& evidence, const Eigen::MatrixXd& lengths) {
+  Vector moved = ends;
+  for (int column = 0; column < static_cast<int>(ends.size()); ++column) {
+    double beyond = 0;
+    for (double t = kBeyondFrom; t <= kBeyondTo; t += kStateStep)
+      beyond = std::max(beyond, evidence_at(evidence, lengths, column, ends[column] + t));
+    const double blood = std::clamp(1 - beyond / kChords, 0.0, 1.0);
+    const double least = kLeaflet - (kLeaflet - kEndInBlood) * blood;
+    for (double t = 0; t <= kFarthestMove; t += kEdgeReadingStep) {
+      if (evidence_at(evidence, lengths, column, ends[column] + t) < least) break;
+      moved[column] = ends[column] + t;
+    }
+  }
+  return moved;
 }
 
 }  // namespace
 
-FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid, double blur,
-                   const GreyScale& scale) {
+FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid) {
   FreeEdge edge;
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
-  Eigen::MatrixXd contrast = contrasts(volume, grid);
-  edge.contrast = level_of(contrast, lengths);
-  contrast = (contrast / edge.contrast).cwiseMin(kSheetFactor * strengths(evidence, grid));
-  const std::vector<int> path = closed_path(end_costs(contrast, lengths), kClimb, kClimbCost);
-  Vector found(grid.columns);
-  for (int column = 0; column < grid.columns; ++column) {
-    const int end = std::clamp(path[static_cast<size_t>(column)], 1, grid.rows - 1);
-    found[column] = 0.5 * (lengths(end - 1, column) + lengths(end, column));
-  }
-  edge.lengths = smoothed(found, grid, path);
+  const Contrasts contrast = contrasts(volume, grid);
+  edge.contrast = level_of(contrast.darker, lengths);
+  if (std::isnan(edge.contrast))
+    throw InputError("the leaflets lie outside of the volume; is the annulus in its frame (LPS)?");
+  if (edge.contrast <= 0)
+    throw InputError(
+        "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
+        "volume's frame (LPS), and are the leaflets bright in it?");
+  const Eigen::MatrixXd shown = leaflet_evidence(strengths(evidence, grid), contrast.brighter, lengths);
+  const Vector polygon = kStateStep * closed_polygon(end_costs(shown, lengths), {});
+  const Vector found = moved_to_blood(polygon, shown, lengths);
+  edge.lengths = smoothed(found, grid, lengths);
   edge.deviation = std::sqrt((found - edge.lengths).squaredNorm() / grid.columns);
-  const double beyond = overshoot(blur, edge.contrast, scale);
   for (int column = 0; column < grid.columns; ++column)
-    edge.lengths[column] =
-        std::clamp(edge.lengths[column] - beyond, 0.5 * kShortest, lengths(grid.rows - 1, column));
+    edge.lengths[column] = std::clamp(edge.lengths[column], 0.5 * kShortest, lengths(grid.rows - 1, column));
   return edge;
 }
 

@@ -173,7 +173,6 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   result.size = part.size;
   std::optional<double> threshold;
   const Volume seen = looked_at(part, options, threshold);
-  const bool is_occupancy = threshold || options.mask;
   SheetEvidence evidence = sheet_evidence(seen, sheet_scales(part));
 
   phases.begin("layer from the annulus");
@@ -184,12 +183,10 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const LayerFit fit = fit_layer(grid, evidence, options.smoothing, kFitRounds);
 
   phases.begin("free edge");
-  const GreyScale seen_scale = is_occupancy ? GreyScale{} : scale;
-  FreeEdge edge = free_edge(seen, evidence, grid, 0, seen_scale);
+  const FreeEdge edge = free_edge(seen, evidence, grid);
   const std::vector<char> is_seen = seen_points(grid, fit, edge);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
   result.blur = blur.mean();
-  edge = free_edge(seen, evidence, grid, result.blur, seen_scale);
   result.edge_deviation = edge.deviation;
   result.contrast = edge.contrast;
 

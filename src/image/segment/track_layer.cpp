@@ -14,7 +14,7 @@ namespace {
 
 // Half the range and number of the turns that are tried at each step, and what they cost in the unit of the
 // evidence: a turn by the whole range, and a difference of one turn between neighbours.
-constexpr double kTurn = 0.6;
+constexpr double kTurn = 0.35;
 constexpr int kTurns = 13;
 constexpr double kTurnCost = 0.15;
 constexpr double kTurnDifference = 0.03;

@@ -1,6 +1,7 @@
 // The parts of which a segmentation is made, each on something whose answer is known.
 #include "core/random_source.hpp"
 #include "image/segment/closed_path.hpp"
+#include "image/segment/closed_polygon.hpp"
 #include "image/segment/round_triangles.hpp"
 #include "image/segment/sheet_evidence.hpp"
 #include "image/segment/speckle_blur.hpp"
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 namespace coapt {
 namespace {
@@ -41,6 +43,29 @@ TEST(ClosedPath, IsTheCheapestOfAll) {
     }
     EXPECT_NEAR(cost_of(costs, found, 0.2), least, 1e-12);
   }
+}
+
+TEST(ClosedPolygon, FollowsAWaveAndPassesOverAGap) {
+  // Costs grow with the distance from a wave; where nothing is known they are all the same.
+  constexpr int kColumns = 120, kStates = 40;
+  const auto wave = [](int column) { return 20 + 8 * std::cos(2 * std::numbers::pi * column / kColumns); };
+  for (const bool has_gap : {false, true}) {
+    Eigen::MatrixXd costs(kStates, kColumns);
+    for (int column = 0; column < kColumns; ++column)
+      for (int state = 0; state < kStates; ++state)
+        costs(state, column) = has_gap && column >= 40 && column < 52 ? 0 : std::abs(state - wave(column));
+    const Vector path = closed_polygon(costs, {});
+    for (int column = 0; column < kColumns; ++column) EXPECT_NEAR(path[column], wave(column), 1.2) << column;
+    EXPECT_NEAR(path[0], path[kColumns - 1], 1);
+  }
+}
+
+TEST(ClosedPolygon, HasNoCornerForASinglePlaceThatContradicts) {
+  Eigen::MatrixXd costs(30, 60);
+  for (int column = 0; column < 60; ++column)
+    for (int state = 0; state < 30; ++state)
+      costs(state, column) = 0.1 * std::abs(state - (column == 33 ? 25 : 12));
+  EXPECT_LT((closed_polygon(costs, {}).array() - 12).abs().maxCoeff(), 1e-9);
 }
 
 // A grid around the origin with values of a function of the place.

@@ -1,6 +1,7 @@
 #include "image/segment/segment_leaflets.hpp"
 
 #include "core/error.hpp"
+#include "image/phantom.hpp"
 #include "image/support/speckle_phantom.hpp"
 #include "mesh/distance/surface_distance.hpp"
 #include "mesh/distance/triangle_tree.hpp"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace coapt {
 namespace {
@@ -78,6 +80,44 @@ TEST(SegmentLeaflets, FindsTheGeneratedValveInSpeckle) {
   Vec3 outward = found.valve.leaflets.vertices.col(found.valve.leaflets.triangles(0, 0));
   outward -= found.valve.leaflets.vertices.rowwise().mean();
   EXPECT_GT(out.dot(Vec3(outward[0], outward[1], 0)), 0);
+}
+
+// The valve as `coapt phantom` images it: with its chords, between walls.
+Volume image_with_chords(const Valve& valve, const PhantomOptions& options) {
+  PhantomValve state;
+  state.surface = valve.leaflets;
+  state.annulus = valve.annulus;
+  state.upstream = upstream_direction(valve.leaflets, valve.annulus);
+  const ChordNetwork& network = valve.chords;
+  const auto place = [&](const ChordEnd& end) -> Vec3 {
+    if (end.kind == ChordEnd::Kind::Papillary) return network.papillary.col(end.index);
+    if (end.kind == ChordEnd::Kind::Junction) return network.junctions.col(end.index);
+    return valve.leaflets.vertices.col(end.index);
+  };
+  state.line_ends.resize(3, 2 * static_cast<Eigen::Index>(network.chords.size()));
+  for (size_t k = 0; k < network.chords.size(); ++k) {
+    state.line_ends.col(static_cast<Eigen::Index>(2 * k)) = place(network.chords[k].from);
+    state.line_ends.col(static_cast<Eigen::Index>(2 * k + 1)) = place(network.chords[k].to);
+    state.line_radii.push_back(std::sqrt(network.chords[k].area / std::numbers::pi));
+  }
+  return make_phantom(state, phantom_pattern(state.surface, options), phantom_grid({state}, options), options)
+      .image;
+}
+
+TEST(SegmentLeaflets, EndsWhereChordsFanOut) {
+  const Valve valve = mitral_valve(MitralOptions{.triangles = 2500, .seed = 8});
+  PhantomOptions phantom;
+  phantom.axial = phantom.lateral = 0.5;
+  phantom.dropout = 0;
+  phantom.shadows = 0;
+  phantom.seed = 8;
+  const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
+  const Errors errors = errors_of(found, valve);
+  EXPECT_LT(errors.there.p95, 0.8);
+  EXPECT_LT(errors.back.mean, 0.25);
+  EXPECT_LT(errors.back.p95, 0.8);
+  EXPECT_LT(std::abs(errors.area), 0.05);
+  expect_sound(found);
 }
 
 TEST(SegmentLeaflets, StatesAnUncertaintyThatCoversTheError) {
