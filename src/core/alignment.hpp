@@ -1,8 +1,8 @@
 // That a program and the library agree on how Eigen aligns memory. Flags such as -march=native change it:
 // what one of them allocates the other frees wrongly, or reads by instructions that want another alignment,
 // and EIGEN_MAX_ALIGN_BYTES does not cure it, as Eigen allocates by EIGEN_DEFAULT_ALIGN_BYTES, which follows
-// the processor. Part of types.hpp, so that who includes any header of the library learns of it from the linker
-// and not from a crash.
+// the processor. Part of types.hpp, so that who includes any header of the library learns of it from the
+// linker and not from a crash.
 #pragma once
 
 #include <Eigen/Core>

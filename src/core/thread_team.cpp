@@ -46,8 +46,7 @@ void ThreadTeam::start() {
   process_ = getpid();
 #endif
   try {
-    for (int thread = 1; thread < size_; ++thread)
-      others_.emplace_back([this, thread] { serve(thread); });
+    for (int thread = 1; thread < size_; ++thread) others_.emplace_back([this, thread] { serve(thread); });
   } catch (const std::system_error&) {
     // No more threads to be had: those there are do the work.
   }

@@ -78,9 +78,9 @@ struct Candidates {
           const ClosestPair closest = closest_points(rest[k].kind, corners);
           if (closest.distance >= rest[k].range) return 0.0;
           out.is_active = true;
-          const double own =
-              pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(),
-                                          wants_gradient ? &out.g : nullptr, wants_hessian ? &out.h : nullptr);
+          const double own = pressure * evaluate_barrier(rest[k], corners, closest, sink.projection(),
+                                                         wants_gradient ? &out.g : nullptr,
+                                                         wants_hessian ? &out.h : nullptr);
           if (wants_gradient) out.g *= pressure;
           if (wants_hessian) out.h *= pressure;
           return own;

@@ -319,9 +319,8 @@ class ElementTerm final : public EnergyTerm, public TermAccess {
 
   double evaluate_element(const Points& x, size_t e, Projection projection, Evaluated& out) const {
     const ElementVector local = gather(x, stencils_.nodes.data() + e * K::kNodes);
-    return projection == Projection::PositiveSemidefinite
-               ? evaluate_projected(rest_[e], local, out.g, out.h)
-               : K::evaluate(rest_[e], local, &out.g, &out.h);
+    return projection == Projection::PositiveSemidefinite ? evaluate_projected(rest_[e], local, out.g, out.h)
+                                                          : K::evaluate(rest_[e], local, &out.g, &out.h);
   }
 
   void scatter_element(size_t e, const Evaluated& in, Sink& sink) const {

@@ -9,11 +9,11 @@
 
 namespace coapt {
 
-// Whether the parts of a sink have few elements in common, which all of them evaluate: so it is where nodes are
-// numbered as they lie. Looks at some of the elements.
+// Whether the parts of a sink have few elements in common, which all of them evaluate: so it is where nodes
+// are numbered as they lie. Looks at some of the elements.
 inline bool parts_are_apart(const Stencils& stencils, const std::vector<Sink>& parts) {
-  constexpr size_t kLooks = 256;
-  constexpr double kMostShared = 0.3;  // of the elements seen
+  constexpr size_t kLooks = 256;       // elements that are looked at
+  constexpr double kMostShared = 0.3;  // of them that touch a second part
   const size_t count = static_cast<size_t>(stencils.count()), step = std::max<size_t>(1, count / kLooks);
   size_t seen = 0, touched = 0;
   for (size_t e = 0; e < count; e += step, ++seen)
@@ -29,7 +29,7 @@ inline bool parts_are_apart(const Stencils& stencils, const std::vector<Sink>& p
 // same bits whatever their number.
 template <class Evaluated, class Evaluate, class Scatter>
 double pour_elements(const Stencils& stencils, Sink& sink, const Evaluate& evaluate, const Scatter& scatter) {
-  constexpr size_t kWorthThreads = 1000;  // elements
+  constexpr size_t kWorthThreads = 1000;  // elements that are worth waking a thread
   const auto count = static_cast<size_t>(stencils.count());
   double energy = 0;
   std::vector<Sink> parts;
@@ -49,7 +49,8 @@ double pour_elements(const Stencils& stencils, Sink& sink, const Evaluate& evalu
     Evaluated out;
     for (size_t e = 0; e < count; ++e) {
       const int* nodes = &stencils.nodes[e * static_cast<size_t>(stencils.width)];
-      if (std::none_of(nodes, nodes + stencils.width, [&](int node) { return part.has_node(node); })) continue;
+      if (std::none_of(nodes, nodes + stencils.width, [&](int node) { return part.has_node(node); }))
+        continue;
       const double own = evaluate(e, out);
       if (part.has_node(nodes[0])) energies[e] = own;
       scatter(e, out, part);

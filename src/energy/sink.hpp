@@ -21,8 +21,8 @@ struct BlockSlot {
   int stride = 0;
 };
 
-// What one of several threads pours: into these nodes of the gradient, and these values of the Hessian, which are
-// the columns of the same nodes.
+// What one of several threads pours: into these nodes of the gradient, and these values of the Hessian, which
+// are the columns of the same nodes.
 struct SinkPart {
   unsigned first_node = 0, nodes = 0xFFFFFFFF;
   unsigned first_value = 0, values = 0xFFFFFFFF;
@@ -75,7 +75,8 @@ class Sink {
   template <typename Block>
   void add_block(long element_offset, int width, int a, int b, const Block& block) {
     const BlockSlot slot = slots_[element_offset + a * width + b];
-    if (static_cast<unsigned>(slot.base) - part_.first_value >= part_.values) return;  // or above the diagonal
+    if (static_cast<unsigned>(slot.base) - part_.first_value >= part_.values)
+      return;  // or above the diagonal
     double* to = hessian_ + slot.base;
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) to[c * slot.stride + r] += factor_ * block(r, c);

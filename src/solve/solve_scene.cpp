@@ -98,8 +98,7 @@ SolverTable scene_solvers() {
 SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   SolveSetup setup;
   setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
-  const FactorisationFactory factorisation =
-      chosen_factorisation(options.factorisations, scene.solver);
+  const FactorisationFactory factorisation = chosen_factorisation(options.factorisations, scene.solver);
   setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
                        factorisation](const Model& model) {
     return make(solver_options(spec, terms, factorisation, model));

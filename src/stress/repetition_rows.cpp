@@ -97,11 +97,10 @@ StressOutcome same_bits_on_threads(StressSubject& subject) {
   StressScene scene = copy_of(own_scene(subject));
   const long elements = largest_term(scene);
   if (elements < kWorthThreads)
-    return {
-        StressVerdict::NotApplicable,
-        {},
-        {},
-        "no term has " + std::to_string(kWorthThreads) + " elements: threads get no work"};
+    return {StressVerdict::NotApplicable,
+            {},
+            {},
+            "no term has " + std::to_string(kWorthThreads) + " elements: threads get no work"};
   scene.scene.solver.cascade = false;
   scene.scene.solver.max_iterations = std::min(scene.scene.solver.max_iterations, kIterations);
   std::optional<StressRun> one;

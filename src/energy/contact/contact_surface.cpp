@@ -186,16 +186,14 @@ std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reac
   const auto of =
       feature_bounds<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, true);
   std::vector<std::array<int, 2>> near;
-  hierarchy_.for_each_pair(of.triangles, of.tree, overlap,
-                           [&near](int s, int t) { near.push_back({s, t}); });
+  hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
   const size_t shares = (near.size() + kShare - 1) / kShare;
   std::vector<std::vector<FeaturePair>> found(shares);
   team.run(static_cast<int>(shares), [&](int share, int) {
     const size_t first = static_cast<size_t>(share) * kShare;
     for (size_t k = first; k < std::min(first + kShare, near.size()); ++k)
-      visit_features(near[k][0], near[k][1], of, overlap, [&](const FeaturePair& pair) {
-        found[static_cast<size_t>(share)].push_back(pair);
-      });
+      visit_features(near[k][0], near[k][1], of, overlap,
+                     [&](const FeaturePair& pair) { found[static_cast<size_t>(share)].push_back(pair); });
   });
   std::vector<FeaturePair> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());

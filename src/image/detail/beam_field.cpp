@@ -8,9 +8,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kMostCells = 2e8;  // of the grid; eight bytes each
-constexpr double kDeviation = 2;    // of the spread [cells]
-constexpr int kReach = 6;           // of the spread: three standard deviations [cells]
+constexpr double kMostCells = 2e8;             // of the grid; eight bytes each
+constexpr double kDeviation = 2;               // of the spread [cells]
+constexpr int kReach = 6;                      // of the spread: three standard deviations [cells]
 constexpr std::size_t kTaps = 2 * kReach + 1;  // of its kernel
 
 std::array<float, kTaps> spread_weights() {

@@ -7,8 +7,8 @@
 namespace coapt {
 namespace {
 
-constexpr double kFar = 3.5;  // where speckle is no longer correlated [mm]
-constexpr int kLeastPairs = 200;  // of voxels, below which an axis says nothing
+constexpr double kFar = 3.5;                // where speckle is no longer correlated [mm]
+constexpr int kLeastPairs = 200;            // of voxels, below which an axis says nothing
 constexpr double kLeastCorrelation = 0.02;  // of neighbours, below which nothing is said
 constexpr int kTerms = 60;                  // of the dilogarithm's series
 

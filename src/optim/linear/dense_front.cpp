@@ -1,29 +1,18 @@
 #include "optim/linear/dense_front.hpp"
 
+#include "optim/linear/quad.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-// The same code for the processor at hand: with vectors of four and fused multiplication where it has them.
-#if defined(__x86_64__) && defined(__GNUC__)
-#define COAPT_WIDE __attribute__((target("avx2,fma")))
-#define COAPT_INLINE inline __attribute__((always_inline))
-#else
-#define COAPT_INLINE inline
-#endif
 
 namespace coapt {
 namespace {
 
-constexpr int kBlock = 12;  // columns eliminated at once: with four rows they fill twelve registers
+constexpr int kBlock = 12;          // columns eliminated at once: with four rows they fill twelve registers
 constexpr int kPanel = 4 * kBlock;  // columns between two updates by all that lies to their left
 constexpr int kShare = 96;          // rows of a panel that a thread takes at once; a multiple of eight
 constexpr double kWorthSharing = 1e7;  // multiplications of a front, some 2 ms of one thread
-constexpr int kStrip = 24;          // columns of an update that it takes at once; a multiple of six
-
-// Four numbers side by side, anywhere in memory.
-using Quad = double __attribute__((vector_size(32)));
-COAPT_INLINE void load(Quad& quad, const double* from) { __builtin_memcpy(&quad, from, sizeof quad); }
-COAPT_INLINE void store(double* to, const Quad& quad) { __builtin_memcpy(to, &quad, sizeof quad); }
+constexpr int kStrip = 24;             // columns of an update that it takes at once; a multiple of six
 
 // A matrix stored by columns.
 struct Columns {
@@ -150,8 +139,9 @@ COAPT_INLINE void reduce_rows_of_any(int columns, int from, int to, double* bloc
   }
 }
 
-// Some columns of a front, from `first` on: its rows are those of the front from `first` on too. Whole blocks,
-// or what remains after them: the rows of its top, as many, can then be taken by four without touching others.
+// Some columns of a front, from `first` on: its rows are those of the front from `first` on too. Whole
+// blocks, or what remains after them: the rows of its top, as many, can then be taken by four without
+// touching others.
 struct FrontPanel {
   int first, width, height;
   double* at;  // its top
@@ -208,9 +198,9 @@ COAPT_INLINE void finish_rows(const FrontPanel& panel, int from, int to) {
 // Columns from ... to - 1 of the update.
 COAPT_INLINE void update_strip(const DenseFront& front, int from, int to) {
   const Columns bottom{front.panel + front.columns + from, front.panel_stride()};
-  subtract_product<Result::Replaced>(front.below - from, to - from, front.columns, bottom, bottom,
-                                     front.update + from + from * static_cast<std::ptrdiff_t>(front.update_stride()),
-                                     front.update_stride());
+  subtract_product<Result::Replaced>(
+      front.below - from, to - from, front.columns, bottom, bottom,
+      front.update + from + from * static_cast<std::ptrdiff_t>(front.update_stride()), front.update_stride());
 }
 
 COAPT_INLINE bool positive_definite(const DenseFront& front) {
@@ -257,65 +247,6 @@ COAPT_INLINE bool indefinite(const DenseFront& front, double* work, int& negativ
   return true;
 }
 
-// The next kColumns columns from `first` on.
-template <int kColumns>
-COAPT_INLINE void forward_columns(const DenseFront& front, int first, double* y) {
-  const std::ptrdiff_t stride = front.panel_stride();
-  const double* block = front.panel + first + first * stride;
-  double x[kColumns];
-  for (int j = 0; j < kColumns; ++j) {
-    x[j] = y[first + j];
-    for (int p = 0; p < j; ++p) x[j] -= block[p * stride + j] * x[p];
-    x[j] /= block[j * stride + j];
-    y[first + j] = x[j];
-  }
-  const int rest = front.height() - first;
-  for (int i = kColumns; i < rest; i += 4) {
-    Quad sum;
-    load(sum, y + first + i);
-    for (int j = 0; j < kColumns; ++j) {
-      Quad entries;
-      load(entries, block + j * stride + i);
-      sum -= entries * x[j];
-    }
-    store(y + first + i, sum);
-  }
-}
-
-template <int kColumns>
-COAPT_INLINE void backward_columns(const DenseFront& front, int first, double* y) {
-  const std::ptrdiff_t stride = front.panel_stride();
-  const double* block = front.panel + first + first * stride;
-  Quad sum[kColumns] = {};
-  const int rest = front.height() - first;
-  for (int i = kColumns; i < rest; i += 4) {
-    Quad known;
-    load(known, y + first + i);
-    for (int j = 0; j < kColumns; ++j) {
-      Quad entries;
-      load(entries, block + j * stride + i);
-      sum[j] += entries * known;
-    }
-  }
-  for (int j = kColumns - 1; j >= 0; --j) {
-    double x = y[first + j] - ((sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]));
-    for (int p = j + 1; p < kColumns; ++p) x -= block[j * stride + p] * y[first + p];
-    y[first + j] = x / block[j * stride + j];
-  }
-}
-
-COAPT_INLINE void forward(const DenseFront& front, double* y) {
-  int j = 0;
-  for (; j + 6 <= front.columns; j += 6) forward_columns<6>(front, j, y);
-  if (j < front.columns) forward_columns<3>(front, j, y);
-}
-
-COAPT_INLINE void backward(const DenseFront& front, double* y) {
-  int j = front.columns;
-  if (j % 6 != 0) backward_columns<3>(front, j -= 3, y);
-  while (j > 0) backward_columns<6>(front, j -= 6, y);
-}
-
 // The steps of positive_definite() that threads share.
 struct SharedSteps {
   void (*update_rows)(const FrontPanel& panel, int from, int to);
@@ -345,10 +276,11 @@ bool positive_definite_shared(const DenseFront& front, const SharedSteps& steps,
   return true;
 }
 
-constexpr SharedSteps kSteps{[](const FrontPanel& panel, int from, int to) { update_rows(panel, from, to); },
-                             [](const FrontPanel& panel) { return factor_panel_top(panel); },
-                             [](const FrontPanel& panel, int from, int to) { finish_rows(panel, from, to); },
-                             [](const DenseFront& front, int from, int to) { update_strip(front, from, to); }};
+constexpr SharedSteps kSteps{
+    [](const FrontPanel& panel, int from, int to) { update_rows(panel, from, to); },
+    [](const FrontPanel& panel) { return factor_panel_top(panel); },
+    [](const FrontPanel& panel, int from, int to) { finish_rows(panel, from, to); },
+    [](const DenseFront& front, int from, int to) { update_strip(front, from, to); }};
 
 #ifdef COAPT_WIDE
 COAPT_WIDE void update_rows_wide(const FrontPanel& panel, int from, int to) { update_rows(panel, from, to); }
@@ -363,20 +295,13 @@ COAPT_WIDE bool positive_definite_wide(const DenseFront& front) { return positiv
 COAPT_WIDE bool indefinite_wide(const DenseFront& front, double* work, int& negative, int& positive) {
   return indefinite(front, work, negative, positive);
 }
-COAPT_WIDE void forward_wide(const DenseFront& front, double* y) { forward(front, y); }
-COAPT_WIDE void backward_wide(const DenseFront& front, double* y) { backward(front, y); }
-bool is_wide() {
-  static const bool kIsWide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return kIsWide;
-}
 #endif
 
 }  // namespace
 
 bool eliminate_positive_definite(const DenseFront& front, ThreadTeam* team) {
-  const bool is_shared =
-      team != nullptr && team->size() > 1 &&
-      static_cast<double>(front.columns) * front.height() * front.height() > kWorthSharing;
+  const bool is_shared = team != nullptr && team->size() > 1 &&
+                         static_cast<double>(front.columns) * front.height() * front.height() > kWorthSharing;
 #ifdef COAPT_WIDE
   if (is_wide())
     return is_shared ? positive_definite_shared(front, kWideSteps, *team) : positive_definite_wide(front);
@@ -392,20 +317,6 @@ bool eliminate_indefinite(const DenseFront& front, std::vector<double>& work, in
   if (is_wide()) return indefinite_wide(front, work.data(), negative, positive);
 #endif
   return indefinite(front, work.data(), negative, positive);
-}
-
-void solve_columns_forward(const DenseFront& front, double* y) {
-#ifdef COAPT_WIDE
-  if (is_wide()) return forward_wide(front, y);
-#endif
-  forward(front, y);
-}
-
-void solve_columns_backward(const DenseFront& front, double* y) {
-#ifdef COAPT_WIDE
-  if (is_wide()) return backward_wide(front, y);
-#endif
-  backward(front, y);
 }
 
 }  // namespace coapt

@@ -30,7 +30,8 @@ class Factorisation {
   virtual ~Factorisation() = default;
   virtual std::string_view name() const = 0;  // "cholmod", "eigen", "multifrontal"
 
-  // Threads that may share the work, before analyse(); factor and solutions are the same whatever their number.
+  // Threads that may share the work, before analyse(); factor and solutions are the same whatever their
+  // number.
   void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
   const std::shared_ptr<ThreadTeam>& team() const { return team_; }
 

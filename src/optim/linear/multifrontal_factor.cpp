@@ -39,7 +39,7 @@ void MultifrontalFactor::analyse(const NodeGraph& graph, Supernodes nodes, int b
 // Cuts off subtrees that are each worth at most a share of all work: so many that threads end together, and
 // the same ones whatever their number.
 void MultifrontalFactor::part_tree() {
-  constexpr double kShares = 16;
+  constexpr double kShares = 16;  // of all work: for up to eight threads
   std::vector<double> work(static_cast<size_t>(nodes_.size()), 0);
   std::vector<int> first(static_cast<size_t>(nodes_.size()));  // of each subtree
   work_ = 0;
@@ -48,7 +48,8 @@ void MultifrontalFactor::part_tree() {
     const double own = columns * (columns * (columns / 6 + below / 2) + below * below / 2);
     work_ += own;
     work[s] += own;
-    first[s] = nodes_.child_start[s] < nodes_.child_start[s + 1] ? first[nodes_.child[nodes_.child_start[s]]] : s;
+    first[s] =
+        nodes_.child_start[s] < nodes_.child_start[s + 1] ? first[nodes_.child[nodes_.child_start[s]]] : s;
     if (nodes_.parent[s] >= 0) work[nodes_.parent[s]] += work[s];
   }
   const auto is_top = [&](int s) { return s >= eliminated_ || work[s] > work_ / kShares; };

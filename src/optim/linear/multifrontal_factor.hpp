@@ -109,9 +109,9 @@ class MultifrontalFactor {
   int eliminated_ = 0;         // supernodes, all but the border
   std::vector<size_t> panel_;  // where each supernode's columns begin in the values
   std::vector<double> values_;
-  double work_ = 0;                           // multiplications of a factor
+  double work_ = 0;                            // multiplications of a factor
   std::vector<std::pair<int, int>> subtrees_;  // first and last supernode of those that threads share
-  std::vector<int> top_;                      // the supernodes above them, ascending
+  std::vector<int> top_;                       // the supernodes above them, ascending
   UpdatePlan plan_;
   std::vector<double> kept_;           // what subtrees leave
   std::vector<Workspace> workspaces_;  // of each thread
