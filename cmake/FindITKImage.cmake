@@ -5,7 +5,7 @@ if(CMAKE_C_COMPILER)  # the search for HDF5, on which ITK's configuration insist
   set(CMAKE_MESSAGE_LOG_LEVEL ERROR)  # GDCM's configuration names files of packages that nothing here needs
   find_package(ITK 5.2 QUIET CONFIG COMPONENTS ITKCommon ITKImageFeature ITKImageGrid ITKSmoothing ITKThresholding
                ITKConnectedComponents ITKDistanceMap ITKMathematicalMorphology ITKFastMarching ITKIOImageBase ITKIONRRD ITKIONIFTI
-               ITKIOMeta ITKIOGDCM)
+               ITKIOMeta ITKIOGDCM ITKIOPNG)
   set(CMAKE_MESSAGE_LOG_LEVEL ${coapt_message_level})
 endif()
 # A build of ITK knows the compilers that it was configured for and refuses others: Debian's takes GCC and no Clang.

@@ -5,6 +5,7 @@
 #include "core/timing.hpp"
 #include "formats/xml_escaped.hpp"
 #include "report/metric_words.hpp"
+#include "report/page_picture.hpp"
 #include "report/page_table.hpp"
 #include "report/solve_view.hpp"
 #include "results/result_warnings.hpp"
@@ -322,7 +323,7 @@ std::vector<PageSection> solve_account(const Model& model, const Report& report)
   return account;
 }
 
-std::string solve_page(const Model& model, const Report& report) {
+std::string solve_page_with(const Model& model, const Report& report, const std::vector<PageSection>& more) {
   const Result& result = report.result;
   Page page;
   page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
@@ -332,8 +333,13 @@ std::string solve_page(const Model& model, const Report& report) {
   if (PageList warnings = warning_list(report); !warnings.items.empty())
     page.sections.push_back({"Warnings", {std::move(warnings)}});
   page.sections.push_back({"Shape", {tiles(report), shape_view_html(solved_view(model, report))}});
+  page.sections.insert(page.sections.end(), more.begin(), more.end());
   for (PageSection& section : solve_account(model, report)) page.sections.push_back(std::move(section));
   return report_page(page);
+}
+
+std::string solve_page(const Model& model, const Report& report) {
+  return solve_page_with(model, report, {});
 }
 
 ShownSolve shown_solve(const std::string& what, const Model& model, const Report& report) {

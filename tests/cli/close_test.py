@@ -1,7 +1,10 @@
 """`coapt close`: from the image of an open valve to the closed one, and how far that is from the valve that was imaged."""
+import base64
 import gzip
 import json
 import math
+import pathlib
+import tempfile
 import unittest
 
 from command_case import CommandCase, coapt
@@ -41,8 +44,6 @@ class CloseAnImage(CommandCase):
 
     @classmethod
     def made_truth(cls):
-        import pathlib
-        import tempfile
         scratch = tempfile.TemporaryDirectory()
         cls.addClassCleanup(scratch.cleanup)
         folder = pathlib.Path(scratch.name)
@@ -96,6 +97,11 @@ class CloseAnImage(CommandCase):
         page = (out / "result/report.html").read_text()
         self.assertIn("orifice", page)
         self.assertGreater(len(page), 100000)
+        self.assertIn("Slices through the images", page)
+        for name in ("slices_open.png", "slices_closed.png"):
+            picture = (out / name).read_bytes()
+            self.assertEqual(picture[1:4], b"PNG")
+            self.assertIn("data:image/png;base64," + base64.b64encode(picture).decode(), page)
         apart = json.loads((out / "image_distance.json").read_text())
         self.assertIn(f"mean {apart['to_image']['mean_mm']:.2f}", run.stdout)
         self.assertLess(apart["to_image"]["mean_mm"], 1.2)

@@ -1,6 +1,7 @@
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/images/close_pictures.hpp"
 #include "cli/images/image_distance.hpp"
 #include "cli/images/segment_arguments.hpp"
 #include "cli/output_folder.hpp"
@@ -29,6 +30,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 namespace {
@@ -46,6 +48,7 @@ struct CloseArguments {
 
 // What the files besides the open volume hold, all in its frame but for the closed volume.
 struct CloseInput {
+  Volume open;
   Points annulus;                        // [mm]
   std::optional<Points> annulus_closed;  // smooth [mm]
   Points papillary = Points(3, 0), papillary_closed = Points(3, 0);
@@ -95,6 +98,7 @@ CloseInput read_input(const CloseArguments& arguments) {
                        " tips, " + arguments.segment.papillary + " has " +
                        std::to_string(input.papillary.cols()) + "; give the same tips in the same order");
   }
+  input.open = printed_volume(arguments.segment.volume, arguments.segment.frame);
   if (!arguments.closed.empty()) input.closed = printed_volume(arguments.closed, std::nullopt);
   return input;
 }
@@ -132,17 +136,34 @@ Valve ready_valve(const CloseArguments& arguments, const CloseInput& input, cons
   return valve;
 }
 
-void compare_with_closed(const CloseArguments& arguments, const CloseInput& input, const RunReport& solved) {
-  const Points there = input.to_open.inverse().apply(input.annulus);  // in the frame of the closed volume
+TriangleMesh moved(const RigidMotion& motion, TriangleMesh mesh) {
+  mesh.vertices = motion.apply(mesh.vertices);
+  return mesh;
+}
+
+PicturedValve pictured(const CloseInput& input, const Segmentation& found, const RunReport& solved) {
   TriangleMesh closed = surface_at(solved.model, solved.report.fields.x);
   closed.vertices.colwise() += solved.model.origin;
-  const ImageDistance distance =
-      distance_from_image(closed, input.to_open.apply(ridge_points_around(*input.closed, there)));
-  write_image_distance(arguments.segment.output, closed, distance, arguments.closed);
+  const TriangleMesh& leaflets = found.valve.leaflets;
+  return {input.open, leaflets, std::move(closed), input.annulus, leaflets.vertices.rowwise().mean()};
+}
+
+// Into image_distance.*, and the picture of it.
+PageImage compare_with_closed(const CloseArguments& arguments, const CloseInput& input,
+                              const PicturedValve& valve) {
+  const RigidMotion back = input.to_open.inverse();
+  PicturedValve there = valve;  // in the frame of the closed volume
+  there.annulus = back.apply(valve.annulus);
+  there.solved = moved(back, valve.solved);
+  there.ventricle = back.apply(Points(valve.ventricle)).col(0);
+  const Points ridges = ridge_points_around(*input.closed, there.annulus);
+  const ImageDistance distance = distance_from_image(valve.solved, input.to_open.apply(ridges));
+  write_image_distance(arguments.segment.output, valve.solved, distance, arguments.closed);
   std::printf(
       "distance to the closed image: mean %.2f, 95 %% %.2f mm; back: mean %.2f, 95 %% %.2f mm (%ld points)\n",
       distance.to_image.mean, distance.to_image.p95, distance.from_image.mean, distance.from_image.p95,
       static_cast<long>(distance.ridge_points));
+  return closed_picture(arguments.segment.output, *input.closed, there, ridges);
 }
 
 RunReport solve_valve(const fs::path& folder, const Session& session) {
@@ -169,7 +190,7 @@ int close_image(const CloseArguments& arguments, Session& session) {
   const CloseInput input = read_input(arguments);
   const OutputFolder output(folder);
   listen_for_interrupts();
-  Segmentation found = find_leaflets(arguments.segment);
+  Segmentation found = find_leaflets(arguments.segment, input.open);
   found.valve.name = formats::as_utf8(fs::path(arguments.segment.volume).stem().string());
   fs::create_directories(folder / "leaflets");
   // Also where the valve cannot be closed: what was found can be looked at, and says why.
@@ -180,9 +201,13 @@ int close_image(const CloseArguments& arguments, Session& session) {
     std::printf("warning: %s\n", warning.c_str());
   const RunReport solved = solve_valve(folder, session);
   session.document = result_json(solved.model, solved.report);
-  if (input.closed) compare_with_closed(arguments, input, solved);
-  std::printf("written to %s (leaflets/, scene/, result/report.html%s)\n", folder.string().c_str(),
-              input.closed ? ", image_distance.vtp, image_distance.json" : "");
+  const PicturedValve valve = pictured(input, found, solved);
+  std::vector<PageImage> pictures = {open_picture(folder, valve)};
+  if (input.closed) pictures.push_back(compare_with_closed(arguments, input, valve));
+  write_pictured_page(solved, "Slices through the images", pictures);
+  std::printf("written to %s (leaflets/, scene/, result/report.html, slices_open.png%s)\n",
+              folder.string().c_str(),
+              input.closed ? ", slices_closed.png, image_distance.vtp, image_distance.json" : "");
   if (solved.report.result.status != Status::Converged) return kNotConverged;
   return is_in_doubt(solved.report) ? kInDoubt : kConverged;
 }

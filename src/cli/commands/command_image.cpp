@@ -6,10 +6,15 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/json/json_text.hpp"
+#include "formats/json/markups.hpp"
+#include "formats/lower_extension.hpp"
+#include "formats/mesh_io.hpp"
 #include "image/read_volume.hpp"
+#include "image/slices/valve_slices.hpp"
 #include "image/write_volume.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -19,8 +24,13 @@
 namespace coapt::cli {
 namespace {
 
+// Of surfaces drawn on slices, in their order (Okabe and Ito, "Color universal design", 2008).
+constexpr std::array<Colour, 4> kSurfaceColours = {
+    Colour{86, 180, 233}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}};
+
 struct ImageArguments {
-  std::string file, output, kind;
+  std::string file, output, kind, annulus;
+  std::vector<std::string> surfaces;
   std::optional<int> frame;
   std::vector<std::string> spacing;  // with units: one for all axes, or three
 };
@@ -123,6 +133,27 @@ void convert_image(const ImageArguments& arguments, Session& session) {
   session.document = written_document({arguments.output}, file.warnings);
 }
 
+// Through the valve of an annulus, the leaflets below where surfaces say where they are; else through the
+// middle of the volume.
+void draw_slices(const ImageArguments& arguments, Session& session) {
+  if (formats::lower_extension(arguments.output) != ".png")
+    throw InputError(arguments.output + ": slices are written as .png");
+  const VolumeFile file = read_volume(arguments.file, read_options(arguments));
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::vector<DrawnSurface> surfaces;
+  for (const std::string& path : arguments.surfaces)
+    surfaces.push_back({read_mesh(path).mesh, kSurfaceColours[surfaces.size() % kSurfaceColours.size()]});
+  std::optional<Vec3> below;
+  if (!surfaces.empty()) below = surfaces.front().surface.vertices.rowwise().mean();
+  const std::vector<SlicePlane> planes = arguments.annulus.empty()
+                                             ? middle_planes(file.volume)
+                                             : valve_planes(annulus_curve(arguments.annulus), below);
+  const Picture picture = valve_slices(file.volume, planes, surfaces, {});
+  write_png(arguments.output, picture);
+  std::printf("written to %s (%d x %d pixels)\n", arguments.output.c_str(), picture.width, picture.height);
+  session.document = written_document({arguments.output}, file.warnings);
+}
+
 void add_reading_options(CLI::App& command, ImageArguments& arguments) {
   command
       .add_option("FILE", arguments.file,
@@ -139,8 +170,8 @@ void add_reading_options(CLI::App& command, ImageArguments& arguments) {
 }  // namespace
 
 void add_image_command(CLI::App& app, Session& session) {
-  CLI::App* command =
-      app.add_subcommand("image", "Say what a volume image holds, or write it in another format");
+  CLI::App* command = app.add_subcommand(
+      "image", "Say what a volume image holds, draw slices through it, or write it in another format");
   command->require_subcommand(1);
   const auto arguments = std::make_shared<ImageArguments>();
   CLI::App* info = command->add_subcommand(
@@ -157,6 +188,15 @@ void add_image_command(CLI::App& app, Session& session) {
       ->add_option("--kind", arguments->kind,
                    "Kind of its voxels (default: as in FILE); whole numbers are rounded")
       ->check(CLI::IsMember({"uint8", "int16", "uint16", "float32"}));
+  CLI::App* slices = command->add_subcommand("slices", "Draw slices through the volume, as one PNG");
+  add_reading_options(*slices, *arguments);
+  slices->add_option(
+      "--annulus", arguments->annulus,
+      "Closed curve (.mrk.json): slices along its axis (default: along the axes of the volume)");
+  slices->add_option("--surface", arguments->surfaces, "Mesh to draw where a slice cuts it; any number")
+      ->delimiter(',');
+  slices->add_option("-o,--output", arguments->output, "File to write: .png")->required();
+  slices->callback([arguments, &session] { draw_slices(*arguments, session); });
   convert->callback([arguments, &session] { convert_image(*arguments, session); });
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 void segment_volume(const SegmentArguments& arguments, Session& session) {
   refuse_folder_of(arguments.volume, arguments.output);
-  Segmentation found = find_leaflets(arguments);
+  Segmentation found = find_leaflets(arguments, printed_volume(arguments.volume, arguments.frame));
   found.valve.name = formats::as_utf8(std::filesystem::path(arguments.volume).stem().string());
   if (!arguments.papillary.empty()) found.valve.chords.papillary = papillary_points(arguments.papillary);
   const OutputFolder output(arguments.output);

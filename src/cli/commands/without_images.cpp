@@ -22,7 +22,8 @@ void add_refused_command(CLI::App& app, const std::string& name, const std::stri
 }  // namespace
 
 void add_image_command(CLI::App& app, Session& /*session*/) {
-  add_refused_command(app, "image", "Say what a volume image holds, or write it in another format");
+  add_refused_command(app, "image",
+                      "Say what a volume image holds, draw slices through it, or write it in another format");
 }
 
 void add_phantom_command(CLI::App& app, Session& /*session*/) {

@@ -96,10 +96,9 @@ Volume printed_volume(const std::string& path, const std::optional<int>& frame) 
   return std::move(file.volume);
 }
 
-Segmentation find_leaflets(const SegmentArguments& arguments) {
+Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volume) {
   if (arguments.threshold && arguments.method != "isosurface")
     throw InputError("--threshold: belongs to --method isosurface");
-  const Volume volume = printed_volume(arguments.volume, arguments.frame);
   const SegmentOptions options = segment_options(arguments);
   try {
     const Segmentation found = segment_leaflets(volume, options);

@@ -23,9 +23,9 @@ struct SegmentArguments {
 
 void add_segment_options(CLI::App& command, SegmentArguments& arguments);
 
-// Reads the files and finds the leaflets; tells of phases on a terminal and prints what was found, with
-// warnings. Throws InputError that names the file.
-Segmentation find_leaflets(const SegmentArguments& arguments);
+// Finds the leaflets in the volume, which was read from arguments.volume; tells of phases on a terminal and
+// prints what was found, with warnings. Throws InputError that names the file.
+Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volume);
 
 // Values of a file of a volume [mm], with warnings printed.
 Volume printed_volume(const std::string& path, const std::optional<int>& frame);
