@@ -159,7 +159,7 @@ MitralDimensions closed_dimensions() {
   d.posterior_height_ratio = 0.58;
   d.commissural_height_ratio = 0.40;
   d.papillary_offset = -9;
-  d.anterior_tip_offset = 4.5;  // so that a trunk reaches below the open anterior leaflet to its other side
+  d.anterior_tip_offset = 4;  // so that a trunk reaches below the open anterior leaflet to its other side
   d.dome = 0.2;
   d.chords = MitralChords::RoughZone;
   d.young = 3;
