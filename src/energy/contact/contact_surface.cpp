@@ -28,10 +28,10 @@ struct PartBounds {
   }
 };
 
-// Written out and without branches, as this is what a search spends its time on.
+// Written out, as this is what a search spends its time on.
 bool overlap(const Bounds& a, const Bounds& b) {
-  return (a.low[0] <= b.high[0]) & (b.low[0] <= a.high[0]) & (a.low[1] <= b.high[1]) &
-         (b.low[1] <= a.high[1]) & (a.low[2] <= b.high[2]) & (b.low[2] <= a.high[2]);
+  return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] && b.low[1] <= a.high[1] &&
+         a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
 }
 
 // Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
