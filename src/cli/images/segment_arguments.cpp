@@ -7,6 +7,7 @@
 #include "formats/json/markups.hpp"
 #include "image/read_volume.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <system_error>
@@ -101,6 +102,8 @@ Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volu
     throw InputError("--threshold: belongs to --method isosurface");
   const SegmentOptions options = segment_options(arguments);
   try {
+    const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());
+    if (*least == *greatest) throw InputError("the image has the same value everywhere: it shows nothing");
     const Segmentation found = segment_leaflets(volume, options);
     end_progress();
     print_found(found);
