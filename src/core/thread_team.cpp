@@ -1,6 +1,7 @@
 #include "core/thread_team.hpp"
 
 #include <algorithm>
+#include <exception>
 
 #ifdef __linux__
 #include <sched.h>
@@ -10,6 +11,15 @@
 #endif
 
 namespace coapt {
+namespace {
+
+// Of threads that are not there after fork().
+void forget(std::vector<std::jthread>& threads) {
+  for (std::jthread& thread : threads) thread.detach();
+  threads.clear();
+}
+
+}  // namespace
 
 int available_processors() {
 #ifdef __linux__
@@ -19,7 +29,6 @@ int available_processors() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// After fork() the others are not there.
 bool ThreadTeam::is_copy() const {
 #ifndef _WIN32
   return !others_.empty() && process_ != getpid();
@@ -29,10 +38,7 @@ bool ThreadTeam::is_copy() const {
 }
 
 ThreadTeam::~ThreadTeam() {
-  if (is_copy()) {
-    for (std::jthread& thread : others_) thread.detach();
-    return;
-  }
+  if (is_copy()) forget(others_);
   {
     const std::lock_guard lock(mutex_);
     closes_ = true;
@@ -57,22 +63,31 @@ void ThreadTeam::run(int count, const Work& work) {
     for (int part = 0; part < count; ++part) work(part, 0);
     return;
   }
-  if (is_copy()) {
-    for (std::jthread& thread : others_) thread.detach();
-    others_.clear();
-  }
+  if (is_copy()) forget(others_);
   if (others_.empty()) start();
+  std::exception_ptr failure;
+  const Work kept = [&](int part, int thread) {
+    try {
+      work(part, thread);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure) failure = std::current_exception();
+    }
+  };
   {
     const std::lock_guard lock(mutex_);
-    work_ = &work;
+    work_ = &kept;
     count_ = count;
     next_ = 0;
   }
   begins_.notify_all();
-  take_parts(work, count, 0);
-  std::unique_lock lock(mutex_);
-  work_ = nullptr;
-  ends_.wait(lock, [this] { return busy_ == 0; });
+  take_parts(kept, count, 0);
+  {
+    std::unique_lock lock(mutex_);
+    work_ = nullptr;
+    ends_.wait(lock, [this] { return busy_ == 0; });
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 void ThreadTeam::take_parts(const Work& work, int count, int thread) {

@@ -28,7 +28,7 @@ class ThreadTeam {
 
   // Calls work for every part, 0 <= part < count, once, in any order and side by side, and returns when all
   // are done. Results do not depend on the number of threads if each part writes what is its own alone.
-  // work must not throw, nor run anything by the same team.
+  // What work throws is thrown here, once the others have ended. It must not run anything by the same team.
   void run(int count, const Work& work);
 
   // Cuts [0, count) into ranges of about `grain` and calls work(first, last) for each, in the same way.

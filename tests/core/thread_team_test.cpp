@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 
 namespace coapt {
 namespace {
@@ -46,6 +47,20 @@ TEST(ThreadTeam, SharesItsParts) {
     while (arrived < 2) std::this_thread::yield();
   });
   EXPECT_EQ(arrived, 2);
+}
+
+TEST(ThreadTeam, ThrowsInTheCallersThreadWhatWorkThrows) {
+  ThreadTeam team(3);
+  for (int again = 0; again < 20; ++again) {
+    EXPECT_THROW(team.run(30,
+                          [](int part, int) {
+                            if (part % 10 == 7) throw std::bad_alloc();
+                          }),
+                 std::bad_alloc);
+    std::atomic<int> calls = 0;
+    team.run(30, [&](int, int) { ++calls; });
+    EXPECT_EQ(calls, 30);
+  }
 }
 
 TEST(ThreadTeam, OneThreadIsTheCallers) {

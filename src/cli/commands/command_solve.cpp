@@ -296,8 +296,8 @@ void add_solve_command(CLI::App& app, Session& session) {
   add_path_option(*command, arguments->damped_steps);
   command
       ->add_option("--threads", arguments->threads,
-                   "Threads that share the work, which change nothing but its time; 0: as many as there are "
-                   "processors (default: the scene's)")
+                   "Threads that share the work, which change nothing but its time; 0: one for each "
+                   "processor (default: the scene's)")
       ->check(CLI::Range(0, 256));
   add_branch_options(*command, arguments->branches);
   add_solve_checkpoint_arguments(*command, arguments->checkpoint);

@@ -270,8 +270,8 @@ std::vector<KeySpec> option_keys() {
        .min = 0,
        .max = 256,
        .doc = "Threads that share assembly, contact search and factorisation, or the constraints of xpbd, "
-              "wherever there is enough to share; the result does not depend on them. 0: as many as the "
-              "process may use processors (xpbd: 1)."},
+              "wherever there is enough to share; the result does not depend on them. 0: one for each "
+              "processor that the process may use (xpbd: one thread)."},
       {.name = "density",
        .dimension = kDensity,
        .fallback = "\"1060 kg/m^3\"",
