@@ -90,7 +90,7 @@ long largest_term(const StressScene& scene) {
 // The first iterations of `newton` on the scene's own mesh, whatever the scene's method: each assembles a
 // Hessian, and a bit that differs in one of them is seen in all that follows.
 StressOutcome same_bits_on_threads(StressSubject& subject) {
-  constexpr long kWorthThreads = 1000;  // elements, of energy/pour_elements.hpp
+  constexpr long kWorthThreads = 4000;  // elements, of energy/pour_elements.hpp
   constexpr int kIterations = 5;
   if (!subject.bench.has_solver("newton"))
     return {StressVerdict::NotApplicable, {}, {}, "this build has no newton, which assembles Hessians"};

@@ -322,7 +322,7 @@ TEST(RoundedKinks, AreSharpAgainWhenTheRunIsCutShort) {
 
 TEST(Threads, AssembleTheSameBits) {
   ValveOptions options;
-  options.triangles = 5000;  // more than a batch of elements
+  options.triangles = 5000;  // worth threads (kWorthThreads of energy/pour_elements.hpp)
   const ValveScene scene(options);
   Objective objective(scene.X, scene.fixed, scene.terms());
   const Vector q = objective.unknowns(shaken(scene.X, 0.05, 3));

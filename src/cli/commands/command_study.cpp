@@ -44,7 +44,7 @@ int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
   try {
     Scene of_point = parse_scene(point.scene, scene);
     if (of_point.solver.threads == 0) of_point.solver.threads = 1;  // the processes share the processors
-    const RunReport solved = run(std::move(of_point), all_solvers(), options);
+    const RunReport solved = run(of_point, all_solvers(), options);
     if (solved.report.result.status == Status::Cancelled) return kNotConverged;  // to be solved again
     write_point(folder, point_result(point, solved));
     return solved.report.result.status == Status::Converged ? kConverged : kNotConverged;

@@ -103,7 +103,7 @@ class MultifrontalFactor {
   void solve_front_backward(int s, Vector& x, std::vector<double>& column);
   bool measure_pivots();
 
-  static constexpr double kWorthThreads = 2e6;  // multiplications of a factor, some 0.5 ms of one thread
+  static constexpr double kWorthThreads = 1e7;  // multiplications of a factor, some 2 ms of one thread
 
   Supernodes nodes_;
   int eliminated_ = 0;         // supernodes, all but the border
