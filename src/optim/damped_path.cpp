@@ -102,17 +102,17 @@ class DampedPath {
   void ask_for_stability() {
     Objective& objective = problem_.objective;
     Vector g;
+    SparseMatrix hessian;
     objective.damp(Vector::Constant(result_.q.size(), kHold * damping_), result_.q);
-    const double energy = monitor_.hessian(result_.q, g, hessian_, Projection::None);
+    const double energy = monitor_.hessian(result_.q, g, hessian, Projection::None);
     objective.damp({}, {});
     if (!std::isfinite(energy)) return;
     PhaseTimer timer(monitor_.phases(), "certificate");
-    if (!factor_) factor_ = problem_.stability.factorisation();
-    if (pattern_version_ != objective.pattern_version()) factor_->analyse(hessian_);
-    pattern_version_ = objective.pattern_version();
+    const auto factor = problem_.stability.factorisation();
+    factor->analyse(hessian);
     monitor_.count_certificate(1);
     result_.unstable_steps = std::max(result_.unstable_steps, 0);
-    if (!factor_->factorise(hessian_)) ++result_.unstable_steps;
+    if (!factor->factorise(hessian)) ++result_.unstable_steps;
   }
 
   // What is pressed together or overstretched gives way in the next steps, up to a limit.
@@ -139,9 +139,6 @@ class DampedPath {
   double residual_ = kInfinity;  // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
   bool is_blocked_ = false, has_failed_ = false;
-  std::unique_ptr<Factorisation> factor_;
-  SparseMatrix hessian_;
-  long pattern_version_ = -1;  // that factor_ has analysed
 };
 
 }  // namespace
