@@ -1,6 +1,7 @@
 #include "optim/linear/bordered_factor.hpp"
 #include "optim/linear/dense_front.hpp"
 #include "optim/linear/factorisation.hpp"
+#include "optim/linear/front_kernels.hpp"
 #include "optim/linear/node_ordering.hpp"
 #include "optim/linear/supernodes.hpp"
 
@@ -83,6 +84,38 @@ TEST(DenseFront, CholeskyLeavesTheSchurComplement) {
   }
 }
 
+void expect_same_numbers(const FilledFront& a, const FilledFront& b) {
+  const int size = a.columns + a.below;
+  const auto compare = [&](const std::vector<double>& ours, const std::vector<double>& theirs, int columns,
+                           int height) {
+    for (int j = 0; j < columns; ++j)
+      for (int i = j; i < height; ++i) {
+        const auto at =
+            static_cast<size_t>(j) * static_cast<size_t>(DenseFront::stride(height)) + static_cast<size_t>(i);
+        ASSERT_EQ(ours[at], theirs[at]) << a.columns << " " << a.below << ": " << i << " " << j;
+      }
+  };
+  compare(a.panel, b.panel, a.columns, size);
+  compare(a.update, b.update, a.below, a.below);
+}
+
+#ifdef COAPT_WIDE
+COAPT_WIDE bool eliminate_by_fours(const DenseFront& front) { return positive_definite<Quad>(front); }
+COAPT_WIDEST bool eliminate_by_eights(const DenseFront& front) { return positive_definite<Octet>(front); }
+
+TEST(DenseFront, VectorsOfEightLeaveTheNumbersOfVectorsOfFour) {
+  if (!is_widest()) GTEST_SKIP() << "this processor has no vectors of eight";
+  for (const auto& [columns, below] : shapes()) {
+    FilledFront four(columns, below, 7), eight(columns, below, 7);
+    four.matrix.diagonal().array() += 60;
+    eight.matrix.diagonal().array() += 60;
+    ASSERT_TRUE(eliminate_by_fours(four.front()));
+    ASSERT_TRUE(eliminate_by_eights(eight.front()));
+    expect_same_numbers(eight, four);
+  }
+}
+#endif
+
 // Wide and high enough to be shared, with every remainder of a share's rows and columns.
 TEST(DenseFront, ThreadsLeaveTheNumbersOfOne) {
   for (const auto& [columns, below] : {std::pair{240, 0}, {243, 60}, {96, 333}, {195, 249}, {150, 306}}) {
@@ -94,18 +127,7 @@ TEST(DenseFront, ThreadsLeaveTheNumbersOfOne) {
       FilledFront several(columns, below, 5);
       several.matrix.diagonal().array() += 1000;
       ASSERT_TRUE(eliminate_positive_definite(several.front(), &team));
-      for (int j = 0; j < columns; ++j)
-        for (int i = j; i < columns + below; ++i) {
-          const auto at = static_cast<size_t>(j) * static_cast<size_t>(DenseFront::stride(columns + below)) +
-                          static_cast<size_t>(i);
-          ASSERT_EQ(several.panel[at], one.panel[at]) << columns << " " << below << ": " << i << " " << j;
-        }
-      for (int j = 0; j < below; ++j)
-        for (int i = j; i < below; ++i) {
-          const auto at = static_cast<size_t>(j) * static_cast<size_t>(DenseFront::stride(below)) +
-                          static_cast<size_t>(i);
-          ASSERT_EQ(several.update[at], one.update[at]) << columns << " " << below << ": " << i << " " << j;
-        }
+      expect_same_numbers(several, one);
     }
     EXPECT_LT(one.error_of_update(), 1e-10);
   }
