@@ -23,7 +23,8 @@ async function shot(state, view, keys, caption, lines) {
   const states = await page.locator("#state").getAttribute("max");
   await page.locator("#state").fill(state === "open" ? "0" : states);
   await page.locator(`[data-view=${view}]`).click();
-  for (const line of ["#show-orifice", "#show-coaptation"]) await page.locator(line).setChecked(lines);
+  for (const line of ["#show-orifice", "#show-coaptation"])  // a valve that is tight has no orifice to show
+    if (await page.locator(line).isVisible()) await page.locator(line).setChecked(lines);
   await page.locator("#canvas").focus();
   for (const key of keys) await page.keyboard.press(key);
   await page.evaluate(() => document.activeElement.blur());
