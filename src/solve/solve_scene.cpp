@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "formats/json/suggestion.hpp"
+#include "optim/linear/node_ordering.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/masses.hpp"
 #include "scene/build/xpbd_body.hpp"
@@ -23,12 +24,13 @@ FactorisationFactory named_factorisation(const FactorisationTable& table, const 
                    "\" is not in this build; use \"auto\", \"multifrontal\" or \"eigen\"");
 }
 
-// Those made by it share one team of threads, as they work one after the other.
+// Those made by it share one team of threads and one order, as they work one after the other.
 FactorisationFactory chosen_factorisation(const FactorisationTable& table, const SolverSpec& solver) {
   return [make = named_factorisation(table, solver.factorisation),
-          team = std::make_shared<ThreadTeam>(thread_count(solver))] {
+          team = std::make_shared<ThreadTeam>(thread_count(solver)), order = std::make_shared<LastOrder>()] {
     std::unique_ptr<Factorisation> factorisation = make();
     factorisation->use_threads(team);
+    factorisation->share_order(order);
     return factorisation;
   };
 }

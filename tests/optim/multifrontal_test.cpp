@@ -282,6 +282,16 @@ TEST(NodeOrdering, NestedDissectionOrMinimumDegreeIsAPermutationWithLittleFill) 
   EXPECT_LT(fill(minimum_degree_order(graph)), 0.2 * fill(natural));
 }
 
+TEST(NodeOrdering, TheLastOrderIsThatOfTheGraphWhicheverCameBefore) {
+  const NodeGraph graph = sheet_graph(40, 9), other = sheet_graph(41, 9);
+  LastOrder last;
+  EXPECT_EQ(last.of(graph), node_order(graph));
+  const int* kept = last.of(graph).data();
+  EXPECT_EQ(last.of(graph).data(), kept);
+  EXPECT_EQ(last.of(other), node_order(other));
+  EXPECT_EQ(last.of(graph), node_order(graph));
+}
+
 // Positive definite, with the pattern of the graph.
 SparseMatrix matrix_of(const NodeGraph& graph, unsigned seed) {
   std::mt19937 random(seed);

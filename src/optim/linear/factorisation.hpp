@@ -16,6 +16,8 @@ namespace coapt {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
+class LastOrder;
+
 // Numbers of negative and of positive pivots of A = L D L^T: by Sylvester's law those of the eigenvalues.
 struct Inertia {
   int negative = 0;
@@ -34,6 +36,10 @@ class Factorisation {
   // number.
   void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
   const std::shared_ptr<ThreadTeam>& team() const { return team_; }
+
+  // Where it looks for the order of its pattern first, and leaves it to those that share it. They must work
+  // one after the other.
+  void share_order(std::shared_ptr<LastOrder> order) { order_ = std::move(order); }
 
   // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
   virtual void analyse(const SparseMatrix& lower) = 0;
@@ -54,8 +60,12 @@ class Factorisation {
   // matrix unless a leading minor vanishes, which a small shift of the diagonal avoids.
   virtual Inertia inertia(const SparseMatrix& lower) = 0;
 
+ protected:
+  const std::shared_ptr<LastOrder>& order() const { return order_; }  // null: shared with no other
+
  private:
   std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
+  std::shared_ptr<LastOrder> order_;
 };
 
 using FactorisationFactory = std::function<std::unique_ptr<Factorisation>()>;

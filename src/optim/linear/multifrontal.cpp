@@ -54,7 +54,7 @@ class Multifrontal final : public Factorisation {
       Supernodes nodes = supernodes_of(graph, last);
       if (entries_of(nodes) <= kMostFill * fill_) return nodes;
     }
-    Supernodes nodes = supernodes_of(graph, node_order(graph));
+    Supernodes nodes = supernodes_of(graph, order() ? order()->of(graph) : node_order(graph));
     fill_ = entries_of(nodes);
     return nodes;
   }

@@ -68,4 +68,12 @@ std::vector<int> node_order(const NodeGraph& graph) {
   return minimum_degree_order(graph);
 }
 
+const std::vector<int>& LastOrder::of(const NodeGraph& graph) {
+  if (graph.start != graph_.start || graph.row != graph_.row) {
+    order_ = node_order(graph);
+    graph_ = graph;
+  }
+  return order_;
+}
+
 }  // namespace coapt
