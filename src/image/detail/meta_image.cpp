@@ -50,13 +50,21 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+// A damaged line may hold what would break a message.
+std::string in_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, '?');
+  return text;
+}
+
 [[noreturn]] void refuse_header(const fs::path& path, const std::string& reason) {
-  throw InputError(path.string() + ": its header cannot be read as MetaImage: " + reason +
+  throw InputError(path.string() + ": its header cannot be read as MetaImage: " + in_one_line(reason) +
                    "; mend it, or export it again");
 }
 
 [[noreturn]] void refuse_voxels(const fs::path& path, const std::string& reason) {
-  throw InputError(path.string() + ": its voxels cannot be read: " + reason + "; copy or export it again");
+  throw InputError(path.string() + ": its voxels cannot be read: " + in_one_line(reason) +
+                   "; copy or export it again");
 }
 
 // The lines up to ElementDataFile.
@@ -237,7 +245,7 @@ MetaImageHeader meta_image_header(const fs::path& path) {
   const std::string data = fields.text("elementdatafile");
   const bool is_local = lower_case(data) == "local";
   if (data.empty() || data.starts_with("LIST") || data.find('%') != std::string::npos)
-    throw InputError(path.string() + ": ElementDataFile is " + formats::quoted(data) +
+    throw InputError(path.string() + ": ElementDataFile is " + in_one_line(formats::quoted(data)) +
                      "; voxels are read from one file alone: convert it, with 3D Slicer for instance");
   header.data = is_local ? path : path.parent_path() / data;
   const long long skipped = fields.whole("HeaderSize", -1, 1LL << 40, 0);
