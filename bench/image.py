@@ -315,8 +315,8 @@ def cells(key: str, case: Case, rows: list[dict[str, float]]) -> list[str]:
     else:
         met = [] if goal is None else [value >= goal if key in FLOORS else value <= goal for value in values]
     worst = values[0] if key in FLOORS else values[-1]
-    counted = f"{sum(met)} of {len(rows)}" + (f" ({'≥' if key in FLOORS else '='if key == 'loops' else '≤'} {goal:g})" if met else "")
-    number = lambda value: f"{value:.3g}" if value < 1000 else str(round(value))
+    counted = f"{sum(met)} of {len(rows)}" + (f" ({'≥' if key in FLOORS else '=' if key == 'loops' else '≤'} {goal:g})" if met else "")
+    number = lambda value: "0" if value < 1e-9 else f"{value:.3g}" if value < 1000 else str(round(value))
     return [number(values[len(values) // 2]), number(worst), counted if met else ""]
 
 
