@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/benchmarks.md from the data in bench/results, and those of docs/papers from its papers/.
+"""Writes the tables of docs/benchmarks.md from the data in bench/results, those of docs/papers from its papers/, and those of
+docs/validation/image.md from its image/.
 
     bench/tables.py                 puts every table of the pages in order; --check only says whether all are
     bench/newton.py ... | bench/tables.py --record newton --machine epyc --command "bench/newton.py ..."
@@ -23,9 +24,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/benchmarks.md"
 RESULTS = ROOT / "bench/results"
 PAPERS = ROOT / "docs/papers"
+IMAGES = ROOT / "docs/validation/image.md"
 MARKED = re.compile(r"^<!-- table (\w+) -->\n.*?^<!-- end -->\n", re.MULTILINE | re.DOTALL)
 KEYS = ("date", "machine", "command", "made", "note")
-NOT_TABLES = ("papers", "rows")  # folders of bench/results: tables of other pages, and single solves
+NOT_TABLES = ("image", "papers", "rows")  # folders of bench/results: tables of other pages, and single solves
 
 
 def parsed(text: str) -> tuple[dict[str, str], list[list[str]]]:
@@ -138,7 +140,7 @@ def main() -> int:
         path = data_files(RESULTS).get(given.record, RESULTS / f"{given.record}.csv")
         path.write_text(recorded(sys.stdin.read(), about), encoding="utf-8")
         return 0
-    found = in_order(PAGE, RESULTS, given.check)
+    found = in_order(PAGE, RESULTS, given.check) + in_order(IMAGES, RESULTS / "image", given.check)
     for data in sorted((RESULTS / "papers").iterdir()):
         found += in_order(PAPERS / f"{data.name}.md", data, given.check)
     print("\n".join(found) if found else "tables: as their data are")

@@ -2,12 +2,15 @@
 
 #include "core/error.hpp"
 #include "core/number_text.hpp"
+#include "image/detail/dicom_structure.hpp"
 #include "image/detail/image_io.hpp"
+#include "image/detail/trial_process.hpp"
 
 #include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace coapt {
@@ -20,6 +23,9 @@ constexpr double kMostSkew =
 constexpr double kUsualAspect = 1.5;  // longest over shortest edge of a voxel; beyond it a warning says so
 constexpr double kUnevenSlices =
     0.01;  // greatest deviation of a slice from its even place, in distances of slices
+// What GDCM may take for files of so many bytes.
+constexpr double kTrialSeconds = 15, kTrialSecondsPerByte = 3e-6;
+constexpr std::uintmax_t kTrialBytes = std::uintmax_t(4) << 30, kTrialBytesPerByte = 100;
 
 std::string sizes_text(const std::vector<std::size_t>& sizes) {
   std::string text;
@@ -166,18 +172,16 @@ void check_values(const Volume& volume, const std::string& name) {
                    std::to_string(at / nx / ny) + "); give them a value in the program that wrote the file");
 }
 
-}  // namespace
-
-VolumeFile read_volume_header(const fs::path& path, const VolumeReadOptions& options) {
+VolumeFile header_of(const fs::path& path, const VolumeReadOptions& options) {
   if (fs::is_directory(path)) return described(series_in(path).whole, options, path.string());
   return described(ImageFile(path).found(), options, path.string());
 }
 
-VolumeFile read_volume(const fs::path& path, const VolumeReadOptions& options) {
+VolumeFile volume_of(const fs::path& path, const VolumeReadOptions& options) {
   const std::string name = path.string();
   const bool is_series = fs::is_directory(path);
   const SeriesFiles files = is_series ? series_in(path) : SeriesFiles{{path}, {}};
-  VolumeFile file = is_series ? described(files.whole, options, name) : read_volume_header(path, options);
+  VolumeFile file = is_series ? described(files.whole, options, name) : header_of(path, options);
   if (!file.states_spacing)
     throw InputError(name + ": does not say how large its voxels are; give it with --spacing, in mm");
   const auto frame = static_cast<std::size_t>(chosen_frame(file, options, name));
@@ -194,6 +198,50 @@ VolumeFile read_volume(const fs::path& path, const VolumeReadOptions& options) {
   }
   check_values(file.volume, name);
   return file;
+}
+
+std::vector<fs::path> dicom_files_at(const fs::path& path) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    if (fs::is_regular_file(path, error) && begins_as_dicom(path)) files.push_back(path);
+    return files;
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(path))
+    if (entry.is_regular_file() && begins_as_dicom(entry.path())) files.push_back(entry.path());
+  return files;
+}
+
+// What GDCM meets in a damaged file can end the program by an assertion, so that a copy of it reads DICOM
+// first.
+template <typename Read>
+void check_dicom_by_trial(const fs::path& path, const Read& read) {
+  const std::vector<fs::path> files = dicom_files_at(path);
+  if (files.empty()) return;
+  std::uintmax_t size = 0;
+  for (const fs::path& file : files) size += fs::file_size(file);
+  const TrialLimits limits{
+      static_cast<unsigned>(kTrialSeconds + kTrialSecondsPerByte * static_cast<double>(size)),
+      kTrialBytes + kTrialBytesPerByte * size};
+  const std::string end = end_of_trial(read, limits);
+  if (end.empty()) return;
+  fs::path culprit = path;
+  for (const fs::path& file : files)
+    if (culprit == path && !end_of_trial([&] { ImageFile(file).read(); }, limits).empty()) culprit = file;
+  throw InputError(culprit.string() + ": its reader (GDCM) was ended by " + end +
+                   ": the DICOM file is damaged; copy or export it again");
+}
+
+}  // namespace
+
+VolumeFile read_volume_header(const fs::path& path, const VolumeReadOptions& options) {
+  check_dicom_by_trial(path, [&] { header_of(path, options); });
+  return header_of(path, options);
+}
+
+VolumeFile read_volume(const fs::path& path, const VolumeReadOptions& options) {
+  check_dicom_by_trial(path, [&] { volume_of(path, options); });
+  return volume_of(path, options);
 }
 
 }  // namespace coapt

@@ -1,6 +1,7 @@
-// Volume images from files, by the readers of ITK: NRRD (.nrrd, .nhdr; also the sequences .seq.nrrd of 3D
-// Slicer), NIfTI (.nii, .nii.gz), MetaImage (.mha, .mhd) and DICOM (a folder with the slices of one series,
-// or a file with several slices).
+// Volume images from files: NRRD (.nrrd, .nhdr; also the sequences .seq.nrrd of 3D Slicer), NIfTI (.nii,
+// .nii.gz) and DICOM (a folder with the slices of one series, or a file with several slices) by the readers
+// of ITK, MetaImage (.mha, .mhd) by our own. DICOM is read in a copy of the process first (fork), as GDCM
+// ends the program on some damaged files.
 #pragma once
 
 #include "image/volume.hpp"
@@ -41,7 +42,7 @@ VolumeFile read_volume_header(const std::filesystem::path& path, const VolumeRea
 
 // The same with the values. Throws InputError also for a time series without a frame chosen, a frame that is
 // not there, a file that says nothing of its spacing where the options do not either, a file that ends too
-// early, and for voxels that are not finite.
+// early, for voxels that are not finite, and for a DICOM file that its reader does not survive.
 VolumeFile read_volume(const std::filesystem::path& path, const VolumeReadOptions& options = {});
 
 }  // namespace coapt

@@ -3,9 +3,11 @@
 #include "core/error.hpp"
 #include "formats/lower_extension.hpp"
 #include "image/detail/dicom_structure.hpp"
+#include "image/detail/meta_image.hpp"
 #include "image/detail/stated_geometry.hpp"
 
 #include <algorithm>
+#include <optional>
 
 // The whole of Eigen before ITK, which brings an older one with it that skips what is there already.
 #include <Eigen/Dense>
@@ -13,7 +15,6 @@
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaDataObject.h>
-#include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
@@ -22,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// None for a format that ITK does not read here.
 itk::ImageIOBase::Pointer reader_for(const fs::path& path, std::string& format) {
   const std::string ending = formats::lower_extension(path);
   const bool is_packed_nifti = ending == ".gz" && formats::lower_extension(path.stem()) == ".nii";
@@ -30,8 +32,9 @@ itk::ImageIOBase::Pointer reader_for(const fs::path& path, std::string& format) 
   };
   if (is({".nrrd", ".nhdr"})) return format = "NRRD", itk::NrrdImageIO::New().GetPointer();
   if (is({".nii"}) || is_packed_nifti) return format = "NIfTI", itk::NiftiImageIO::New().GetPointer();
-  if (is({".mha", ".mhd"})) return format = "MetaImage", itk::MetaImageIO::New().GetPointer();
-  if (is({".dcm", ".dicom", ".ima", ""})) return format = "DICOM", itk::GDCMImageIO::New().GetPointer();
+  if (is({".mha", ".mhd"})) return format = "MetaImage", nullptr;   // is read by meta_image.hpp
+  if (is({".dcm", ".dicom", ".ima", ""}) || begins_as_dicom(path))  // whose names may end anyhow
+    return format = "DICOM", itk::GDCMImageIO::New().GetPointer();
   throw InputError(
       path.string() + ": is no volume that can be read by its name: .nrrd, .seq.nrrd, .nhdr, .nii, " +
       ".nii.gz, .mha, .mhd, .dcm, or a folder with a DICOM series; convert it, with 3D Slicer for instance");
@@ -113,10 +116,6 @@ void find_what_is_stated(const itk::ImageIOBase& reader, const fs::path& path, F
     // The three that ITK turns to LPS; others stay as they are.
     found.states_space = !stated.direction || text_in(reader, "NRRD_space") == "left-posterior-superior";
     found.is_list = stated.is_list;
-  } else if (found.format == "MetaImage") {
-    const StatedGeometry stated = stated_in_meta_image(path);
-    found.states_spacing = stated.spacing;
-    found.states_direction = stated.direction;
   } else if (found.format == "NIfTI") {
     const auto is_zero = [&](const char* key) { return text_in(reader, key) == "0"; };
     found.states_direction = !is_zero("qform_code") || !is_zero("sform_code");
@@ -149,13 +148,19 @@ FoundImage found_by(const itk::ImageIOBase& reader, const fs::path& path, const 
 }  // namespace
 
 struct ImageFile::Reader {
-  itk::ImageIOBase::Pointer io;
+  itk::ImageIOBase::Pointer io;  // or
+  std::optional<MetaImageHeader> meta = {};
 };
 
 ImageFile::ImageFile(const fs::path& path) : path_(path), reader_(std::make_unique<Reader>()) {
   std::string format;
   check_file(path);
   reader_->io = reader_for(path, format);
+  if (!reader_->io) {
+    reader_->meta = meta_image_header(path);
+    found_ = reader_->meta->found;
+    return;
+  }
   if (format == "DICOM") check_dicom_structure(path);
   itk::Object::SetGlobalWarningDisplay(false);  // of what ITK doubts, what matters is said here
   try {
@@ -173,6 +178,7 @@ ImageFile::ImageFile(const fs::path& path) : path_(path), reader_(std::make_uniq
 ImageFile::~ImageFile() = default;
 
 std::vector<char> ImageFile::read() const {
+  if (reader_->meta) return meta_image_voxels(*reader_->meta, path_);
   itk::ImageIOBase& io = *reader_->io;
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
@@ -182,7 +188,6 @@ std::vector<char> ImageFile::read() const {
   io.SetIORegion(region);
   try {
     std::vector<char> bytes(io.GetImageSizeInBytes());
-    if (found_.format == "MetaImage") check_meta_image_data(path_, bytes.size());
     if (found_.format == "NIfTI") check_nifti_data(path_, bytes.size());
     io.Read(bytes.data());
     return bytes;

@@ -30,29 +30,26 @@ std::string in_small_letters(std::string text) {
 
 bool has_digit(const std::string& text) { return text.find_first_of("0123456789") != std::string::npos; }
 
-// Calls see(key, value, whether the line is empty) for the lines `key mark value` until it returns false;
-// where the bytes behind that line begin.
+// Calls see(key, value, whether the line is empty) for the lines `key: value` until it returns false.
 template <typename See>
-std::uintmax_t read_fields(const std::filesystem::path& path, char mark, const See& see) {
+void read_fields(const std::filesystem::path& path, const See& see) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   for (int n = 0; n < kMostHeaderLines && std::getline(file, line); ++n) {
     const std::string text = without_space_around(line);
-    const std::size_t at = text.find(mark);
+    const std::size_t at = text.find(':');
     const bool is_field = at != std::string::npos && !text.starts_with('#');
     if (!see(in_small_letters(without_space_around(text.substr(0, is_field ? at : 0))),
              is_field ? without_space_around(text.substr(at + 1)) : "", text.empty()))
       break;
   }
-  const std::streamoff at = file.tellg();
-  return at < 0 ? 0 : static_cast<std::uintmax_t>(at);
 }
 
 }  // namespace
 
 StatedGeometry stated_in_nrrd(const std::filesystem::path& path) {
   StatedGeometry stated;
-  read_fields(path, ':', [&](const std::string& key, const std::string& value, bool is_empty) {
+  read_fields(path, [&](const std::string& key, const std::string& value, bool is_empty) {
     if (key == "space directions" && has_digit(value)) stated.spacing = stated.direction = true;
     if (key == "spacings" && has_digit(value)) stated.spacing = true;
     if (key == "kinds") stated.is_list = in_small_letters(value).find("list") != std::string::npos;
@@ -60,42 +57,6 @@ StatedGeometry stated_in_nrrd(const std::filesystem::path& path) {
     return !is_empty;  // an empty line ends the header
   });
   return stated;
-}
-
-StatedGeometry stated_in_meta_image(const std::filesystem::path& path) {
-  StatedGeometry stated;
-  read_fields(path, '=', [&](const std::string& key, const std::string& value, bool) {
-    if ((key == "elementspacing" || key == "elementsize") && has_digit(value)) stated.spacing = true;
-    if ((key == "transformmatrix" || key == "rotation" || key == "orientation") && has_digit(value))
-      stated.direction = true;
-    return key != "elementdatafile";  // the last one
-  });
-  return stated;
-}
-
-void check_meta_image_data(const std::filesystem::path& path, std::uintmax_t wanted) {
-  bool is_compressed = false;
-  std::string data_file;
-  const std::uintmax_t header =
-      read_fields(path, '=', [&](const std::string& key, const std::string& value, bool) {
-        if (key == "compresseddata") is_compressed = in_small_letters(value) == "true";
-        if (key == "elementdatafile") data_file = value;
-        return data_file.empty();
-      });
-  const bool is_list = data_file.starts_with("LIST") || data_file.find('%') != std::string::npos;
-  if (is_compressed || is_list) return;  // ITK says itself where one of these is not whole
-  const bool is_local = in_small_letters(data_file) == "local";
-  const std::filesystem::path file = is_local ? path : path.parent_path() / data_file;
-  std::error_code error;
-  const std::uintmax_t whole = std::filesystem::file_size(file, error);
-  if (error)
-    throw InputError(path.string() + ": its voxels cannot be read: " + file.string() + ": " +
-                     error.message());
-  const std::uintmax_t size = is_local ? whole - header : whole;
-  if (size < wanted)
-    throw InputError(path.string() + ": its voxels cannot be read: " + file.string() + " holds " +
-                     std::to_string(size) + " bytes instead of " + std::to_string(wanted) +
-                     "; copy or export it again");
 }
 
 void check_nifti_data(const std::filesystem::path& path, std::uintmax_t wanted) {

@@ -17,14 +17,8 @@ struct StatedGeometry {
 // Of an NRRD file, or of its detached header. Fields that are not there, or hold no number, are not stated.
 StatedGeometry stated_in_nrrd(const std::filesystem::path& path);
 
-// Of a MetaImage file.
-StatedGeometry stated_in_meta_image(const std::filesystem::path& path);
-
-// Throws InputError where the file of a MetaImage's voxels is not there, or holds fewer than `wanted` bytes
-// and they are not compressed: ITK takes what is missing as it happens to be in memory.
-void check_meta_image_data(const std::filesystem::path& path, std::uintmax_t wanted);
-
-// The same for a file of NIfTI, packed or not: ITK takes zeros for what is missing.
+// Throws InputError where a file of NIfTI, packed or not, holds fewer than `wanted` bytes of voxels: ITK
+// takes zeros for what is missing.
 void check_nifti_data(const std::filesystem::path& path, std::uintmax_t wanted);
 
 }  // namespace coapt

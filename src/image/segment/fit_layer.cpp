@@ -1,6 +1,7 @@
 #include "image/segment/fit_layer.hpp"
 
 #include "core/random_source.hpp"
+#include "image/segment/gap_deviation.hpp"
 
 #include <Eigen/SparseCholesky>
 
@@ -192,8 +193,8 @@ LayerFit fit_layer(LayerGrid& grid, const SheetEvidence& evidence, double smooth
     Vector counted = measured.weights;
     counted.head(grid.columns).setZero();
     estimate_noise(grid, measured.offsets - moved, counted, fit);
-    fit.deviation =
-        (fit.noise * std::sqrt(fit.noise_area)) * sampled_variances(factor, moved.size()).cwiseSqrt();
+    const Vector of_noise = fit.noise * fit.noise * fit.noise_area * sampled_variances(factor, moved.size());
+    fit.deviation = (of_noise + gap_deviation(grid, fit.evidence).cwiseAbs2()).cwiseSqrt();
   }
   return fit;
 }

@@ -22,8 +22,8 @@ struct LayerFit {
 // The deviation is that of the Gaussian posterior of the last fit (Wahba 1983, Bayesian confidence intervals
 // for the cross-validated smoothing spline): noise variance times noise area times the diagonal of the
 // inverse matrix, by samples with a fixed seed. Noise and the area over which it is correlated come from what
-// the fit leaves over. It grows where there is no evidence, and knows nothing of what is wrong everywhere in
-// the same way.
+// the fit leaves over. In gaps of the evidence that of the unknown curvature is added (gap_deviation.hpp). It
+// knows nothing of what is wrong everywhere in the same way.
 LayerFit fit_layer(LayerGrid& grid, const SheetEvidence& evidence, double smoothing, int rounds);
 
 }  // namespace coapt

@@ -11,10 +11,6 @@ namespace {
 constexpr double kProfileReach = 2.6, kPatch = 1.6;  // of the profiles that thickness is fitted to [mm]
 constexpr double kPlainBlur = 0.5;                   // of an image without speckle, in voxels
 
-// Linear interpolation smooths by this much on average: f (1 - f) squared voxels of variance at the fraction
-// f.
-double interpolation_variance(const Volume& volume) { return volume.spacing.squaredNorm() / 3 / 6; }
-
 }  // namespace
 
 double median_of_finite(const Vector& values) {
@@ -31,17 +27,20 @@ Vector blur_across(const Volume& volume, const LayerGrid& grid, const std::vecto
                    const std::optional<double>& given, const GreyScale& scale) {
   if (given) return Vector::Constant(grid.points.cols(), *given);
   if (scale.is_logarithmic())
-    if (const std::optional<Vec3> spread = speckle_blur(volume, grid, is_seen)) {
-      const Points normals = volume.direction.transpose() * grid.normals;
-      const Vector variances = (spread->asDiagonal() * normals).colwise().squaredNorm();
-      return (variances.array() + interpolation_variance(volume)).sqrt();
+    if (const std::optional<SpeckleBlur> spread = speckle_blur(volume, grid, is_seen, scale)) {
+      Vector blur(grid.points.cols());
+      for (Eigen::Index node = 0; node < blur.size(); ++node)
+        blur[node] = spread->at(grid.points.col(node))
+                         .cwiseProduct(volume.direction.transpose() * grid.normals.col(node))
+                         .norm();
+      return blur;
     }
   return Vector::Constant(grid.points.cols(), kPlainBlur * volume.spacing.mean());
 }
 
 Vector thickness_at_vertices(const Volume& volume, const LayerGrid& grid, const LayerMesh& mesh,
-                             const Vector& blur, const GreyScale& scale) {
-  const WallProfiles profiles = wall_profiles(volume, grid, kProfileReach, kPatch);
+                             const Vector& blur, double place_deviation, const GreyScale& scale) {
+  const WallProfiles profiles = wall_profiles(volume, grid, kProfileReach, kPatch, place_deviation);
   Vector thickness = Vector::Constant(mesh.mesh.vertex_count(), kNaN);
   for (int v = 0; v < mesh.mesh.vertex_count(); ++v) {
     Eigen::Index corner = 0;

@@ -107,6 +107,14 @@ std::vector<char> seen_points(const LayerGrid& grid, const LayerFit& fit, const 
   return is_seen;
 }
 
+// Over the points that count; over all where none does.
+double mean_of(const Vector& values, const std::vector<char>& is_counted) {
+  double sum = 0, count = 0;
+  for (Eigen::Index node = 0; node < values.size(); ++node)
+    if (is_counted[static_cast<size_t>(node)]) sum += values[node], ++count;
+  return count > 0 ? sum / count : values.mean();
+}
+
 // From the middle of the sheet to where its values fall below the threshold, against the normal.
 void move_to_atrium(LayerMesh& mesh, const LayerGrid& grid, const Volume& volume, double threshold) {
   constexpr double kStep = 0.1, kFarthest = 3;  // [mm]
@@ -186,7 +194,7 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const FreeEdge edge = free_edge(seen, evidence, grid);
   const std::vector<char> is_seen = seen_points(grid, fit, edge);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
-  result.blur = blur.mean();
+  result.blur = mean_of(blur, is_seen);
   result.edge_deviation = edge.deviation;
   result.contrast = edge.contrast;
 
@@ -194,7 +202,7 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   LayerMesh mesh = layer_mesh(grid, edge.lengths, options.edge_length);
 
   phases.begin("thickness");
-  result.thickness = thickness_at_vertices(part, grid, mesh, blur, scale);
+  result.thickness = thickness_at_vertices(part, grid, mesh, blur, median_of_finite(fit.deviation), scale);
   result.thickness_median = median_of_finite(result.thickness);
   if (threshold) move_to_atrium(mesh, grid, part, *threshold);
   gather(result, mesh, fit, part.spacing.maxCoeff());

@@ -34,14 +34,19 @@ struct WallResiduals {
   double blur;
   const GreyScale& scale;
 
+  double value_at(double offset, double width, const Vector& p) const {
+    return value_at_share(scale, p[2], std::max(p[3], p[2]), blurred_top_hat(offset - p[0], width, blur));
+  }
+
   int inputs() const { return 4; }
   int values() const { return static_cast<int>(profiles.values.rows()); }
 
   int operator()(const Vector& p, Vector& residuals) const {
     const double width = std::exp(std::clamp(p[1], std::log(kLeastWidth), std::log(kGreatestWidth)));
     for (Eigen::Index k = 0; k < profiles.values.rows(); ++k) {
-      const double share = blurred_top_hat(profiles.offset(k) - p[0], width, blur);
-      const double value = value_at_share(scale, p[2], std::max(p[3], p[2]), share);
+      const double at = profiles.offset(k), aside = std::sqrt(3.0) * profiles.scatter;
+      const double value =
+          (4 * value_at(at, width, p) + value_at(at - aside, width, p) + value_at(at + aside, width, p)) / 6;
       residuals[k] = value - profiles.values(k, point);
     }
     return 0;
@@ -50,8 +55,11 @@ struct WallResiduals {
 
 }  // namespace
 
-WallProfiles wall_profiles(const Volume& volume, const LayerGrid& grid, double reach, double radius) {
+WallProfiles wall_profiles(const Volume& volume, const LayerGrid& grid, double reach, double radius,
+                           double place_deviation) {
   WallProfiles profiles;
+  // Linear interpolation takes part of its value from f (1 - f) squared voxels away, a sixth on average.
+  profiles.scatter = std::sqrt(volume.spacing.squaredNorm() / 3 / 6 + place_deviation * place_deviation);
   const int half = static_cast<int>(std::lround(reach / profiles.step));
   const Eigen::Index samples = 2 * half + 1;
   Eigen::MatrixXd raw(samples, grid.points.cols());

@@ -11,6 +11,7 @@ namespace coapt {
 // are the mean of those around it, so that speckle averages out.
 struct WallProfiles {
   double step = 0.2;       // [mm]
+  double scatter = 0;      // standard deviation of the places whose grey values make up one of a profile [mm]
   Eigen::MatrixXd values;  // the middle row is the layer itself
 
   double offset(Eigen::Index sample) const {
@@ -18,8 +19,10 @@ struct WallProfiles {
   }
 };
 
-// Reach to both sides, and half the width of the square that is averaged over [mm].
-WallProfiles wall_profiles(const Volume& volume, const LayerGrid& grid, double reach, double radius);
+// Reach to both sides, and half the width of the square that is averaged over [mm]. place_deviation: of the
+// points of the layer from where they should lie [mm].
+WallProfiles wall_profiles(const Volume& volume, const LayerGrid& grid, double reach, double radius,
+                           double place_deviation);
 
 struct WallFit {
   double centre = 0;    // along the normal [mm]
@@ -29,8 +32,9 @@ struct WallFit {
 };
 
 // Between a weaker and a stronger value the signal is that of a sheet of uniform strength, blurred by a
-// Gaussian of standard deviation `blur` [mm]; width, centre and both values by least squares
-// (Levenberg-Marquardt). Not found where no sheet is brighter than its sides.
+// Gaussian of standard deviation `blur` [mm]. The profile averages grey values, not signals, over its scatter
+// (three-point Gauss-Hermite quadrature): a logarithm averaged is no wider sheet. Width, centre and both
+// values by least squares (Levenberg-Marquardt). Not found where no sheet is brighter than its sides.
 WallFit fit_wall(const WallProfiles& profiles, Eigen::Index point, double blur, const GreyScale& scale);
 
 }  // namespace coapt

@@ -120,18 +120,21 @@ TEST(SpeckleBlur, IsThatOfThePointSpread) {
   const TriangleMesh sheet = square(24, 800);
   const testing::PhantomOptions phantom{.voxel = 0.5, .thickness = 1.5, .spread = 0.6};
   const Volume volume = testing::speckle_volume(sheet, phantom);
+  const GreyScale scale{testing::kPhantomRange / 255};
   LayerGrid grid;
   grid.columns = 41;
   grid.rows = 41;
   grid.points.resize(3, 41 * 41);
+  grid.normals = Vec3::UnitZ().replicate(1, 41 * 41);
   for (int row = 0; row < 41; ++row)
     for (int column = 0; column < 41; ++column)
       grid.points.col(grid.node(column, row)) = Vec3(2 + 0.5 * column, 2 + 0.5 * row, 0);
-  const std::optional<Vec3> blur = speckle_blur(volume, grid, std::vector<char>(41 * 41, 1));
+  const std::optional<SpeckleBlur> blur = speckle_blur(volume, grid, std::vector<char>(41 * 41, 1), scale);
   ASSERT_TRUE(blur);
-  EXPECT_NEAR((*blur)[0], 0.6 / std::sqrt(2.0), 0.06);  // of power; along y it is the same
-  EXPECT_NEAR((*blur)[1], 0.6 / std::sqrt(2.0), 0.06);
-  EXPECT_FALSE(speckle_blur(volume, grid, std::vector<char>(41 * 41, 0)));
+  const Vec3 middle = blur->at(Vec3(12, 12, 0));
+  EXPECT_NEAR(middle[0], 0.6 / std::sqrt(2.0), 0.06);  // of power; along y it is the same
+  EXPECT_NEAR(middle[1], 0.6 / std::sqrt(2.0), 0.06);
+  EXPECT_FALSE(speckle_blur(volume, grid, std::vector<char>(41 * 41, 0), scale));
 }
 
 TEST(RoundTriangles, MakesAnglesLargerOnTheSameSurface) {

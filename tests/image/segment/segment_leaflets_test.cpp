@@ -120,6 +120,26 @@ TEST(SegmentLeaflets, EndsWhereChordsFanOut) {
   expect_sound(found);
 }
 
+TEST(SegmentLeaflets, FindsTheThicknessWithinAFifth) {
+  struct Case {
+    double voxel, thickness;
+    unsigned seed;
+  };
+  for (const Case& one : {Case{0.5, 0.8, 11}, Case{0.5, 1, 12}, Case{0.7, 1.5, 13}, Case{0.7, 2, 14}}) {
+    const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = one.seed});
+    PhantomOptions phantom;
+    phantom.axial = phantom.lateral = 0.5;
+    phantom.dropout = 0;
+    phantom.shadows = 0;
+    phantom.voxel = one.voxel;
+    phantom.thickness = one.thickness;
+    phantom.seed = one.seed;
+    const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
+    EXPECT_NEAR(found.thickness_median, one.thickness, 0.2 * one.thickness) << one.voxel << " " << one.seed;
+    EXPECT_NEAR(found.blur, 0.41, 0.04);  // of power, 15 mm behind the annulus, where it is wider
+  }
+}
+
 TEST(SegmentLeaflets, StatesAnUncertaintyThatCoversTheError) {
   const Segmentation found = segment_leaflets(
       testing::speckle_volume(truth().leaflets, {.voxel = 0.8, .seed = 5}), speckle_options(truth()));
@@ -157,7 +177,7 @@ TEST(SegmentLeaflets, GoesOnWhereEchoesDropOut) {
     ++(distance < 1.5 ? count_in : count_else);
   }
   ASSERT_GT(count_in, 2);
-  EXPECT_GT(in_patch / count_in, 1.1 * elsewhere / count_else);
+  EXPECT_GT(in_patch / count_in, 1.5 * elsewhere / count_else);
 }
 
 TEST(SegmentLeaflets, DoesNotDependOnTheAxesOfTheVolume) {
