@@ -191,7 +191,7 @@ class CommandTest(CommandCase):
         self.assertIn(b"cauchy_stress_1_kpa", fields)
         self.assertNotIn(b"first_piola_stress_1_kpa", fields)
         across = self.square_of(sail.replace("[1, 0, 0]", "[0, 0, 1]"))
-        self.assert_bad_input(coapt("solve", across), "direction", "triangle 0")
+        self.assert_bad_input(coapt("solve", across), "direction", "triangle 1, counted from 1")
 
     def test_frames_of_a_motion_share_one_time(self):
         scene = self.generate("mitral", "--triangles", 200, "--contact", "none")

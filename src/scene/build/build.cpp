@@ -1,6 +1,7 @@
 #include "scene/build/build.hpp"
 
 #include "core/error.hpp"
+#include "formats/file_numbering.hpp"
 #include "scene/build/build_parts.hpp"
 #include "scene/build/fibres.hpp"
 #include "scene/build/scene_geometry.hpp"
@@ -61,7 +62,8 @@ std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ge
                          return model.fibres;
                        },
                        geometry.links,
-                       finest_geometry(geometry).patches};
+                       finest_geometry(geometry).patches,
+                       scene.mesh ? file_numbering(scene.mesh->file) : Numbering()};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
