@@ -155,6 +155,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
       result.branch_changes.push_back(*change);
       outcome.note = described(*change);
     }
+      if (has_motion || steps > 1) monitor.set_path(has_motion ? move.reached : t);
     if (monitor.is_cancelled()) {
       outcome.status = Status::Cancelled;
       break;

@@ -88,6 +88,7 @@ class DampedPath {
     if (is_blocked_) return;
     objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
     if (is_loaded()) monitor_.limit_iterations(kMostInStep);
+    if (!is_loaded()) monitor_.set_path(std::min(load(), moved_));
     outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, kStepTolerance,
                                            result_.outer_iterations, outcome_.note);
     const bool is_slow = outcome_.status == Status::IterationLimit && monitor_.has_reached_limit();
