@@ -56,6 +56,13 @@ using Observer = std::function<bool(const Iteration&, const Vector& q)>;
 struct MotionPath {
   int steps = 1;                              // equal steps in t; at least one
   std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
+
+  // Nodes that move by one instruction, and what messages call it; may be left out.
+  struct Part {
+    std::string name;
+    std::vector<int> nodes;
+  };
+  std::vector<Part> parts = {};
 };
 
 class Monitor;

@@ -114,6 +114,10 @@ Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms&
 
   model.wants_first_piola = scene.wants_first_piola;
   model.motion = motion_path(prescribed, model.X, scene.motion_steps);
+  if (model.motion.positions)
+    for (const BoundaryEntry& entry : scene.boundary)
+      if (!entry.path.empty())
+        model.motion.parts.push_back({entry.where, selected_nodes(entry.nodes, geometry, entry.where)});
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
   model.objective->use_threads(thread_count(scene.solver));
   model.q0 = model.objective->unknowns(model.X);
