@@ -28,9 +28,11 @@ std::optional<double> ProgressEstimate::seconds_left(double wanted) const {
 std::string progress_line(const Iteration& now, long nodes, std::optional<double> wanted, double elapsed_s,
                           std::optional<double> left_s) {
   return "step " + std::to_string(now.outer_iteration) + ", " + std::to_string(nodes) + " nodes, iteration " +
-         std::to_string(now.iteration) + ", residual " + number_text(now.residual, 2) +
-         (wanted ? " (wanted " + number_text(*wanted, 2) + ")" : "") + ", " + fixed_text(elapsed_s, 1) +
-         " s" + (left_s ? ", about " + number_text(std::max(*left_s, 0.1), 1) + " s left in this step" : "");
+         std::to_string(now.iteration) +
+         (std::isnan(now.path) ? "" : ", path " + fixed_text(100 * now.path, 0) + " %") + ", residual " +
+         number_text(now.residual, 2) + (wanted ? " (wanted " + number_text(*wanted, 2) + ")" : "") + ", " +
+         fixed_text(elapsed_s, 1) + " s" +
+         (left_s ? ", about " + number_text(std::max(*left_s, 0.1), 1) + " s left in this step" : "");
 }
 
 }  // namespace coapt::cli

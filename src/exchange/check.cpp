@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "exchange/valve_doubts.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/mesh_io.hpp"
 #include "mesh/mesh_check.hpp"
@@ -41,7 +42,7 @@ void check_named_mesh(const std::filesystem::path& scene_file, CheckReport& repo
   try {
     const MeshFile mesh = read_mesh(path);
     append(report.warnings, mesh.warnings);
-    for (const MeshDefect& defect : check_mesh(mesh.mesh))
+    for (const MeshDefect& defect : check_mesh(mesh.mesh, {.numbering = file_numbering(path)}))
       append(defect.severity == Severity::Error ? report.defects : report.warnings,
              {path.string() + ": " + defect.message});
   } catch (const InputError& error) {

@@ -116,7 +116,8 @@ listed here are errors.
 constexpr const char* kNodes = R"(## Nodes
 
 Nodes are the vertices of the mesh, counted from 0, followed by the anchors and then the free branch points
-of each network in the order in which terms name them. A selection is one of
+of each network in the order in which terms name them. Messages about vertices and triangles of the mesh count
+them as its file does: an OBJ from 1, and then they say so. A selection is one of
 
 - the name of a set: one of `sets`; `"all"`; `"boundary"` (the nodes on the mesh's rims, loop after loop); a
   region of the mesh; `"papillary"` and `"junctions"` of the networks; any list of vertex numbers in the

@@ -1,6 +1,7 @@
 #include "exchange/valve_doubts.hpp"
 
 #include "exchange/detail/law_doubts.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/lower_extension.hpp"
 
@@ -65,8 +66,9 @@ void find_unused_chords(const Scene& scene, std::vector<std::string>& doubts) {
 std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file,
                                       const ChordLimits& limits) {
   std::vector<std::string> doubts;
-  for (const std::vector<std::string>& list :
-       {chord_doubts(valve, limits), size_doubts(valve), pressure_side_doubts(valve)})
+  const Numbering numbering = file_numbering(file);
+  for (const std::vector<std::string>& list : {chord_doubts(valve, limits, true, numbering),
+                                               size_doubts(valve), pressure_side_doubts(valve, numbering)})
     for (const std::string& doubt : list) doubts.push_back(file + ": " + doubt);
   return doubts;
 }
@@ -76,6 +78,7 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   const auto annulus = geometry.model.sets.find("annulus");
   if (!scene.mesh || annulus == geometry.model.sets.end() || annulus->second.empty()) return {};
   const std::string file = scene.file.string();
+  const Numbering numbering = file_numbering(scene.mesh->file);
   Valve valve;
   valve.leaflets = geometry.model.mesh;
   valve.closed_reference = geometry.model.closed_reference;
@@ -94,7 +97,7 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   };
   // Cut and shortened chords hang loose or are overstretched by intention.
   if (scene.interventions.empty()) {
-    add(file, chord_doubts(valve, detail::chord_limits(scene), names_repeated));
+    add(file, chord_doubts(valve, detail::chord_limits(scene), names_repeated, numbering));
     if (geometry.networks.empty()) find_unused_chords(scene, doubts);
   }
   std::vector<std::string> sizes = size_doubts(valve);
@@ -102,10 +105,10 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   for (const std::string& doubt : size_doubts(valve))
     if (std::find(sizes.begin(), sizes.end(), doubt) == sizes.end()) sizes.push_back(doubt);
   add(file, sizes);
-  if (presses_front(scene)) add(file, pressure_side_doubts(valve));
+  if (presses_front(scene)) add(file, pressure_side_doubts(valve, numbering));
   for (const std::string& doubt : detail::load_doubts(scene)) doubts.push_back(doubt);
   add(file, detail::law_doubts(scene, model));
-  add(scene.mesh->file.string(), fold_doubts(valve.leaflets));
+  add(scene.mesh->file.string(), fold_doubts(valve.leaflets, numbering));
   return doubts;
 }
 

@@ -73,7 +73,8 @@ MeshFile MeshBuilder::finish(std::vector<int> regions, std::vector<std::string> 
   if (polygon_count_ > 0)
     result.warnings.push_back(defects_.file() + ": " + std::to_string(polygon_count_) +
                               " faces with more than 3 corners were cut into triangles (the first: " + unit_ +
-                              " " + std::to_string(first_polygon_) + ")");
+                              " " + std::to_string(first_polygon_) +
+                              "); triangles are counted after the cut");
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "formats/mesh_io.hpp"
 
 #include "core/error.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/formats.hpp"
 #include "formats/lower_extension.hpp"
 #include "formats/utf8.hpp"
@@ -45,6 +46,10 @@ VtpSurface vtp_surface(const TriangleMesh& mesh, const std::string& space) {
 }
 
 }  // namespace
+
+Numbering file_numbering(const std::filesystem::path& file) {
+  return {formats::lower_extension(file) == ".obj" ? 1 : 0};
+}
 
 MeshFile read_mesh(const std::filesystem::path& path) {
   const std::string format = formats::lower_extension(path);

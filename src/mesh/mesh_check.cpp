@@ -22,40 +22,33 @@ constexpr size_t kListed = 10;
 
 using Kind = MeshDefectKind;
 
-// "3, 7, 9 and 12 more"; with width 2 "(3, 7), (9, 11)".
-std::string listed(const std::vector<int>& elements, size_t width = 1) {
-  std::string text;
-  const size_t count = elements.size() / width;
-  for (size_t i = 0; i < std::min(count, kListed); ++i) {
-    if (i > 0) text += ", ";
-    if (width == 1) {
-      text += std::to_string(elements[i]);
-      continue;
-    }
-    text += '(';
-    text += std::to_string(elements[2 * i]);
-    text += ", ";
-    text += std::to_string(elements[2 * i + 1]);
-    text += ')';
-  }
-  if (count > kListed) text += " and " + std::to_string(count - kListed) + " more";
-  return text;
-}
-
 std::string counted(size_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-std::string triangles_text(const std::vector<int>& elements) {
-  return (elements.size() == 1 ? "triangle " : "triangles ") + listed(elements);
-}
-
-std::string vertices_text(const std::vector<int>& elements) {
-  return (elements.size() == 1 ? "vertex " : "vertices ") + listed(elements);
-}
-
 class Report {
  public:
+  explicit Report(Numbering numbering) : numbering_(numbering) {}
+
+  // "3, 7, 9 and 12 more"; with width 2 "(3, 7), (9, 11)".
+  std::string listed(const std::vector<int>& elements, size_t width = 1) const {
+    std::string text;
+    const size_t count = elements.size() / width;
+    for (size_t i = 0; i < std::min(count, kListed); ++i) {
+      const std::string one = numbering_.of(elements[width * i]);
+      text.append(i > 0 ? ", " : "");
+      text += width == 1 ? one : "(" + one + ", " + numbering_.of(elements[2 * i + 1]) + ")";
+    }
+    if (count > kListed) text += " and " + std::to_string(count - kListed) + " more";
+    return text + numbering_.note();
+  }
+  std::string triangles(const std::vector<int>& elements) const {
+    return (elements.size() == 1 ? "triangle " : "triangles ") + listed(elements);
+  }
+  std::string vertices(const std::vector<int>& elements) const {
+    return (elements.size() == 1 ? "vertex " : "vertices ") + listed(elements);
+  }
+
   // Nothing is reported when no element is affected.
   void add(Severity severity, Kind kind, std::vector<int> elements, const std::string& message) {
     if (!elements.empty()) defects.push_back({severity, kind, message, std::move(elements)});
@@ -68,6 +61,9 @@ class Report {
   }
 
   std::vector<MeshDefect> defects;
+
+ private:
+  Numbering numbering_;
 };
 
 bool corners_are_in_range(const TriangleMesh& mesh, Report& report) {
@@ -76,7 +72,7 @@ bool corners_are_in_range(const TriangleMesh& mesh, Report& report) {
     if (mesh.triangles.col(t).minCoeff() < 0 || mesh.triangles.col(t).maxCoeff() >= mesh.vertex_count())
       out.push_back(t);
   report.error(Kind::IndexOutOfRange, out,
-               triangles_text(out) + ": names a vertex that does not exist (there are " +
+               report.triangles(out) + ": names a vertex that does not exist (there are " +
                    std::to_string(mesh.vertex_count()) + "); correct the corners");
   return out.empty();
 }
@@ -96,15 +92,15 @@ void check_corners(const TriangleMesh& mesh, Report& report) {
       twice.push_back(t);
   }
   report.error(Kind::RepeatedIndex, repeated,
-               triangles_text(repeated) + ": names a vertex twice, so it has no area; remove it");
+               report.triangles(repeated) + ": names a vertex twice, so it has no area; remove it");
   report.warn(
       Kind::DuplicateTriangle, twice,
-      triangles_text(twice) + ": repeats an earlier triangle, which doubles stiffness and load; remove it");
+      report.triangles(twice) + ": repeats an earlier triangle, which doubles stiffness and load; remove it");
   std::vector<int> isolated;
   for (int i = 0; i < mesh.vertex_count(); ++i)
     if (!used[static_cast<size_t>(i)]) isolated.push_back(i);
   report.warn(Kind::IsolatedVertex, isolated,
-              vertices_text(isolated) + ": on no triangle; stays where it is and gets no unknowns");
+              report.vertices(isolated) + ": on no triangle; stays where it is and gets no unknowns");
 }
 
 bool coordinates_are_finite(const TriangleMesh& mesh, Report& report) {
@@ -112,7 +108,7 @@ bool coordinates_are_finite(const TriangleMesh& mesh, Report& report) {
   for (int i = 0; i < mesh.vertex_count(); ++i)
     if (!mesh.vertices.col(i).allFinite()) bad.push_back(i);
   report.error(Kind::NotFinite, bad,
-               vertices_text(bad) + ": a coordinate is NaN or infinite; correct the position");
+               report.vertices(bad) + ": a coordinate is NaN or infinite; correct the position");
   return bad.empty();
 }
 
@@ -123,12 +119,12 @@ void check_edges(const TriangleMesh& mesh, const MeshCheckOptions& options, Repo
   report.warn(
       Kind::NonManifoldEdge, crowded,
       counted(crowded.size() / 2, "edge has", "edges have") + " more than two triangles, between vertices " +
-          listed(crowded, 2) +
+          report.listed(crowded, 2) +
           (options.orientation_matters ? "; the side on which pressure acts is not defined across it" : "") +
           "; split the surface there if that is not meant");
   const std::vector<int> bowties = bowtie_vertices(mesh);
   report.warn(Kind::BowtieVertex, bowties,
-              vertices_text(bowties) +
+              report.vertices(bowties) +
                   ": joins parts that share no edge there, as a hinge without stiffness; " +
                   "give each part a vertex of its own, or close the gap");
 }
@@ -139,7 +135,7 @@ void check_sides(const TriangleMesh& mesh, const MeshCheckOptions& options, Repo
     report.add(options.orientation_matters ? Severity::Error : Severity::Warning, Kind::NotOrientable,
                orientation.one_sided,
                "the surface has one side only (it closes on itself with a twist at " +
-                   triangles_text(orientation.one_sided) +
+                   report.triangles(orientation.one_sided) +
                    "): the side on which pressure acts is not defined; cut it, or leave out the pressure");
     return;
   }
@@ -147,7 +143,7 @@ void check_sides(const TriangleMesh& mesh, const MeshCheckOptions& options, Repo
   for (int t = 0; t < mesh.triangle_count(); ++t)
     if (orientation.flip[static_cast<size_t>(t)]) flipped.push_back(t);
   report.warn(Kind::InconsistentOrientation, flipped,
-              triangles_text(flipped) + ": the normal points against that of the neighbours" +
+              report.triangles(flipped) + ": the normal points against that of the neighbours" +
                   (options.orientation_matters ? ", so pressure would push the wrong way" : "") +
                   "; orient the mesh consistently (orient_consistently)");
 }
@@ -159,7 +155,7 @@ void check_seams(const TriangleMesh& mesh, Report& report) {
     if (first[static_cast<size_t>(i)] != i) twins.push_back(i);
   report.warn(Kind::DuplicateVertices, twins,
               counted(twins.size(), "vertex lies", "vertices lie") +
-                  " exactly on an earlier one without being joined (" + listed(twins) +
+                  " exactly on an earlier one without being joined (" + report.listed(twins) +
                   "): seams there are open; weld the mesh (weld) if they should be closed");
 }
 
@@ -172,7 +168,8 @@ void check_components(const TriangleMesh& mesh, Report& report) {
       starts.push_back(t);
   report.warn(Kind::SeveralComponents, starts,
               "the mesh has " + std::to_string(components.count) +
-                  " components (the first triangles of each: " + listed(starts) + "); each needs a support");
+                  " components (the first triangles of each: " + report.listed(starts) +
+                  "); each needs a support");
 }
 
 void check_shapes(const TriangleMesh& mesh, Report& report) {
@@ -207,11 +204,11 @@ void check_shapes(const TriangleMesh& mesh, Report& report) {
     }
   }
   report.error(Kind::ZeroArea, flat,
-               triangles_text(flat) +
+               report.triangles(flat) +
                    ": no area (height below 1e-12 of the longest edge), so strain is undefined; " +
                    "collapse an edge or remove it");
   report.warn(Kind::Sliver, slivers,
-              triangles_text(slivers) + ": slivers, longest edge up to " + number_text(worst) +
+              report.triangles(slivers) + ": slivers, longest edge up to " + number_text(worst) +
                   " times the height; results there are poor and a solve may stall: `coapt import` repairs "
                   "those of a "
                   "valve, other meshes want remeshing there");
@@ -265,18 +262,18 @@ void check_contact(const TriangleMesh& mesh, Report& report) {
   }
   report.error(Kind::InitialIntersection, crossing,
                counted(crossing.size() / 2, "pair", "pairs") +
-                   " of triangles intersect at the start, which contact cannot undo: " + listed(crossing, 2) +
-                   "; move the sheets apart, or leave out contact");
+                   " of triangles intersect at the start, which contact cannot undo: " +
+                   report.listed(crossing, 2) + "; move the sheets apart, or leave out contact");
   report.warn(Kind::CoincidentSheets, coincident,
               counted(coincident.size() / 2, "pair", "pairs") +
-                  " of triangles lie on each other at the start: " + listed(coincident, 2) +
+                  " of triangles lie on each other at the start: " + report.listed(coincident, 2) +
                   "; their distance is 0 and contact has no direction, move the sheets apart");
 }
 
 }  // namespace
 
 std::vector<MeshDefect> check_mesh(const TriangleMesh& mesh, const MeshCheckOptions& options) {
-  Report report;
+  Report report(options.numbering);
   if (mesh.triangle_count() == 0) {
     report.defects.push_back(
         {Severity::Error, Kind::NoTriangles, "the mesh has no triangles; a surface is needed", {}});

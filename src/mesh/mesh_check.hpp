@@ -1,6 +1,7 @@
 // What is wrong, or doubtful, with a surface before it is loaded.
 #pragma once
 
+#include "mesh/numbering.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #include <string>
@@ -37,13 +38,15 @@ enum class MeshDefectKind {
 struct MeshDefect {
   Severity severity = Severity::Error;
   MeshDefectKind kind = MeshDefectKind::NoTriangles;
-  std::string message;        // which elements (numbered from 0), why it matters, what to do
-  std::vector<int> elements;  // all of them: vertices or triangles; edges and pairs as two entries each
+  std::string message;  // which elements (by the numbering asked for), why it matters, what to do
+  std::vector<int>
+      elements;  // all of them, from 0: vertices or triangles; edges and pairs as two entries each
 };
 
 struct MeshCheckOptions {
   bool orientation_matters = true;  // a pressure or another term that knows the sides is present
   bool contact = false;             // intersections and coincident sheets are looked for
+  Numbering numbering = {};         // of the messages
 };
 
 // At most one defect of each kind, which names all its elements; the message lists the first ten. When

@@ -64,16 +64,27 @@ bool ends_the_run(Status status) {
          status == Status::NonFinite || status == Status::NoEquilibrium;
 }
 
-Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q) {
+Outcome blocked_motion(const MotionPath& motion, const Move& move, Objective& objective, const Vector& q) {
   Outcome outcome;
   outcome.is_short_of_full = true;
   const bool is_lost = move.is_overloaded && !is_finite(objective, q);
   outcome.status = is_lost ? Status::NonFinite : Status::Stalled;
+  const std::string parts = blocked_parts(motion, move.reached, objective, q);
   outcome.note =
-      (move.is_overloaded ? "the prescribed motion stretches an element until its energy is not finite, at "
-                          : "the prescribed motion presses facets against each other, at ") +
-      number_text(100 * move.reached) + " % of it";
+      "the prescribed motion" + (parts.empty() ? "" : " of " + parts) +
+      (move.is_overloaded ? " stretches an element until its energy is not finite, at "
+                          : " presses facets against each other, at ") +
+      number_text(100 * move.reached) + " % of it; end it before" +
+      (move.is_overloaded ? ", or lengthen or soften what is stretched there"
+                          : ", or lead it around by more stations, or move what is in its way along");
   return outcome;
+}
+
+std::string lost_motion(const MotionPath& motion, double reached) {
+  std::string names;
+  for (const MotionPath::Part& part : motion.parts) names += (names.empty() ? " of " : ", ") + part.name;
+  return "with the prescribed motion" + names + " at " + number_text(100 * reached) +
+         " % of it; end it before, take it in more steps, or lengthen or soften what it stretches";
 }
 
 Status run_outer_iterations(Solver& solver, Objective& objective, Vector& q, Monitor& monitor,
@@ -144,6 +155,7 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
         if (is_blocked) break;
       }
       set_scales(continuation, t, objective);
+      if (has_motion || steps > 1) monitor.set_path(has_motion ? move.reached : t);
       const bool is_last = has_arrived && step == steps;
       outcome.status =
           run_outer_iterations(solver, objective, result.q, monitor, is_last ? stop.tolerance : on_path,
@@ -162,9 +174,11 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
   }
   // A run that was cut short is measured, with the full load, and kept, where it had got to.
   objective.scale(1, 1);
-  if (is_blocked) return blocked_motion(move, objective, result.q);
+  if (is_blocked) return blocked_motion(problem.motion, move, objective, result.q);
   outcome.is_short_of_full = step < steps || !has_arrived;
-  if (!has_arrived)
+  if (has_motion && outcome.status == Status::NonFinite)
+    outcome.note = lost_motion(problem.motion, move.reached);
+  else if (!has_arrived)
     outcome.note = "after " + number_text(100 * move.reached) + " % of the prescribed motion";
   else if (outcome.is_short_of_full)
     outcome.note = "step " + std::to_string(step) + " of " + std::to_string(steps) +

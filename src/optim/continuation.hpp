@@ -26,7 +26,10 @@ Outcome run_continuation(Solver& solver, const Problem& problem, const StopRule&
 bool ends_the_run(Status status);
 
 // What there is to say where the prescribed motion goes no further.
-Outcome blocked_motion(const Move& move, Objective& objective, const Vector& q);
+Outcome blocked_motion(const MotionPath& motion, const Move& move, Objective& objective, const Vector& q);
+
+// What there is to say where the energy is not finite after a prescribed motion by a share `reached` of it.
+std::string lost_motion(const MotionPath& motion, double reached);
 
 // Solves at the full problem from q, in outer iterations of the monitor's. A load without potential is
 // renewed until the exact residual is small, where the solver does not work from the exact force: each of

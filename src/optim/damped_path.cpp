@@ -44,6 +44,8 @@ class DampedPath {
                                              result_.outer_iterations, outcome_.note);
     } else {
       outcome_.is_short_of_full = true;
+      if (outcome_.status == Status::NonFinite && problem_.motion.positions && !is_blocked_)
+        outcome_.note = lost_motion(problem_.motion, moved_);
       if (outcome_.note.empty())
         outcome_.note = "step " + std::to_string(result_.damped_steps) + " of the damped path";
     }
@@ -86,6 +88,7 @@ class DampedPath {
     objective.scale(load(), 1);
     advance_motion();
     if (is_blocked_) return;
+    if (!is_loaded()) monitor_.set_path(std::min(load(), moved_));
     objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
     if (is_loaded()) monitor_.limit_iterations(kMostInStep);
     outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, kStepTolerance,
@@ -125,7 +128,7 @@ class DampedPath {
     moved_ = move.reached;
     if (steps_without_motion_ < kMostWithoutMotion) return;
     is_blocked_ = true;
-    outcome_ = blocked_motion(move, problem_.objective, result_.q);
+    outcome_ = blocked_motion(problem_.motion, move, problem_.objective, result_.q);
   }
 
   Solver& solver_;

@@ -85,6 +85,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   Iteration now;
   now.iteration = iterations_;
   now.outer_iteration = outer_iteration_;
+  now.path = path_;
   now.energy = energy;
   now.residual = objective_.relative_residual(q, g);
   now.step = last_.size() == q.size() && q.size() > 0 ? (q - last_).lpNorm<Eigen::Infinity>() : 0;

@@ -45,6 +45,7 @@ class Monitor {
   // Asked at each accepted iterate whether the run has no equilibrium to find. It must outlive the run.
   void set_watch(EquilibriumWatch* watch) { watch_ = watch; }
   void begin_outer_iteration(int number, double tolerance);
+  void set_path(double share) { path_ = share; }  // done, of the iterates to come: see Iteration::path
   // Ends minimisations after so many more iterations than now; what the whole run may take still holds.
   void limit_iterations(int count) { most_iterations_ = iterations_ + count; }
   bool has_reached_limit() const { return iterations_ >= most_iterations_; }
@@ -68,6 +69,7 @@ class Monitor {
   double tolerance_;
   double start_;
   int outer_iteration_ = 0;
+  double path_ = kNaN;
   double time_before_ = 0;  // simulated, before this round [s]
   int iterations_ = 0, most_iterations_ = std::numeric_limits<int>::max();
   bool is_first_of_outer_iteration_ = true;

@@ -3,6 +3,8 @@
 
 #include "optim/solver.hpp"
 
+#include <string>
+
 namespace coapt {
 
 // Of the whole prescribed motion, the least that a step must make: less is no progress.
@@ -16,6 +18,10 @@ struct Move {
 // Moves the prescribed nodes from where they are at `from` towards `to`, parameters of the motion, the free
 // ones carried along, as far as no collision is in the way and the energy stays finite.
 Move move_prescribed(const MotionPath& motion, double from, double to, Objective& objective, Vector& q);
+
+// Names of the parts of a motion that by themselves cannot go on from `at`, where the prescribed nodes are,
+// by twice the least step.
+std::string blocked_parts(const MotionPath& motion, double at, Objective& objective, const Vector& q);
 
 // Whether a solver can begin there: a law that stiffens exponentially overflows where a sliver is stretched.
 bool is_finite(Objective& objective, const Vector& q);

@@ -46,6 +46,7 @@ struct Iteration {
   double seconds = 0;       // wall time since the start
   double time = 0;          // simulated since the start, of a method that follows the motion of masses [s]
   long evaluations = 0;     // of the gradient so far
+  double path = kNaN;       // share done of a path of loads or of prescribed motion; NaN: there is none
 };
 
 // Sees every accepted iterate; returning false cancels the run, which keeps that iterate.
@@ -55,6 +56,13 @@ using Observer = std::function<bool(const Iteration&, const Vector& q)>;
 struct MotionPath {
   int steps = 1;                              // equal steps in t; at least one
   std::function<Points(double t)> positions;  // 3 x node_count; empty: nothing moves
+
+  // Nodes that move by one instruction, and what messages call it; may be left out.
+  struct Part {
+    std::string name;
+    std::vector<int> nodes;
+  };
+  std::vector<Part> parts = {};
 };
 
 class Monitor;

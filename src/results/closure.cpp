@@ -4,7 +4,11 @@
 #include "mesh/remesh/spanning_surface.hpp"
 #include "results/detail/anterior_share.hpp"
 #include "results/detail/coaptation_height.hpp"
+#include "results/detail/contact_limit.hpp"
+#include "results/detail/orifice_film.hpp"
 #include "results/reference/coaptation_line.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +27,7 @@ struct ClosedShape {
   const TopView& view = seen.view;
   const ClosedView& closed = seen.closed;
   SpanningSurface spanned;
+  ContactLimit limit;
 
   int region(int triangle) const {
     return model.mesh.regions.empty() ? 0 : model.mesh.regions[static_cast<size_t>(triangle)];
@@ -36,16 +41,38 @@ struct ClosedShape {
   bool is_contact(int vertex) const { return fields.is_contact[static_cast<size_t>(vertex)] != 0; }
 };
 
+// Turned about its normal so that e1 runs along the loop's greatest extent: a view then has the same rows
+// wherever the valve lies.
+ViewFrame along_its_width(ViewFrame frame, const Points& loop) {
+  const Points plan = in_frame(loop, frame);
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d skew = Eigen::Vector2d::Zero();
+  for (Eigen::Index k = 0; k < plan.cols(); ++k) {
+    const Eigen::Vector2d a = plan.col(k).head<2>(), b = plan.col((k + 1) % plan.cols()).head<2>();
+    const Eigen::Vector2d middle = 0.5 * (a + b);
+    moments += (b - a).norm() * middle * middle.transpose();
+    skew += (b - a).norm() * middle.squaredNorm() * middle;
+  }
+  const double angle = 0.5 * std::atan2(2 * moments(0, 1), moments(0, 0) - moments(1, 1));
+  Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+  if (along.dot(skew) < 0) along = -along;
+  const Vec3 e1 = along[0] * frame.e1 + along[1] * frame.e2;
+  frame.e1 = e1;
+  frame.e2 = frame.up.cross(e1);
+  return frame;
+}
+
 ClosedShape closed_shape(const Model& model, const Fields& fields) {
   const std::vector<int>& loop = *annulus_of(model);
-  const ViewFrame frame = annulus_frame(model, fields, loop);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
+  const ViewFrame frame = along_its_width(annulus_frame(model, fields, loop), annulus);
   return {.model = model,
           .fields = fields,
           .surface = surface,
           .annulus = annulus,
           .seen = seen_surface(surface, model.mesh.triangles, annulus, frame, fields.contact_distance),
-          .spanned = SpanningSurface(in_frame(annulus, frame))};
+          .spanned = SpanningSurface(in_frame(annulus, frame)),
+          .limit = contact_limit(model, fields)};
 }
 
 // Open nodes that hang together with the given one, across the edges of cells.
@@ -68,11 +95,15 @@ void find_orifices(const ClosedShape& shape, Closure& closure) {
   std::vector<char> seen(static_cast<size_t>(view.node_count()), 0);
   for (Outline& outline : open_outlines(view)) {
     Orifice orifice{std::move(outline), 0};
-    if (orifice.outline.area > 0)
-      for (const int node : open_place(view, orifice.outline.open_node, seen))
-        if (!std::isfinite(shape.closed.height[static_cast<size_t>(node)]))
-          orifice.regurgitant_area_mm2 += cell_area;
+    if (orifice.outline.area > 0) {
+      std::vector<int> wide = open_place(view, orifice.outline.open_node, seen);
+      std::erase_if(wide,
+                    [&](int node) { return std::isfinite(shape.closed.height[static_cast<size_t>(node)]); });
+      orifice.regurgitant_area_mm2 = static_cast<double>(wide.size()) * cell_area;
+      orifice.film_area_mm2 = film_area(view, shape.closed.height, wide);
+    }
     closure.regurgitant_area_mm2 += orifice.regurgitant_area_mm2;
+    closure.orifice_film_area_mm2 += orifice.film_area_mm2;
     if (std::abs(orifice.outline.area) >= kSmallestOutline * cell_area)
       closure.orifices.push_back(std::move(orifice));
   }
@@ -186,20 +217,17 @@ void measure_tenting_height(const ClosedShape& shape, Closure& closure) {
     closure.leaflets[r].tenting_height_mm = ninth_decile_depth(of_leaflet[r]);
 }
 
-// Vertices in contact of one leaflet, or of all (-1), each once.
-std::vector<Vec3> contact_of(const ClosedShape& shape, int region) {
-  const TriangleMesh& mesh = shape.model.mesh;
-  std::vector<char> taken(static_cast<size_t>(mesh.vertex_count()), 0);
-  std::vector<Vec3> points;
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    if (region >= 0 && shape.region(t) != region) continue;
-    for (const int v : mesh.triangles.col(t)) {
-      if (!shape.is_contact(v) || taken[static_cast<size_t>(v)]) continue;
-      taken[static_cast<size_t>(v)] = 1;
-      points.push_back(shape.surface.col(v));
-    }
-  }
-  return points;
+// Heights of contact at places of the line, of one leaflet or of all (-1), followed back to contact itself.
+std::vector<double> heights_of(const ClosedShape& shape, const std::vector<Station>& places, double spacing,
+                               int region) {
+  const auto within = [&](double distance) {
+    return heights_at(places, places_within(distance, region, shape.model, shape.fields), spacing);
+  };
+  std::vector<double> heights = within(shape.limit.near);
+  const std::vector<double> further = within(shape.limit.far);
+  for (size_t s = 0; s < heights.size(); ++s)
+    if (!std::isnan(heights[s])) heights[s] = std::max(0.0, shape.limit.at_rest(heights[s], further[s]));
+  return heights;
 }
 
 void measure_line(const ClosedShape& shape, Closure& closure) {
@@ -218,26 +246,34 @@ void measure_line(const ClosedShape& shape, Closure& closure) {
   }
   const double spacing = std::max(2 * mean_edge, closure.coaptation_length_mm / 400);
   const std::vector<Station> places = stations(closure.line, spacing);
-  const std::vector<double> heights = heights_at(places, contact_of(shape, -1), spacing);
+  const std::vector<double> heights = heights_of(shape, places, spacing, -1);
   closure.local_height = heights_along(closure.line, places, heights);
   closure.coaptation_height_mm = ninth_decile(heights);
   for (size_t r = 0; r < closure.leaflets.size(); ++r)
     closure.leaflets[r].coaptation_height_mm =
-        ninth_decile(heights_at(places, contact_of(shape, static_cast<int>(r)), spacing));
+        ninth_decile(heights_of(shape, places, spacing, static_cast<int>(r)));
 }
 
 void measure_areas(const ClosedShape& shape, Closure& closure) {
   const TriangleMesh& mesh = shape.model.mesh;
-  const Vector contact = contact_areas(shape.model, shape.fields);
+  const Vector contact = contact_areas(shape.limit, shape.model, shape.fields);
+  std::vector<std::vector<char>> touching(closure.leaflets.size(),
+                                          std::vector<char>(shape.fields.is_contact.size(), 0));
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(shape.region(t))];
     leaflet.area_open_mm2 += area_vector(shape.model.X, mesh.triangles.col(t)).norm();
     leaflet.area_closed_mm2 += area_vector(shape.surface, mesh.triangles.col(t)).norm();
     leaflet.contact_area_mm2 += contact[t];
     leaflet.contact_facets += shape.fields.is_contact_facet[static_cast<size_t>(t)];
+    for (const int v : mesh.triangles.col(t)) {
+      char& is_counted = touching[static_cast<size_t>(shape.region(t))][static_cast<size_t>(v)];
+      if (!shape.is_contact(v) || is_counted) continue;
+      is_counted = 1;
+      ++leaflet.contact_vertices;
+    }
   }
-  for (size_t r = 0; r < closure.leaflets.size(); ++r)
-    closure.leaflets[r].contact_vertices = static_cast<long>(contact_of(shape, static_cast<int>(r)).size());
+  for (LeafletMetrics& leaflet : closure.leaflets)
+    leaflet.contact_area_mm2 = std::max(0.0, leaflet.contact_area_mm2);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ struct LeafletMetrics {
 // An outline of the orifice. An island, covered and within an open place, has a negative area.
 struct Orifice {
   Outline outline;
-  double regurgitant_area_mm2 = 0;  // of its places wider than the contact distance
+  double regurgitant_area_mm2 = 0;  // of its places wider than the contact distance, seen along the normal
+  double film_area_mm2 = 0;         // of the least surface that closes these places from rim to rim
 };
 
 struct Closure {
@@ -40,6 +41,7 @@ struct Closure {
   double coaptation_length_mm = 0;
   double coaptation_height_mm = 0;  // 90th percentile along the line
   double regurgitant_area_mm2 = 0;
+  double orifice_film_area_mm2 = 0;
   double tenting_height_mm = 0;
   double tenting_volume_mm3 = 0;
   double prolapse_height_mm = 0;

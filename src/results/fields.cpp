@@ -136,16 +136,6 @@ void add_contact(const Model& model, Fields& fields) {
     fields.is_contact_facet.push_back(touches(t[0]) && touches(t[1]) && touches(t[2]));
 }
 
-// Part of a triangle over which a linear function with these values at the corners is at most `level`.
-double part_below(std::array<double, 3> values, double level) {
-  std::sort(values.begin(), values.end());
-  const auto [a, b, c] = values;
-  if (c <= level) return 1;
-  if (a >= level) return 0;
-  if (b >= level) return (level - a) * (level - a) / ((b - a) * (c - a));
-  return 1 - (c - level) * (c - level) / ((c - a) * (c - b));
-}
-
 }  // namespace
 
 std::optional<double> line_strain(const Line& line, const Points& x) {
@@ -184,18 +174,6 @@ Fields compute_fields(const Model& model, const Points& x) {
   add_yield(model, fields);
   if (looks_for_contact(model)) add_contact(model, fields);
   return fields;
-}
-
-Vector contact_areas(const Model& model, const Fields& fields) {
-  const Triangles& triangles = model.mesh.triangles;
-  const auto gap = [&](int v) { return std::isnan(fields.gap[v]) ? fields.gap_reach : fields.gap[v]; };
-  Vector areas(triangles.cols());
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3i c = triangles.col(t);
-    areas[t] = area_vector(fields.x, c).norm() *
-               part_below({gap(c[0]), gap(c[1]), gap(c[2])}, fields.contact_distance);
-  }
-  return areas;
 }
 
 }  // namespace coapt

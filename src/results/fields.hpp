@@ -70,8 +70,4 @@ const std::vector<int>* annulus_of(const Model& model);
 // without one, half the mean edge length of the reference mesh [mm].
 double contact_distance(const Model& model);
 
-// Of each closed triangle the area over which the gap, linear between its corners, is at most the contact
-// distance; corners without a gap count as those at the end of the reach. [mm2] Pre: fields of contact.
-Vector contact_areas(const Model& model, const Fields& fields);
-
 }  // namespace coapt

@@ -1,6 +1,7 @@
 #include "results/metrics.hpp"
 
 #include "core/error.hpp"
+#include "results/detail/contact_limit.hpp"
 #include "results/orifice_area.hpp"
 #include "scene/build/contact_pairs.hpp"
 
@@ -21,6 +22,7 @@ void measure_annulus(const Model& model, const Fields& fields, Metrics& metrics)
   metrics.orifice_area_percent = 100 * area->open / area->annulus;
   Closure closure = closure_of(model, fields);
   metrics.regurgitant_area_mm2 = std::min(closure.regurgitant_area_mm2, area->open);
+  metrics.orifice_film_area_mm2 = closure.orifice_film_area_mm2;
   metrics.coaptation_length_mm = closure.coaptation_length_mm;
   metrics.coaptation_height_mm = closure.coaptation_height_mm;
   metrics.tenting_height_mm = closure.tenting_height_mm;
@@ -169,7 +171,8 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
   if (looks_for_contact(model)) {
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);
     metrics.contact_facets = std::count(fields.is_contact_facet.begin(), fields.is_contact_facet.end(), 1);
-    metrics.coaptation_area_mm2 = contact_areas(model, fields).sum() / 2;
+    metrics.coaptation_area_mm2 =
+        std::max(0.0, contact_areas(contact_limit(model, fields), model, fields).sum() / 2);
   }
   const double gap = fields.gap.size() == 0 ? kNaN : fields.gap.minCoeff<Eigen::PropagateNumbers>();
   if (std::isfinite(gap)) metrics.smallest_gap_mm = gap;
@@ -193,6 +196,9 @@ std::vector<MetricRow> metric_rows(const Metrics& m) {
       {"orifice_area_percent", "%", "orifice area over annulus area", false, m.orifice_area_percent},
       {"regurgitant_area_mm2", "mm2", "of the orifice, what is wider than the contact distance", false,
        m.regurgitant_area_mm2},
+      {"orifice_film_area_mm2", "mm2",
+       "area of the least surface that closes the regurgitant orifices from rim to rim", false,
+       m.orifice_film_area_mm2},
       {"coaptation_area_mm2", "mm2", "half the area of the leaflets that is in contact", false,
        m.coaptation_area_mm2},
       {"coaptation_length_mm", "mm", "length of the coaptation line", false, m.coaptation_length_mm},

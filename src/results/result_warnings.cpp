@@ -1,6 +1,9 @@
 #include "results/result_warnings.hpp"
 
 #include "core/number_text.hpp"
+#include "mesh/mesh_topology.hpp"
+
+#include <algorithm>
 
 namespace coapt {
 namespace {
@@ -94,25 +97,58 @@ void withdraw_penetrated(Report& report) {
       "with a residual of " + number_text(report.result.residual, 3);
 }
 
+std::vector<std::string> surface_doubts(const TriangleMesh& mesh) {
+  const std::vector<Edge> all = edges(mesh.triangles);
+  const auto crowded =
+      std::count_if(all.begin(), all.end(), [](const Edge& edge) { return edge.triangles.size() > 2; });
+  const int flipped = consistent_orientation(mesh).flip_count;
+  std::vector<std::string> doubts;
+  if (crowded > 0)
+    doubts.push_back(std::to_string(crowded) + (crowded == 1 ? " edge has" : " edges have") +
+                     " more than two facets");
+  if (flipped > 0)
+    doubts.push_back((flipped == 1 ? "the normal of 1 facet points"
+                                   : "the normals of " + std::to_string(flipped) + " facets point") +
+                     " against the neighbours'");
+  return doubts;
+}
+
+namespace {
+
+// Beside its stability, which the message of the solve tells.
+std::vector<std::string> further_doubts(const Report& report) {
+  std::vector<std::string> list;
+  if (const long pairs = report.metrics.intersections; pairs > 0)
+    list.push_back(std::to_string(pairs) + (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") +
+                   " through each other");
+  if (const std::string reason = standing_open(report.metrics); !reason.empty()) list.push_back(reason);
+  if (2 * report.metrics.slack_chords.value_or(0) > report.fields.line_strain.size())
+    list.emplace_back("most chords are slack");
+  list.insert(list.end(), report.surface_doubts.begin(), report.surface_doubts.end());
+  if (report.branches && report.branches->equilibria.size() > 1)
+    list.emplace_back("one of several equilibria");
+  else if (!report.branches && report.neighbours.is_suspected)
+    list.emplace_back("there may be other equilibria near by");
+  return list;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts(const Report& report) {
+  if (report.result.status != Status::Converged) return {};
+  std::vector<std::string> list = further_doubts(report);
+  if (is_in_doubt(report))
+    list.insert(list.begin(),
+                "its stability is in doubt (" + stability_doubt(report.result.certificate) + ")");
+  return list;
+}
+
 Headline headline(const Report& report) {
   Headline line{report.result.message};
   if (report.result.status != Status::Converged) return line;
-  line.is_in_doubt = is_in_doubt(report) || report.metrics.intersections > 0;
-  if (const long pairs = report.metrics.intersections; pairs > 0)
-    line.text += "; " + std::to_string(pairs) +
-                 (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") + " through each other";
-  if (const std::string reason = standing_open(report.metrics); !reason.empty()) {
-    line.is_in_doubt = true;
-    line.text += "; " + reason;
-  }
-  if (2 * report.metrics.slack_chords.value_or(0) > report.fields.line_strain.size()) {
-    line.is_in_doubt = true;
-    line.text += "; most chords are slack";
-  }
-  const bool has_others = report.branches && report.branches->equilibria.size() > 1;
-  if (!has_others && (report.branches || !report.neighbours.is_suspected)) return line;
-  line.is_in_doubt = true;
-  line.text += has_others ? "; one of several equilibria" : "; there may be other equilibria near by";
+  const std::vector<std::string> further = further_doubts(report);
+  for (const std::string& doubt : further) line.text += "; " + doubt;
+  line.is_in_doubt = is_in_doubt(report) || !further.empty();
   return line;
 }
 

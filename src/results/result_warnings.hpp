@@ -24,8 +24,18 @@ std::string yield_warning(const Fields& fields);
 // mm2 (Lancellotti et al. 2013, of mitral and tricuspid valves alike).
 std::string standing_open(const Metrics& metrics);
 
+// What is doubtful about the surface itself, a clause for each: edges with more than two facets, facets whose
+// normals point against their neighbours'. On which side pressure acts is not defined there. Pre: corners in
+// range.
+std::vector<std::string> surface_doubts(const TriangleMesh& mesh);
+
 // Of an equilibrium: whether it is not stable or that could not be decided.
 bool is_in_doubt(const Report& report);
+
+// Why an equilibrium is no plain result, a clause for each reason: it is not stable, facets pass through each
+// other, the valve stands open, most chords are slack, its surface is doubtful, it may not be the only one.
+// None where the run did not converge.
+std::vector<std::string> doubts(const Report& report);
 
 // A state at rest in which facets pass through each other that collisions were to keep apart is not
 // converged, whatever its residual: its status becomes Stalled, and its message says why.
@@ -33,11 +43,8 @@ void withdraw_penetrated(Report& report);
 
 // The first line of a result.
 struct Headline {
-  // The message of the solve and, of an equilibrium, facets that pass through each other, a valve that stands
-  // open, chords of which most are slack, and whether it may not be the only one.
-  std::string text;
-  // Of an equilibrium: see is_in_doubt(); any of these.
-  bool is_in_doubt = false;
+  std::string text;          // the message of the solve, which tells of its stability, and all other doubts()
+  bool is_in_doubt = false;  // there are some
 };
 
 Headline headline(const Report& report);

@@ -34,7 +34,8 @@ struct Report {
   std::optional<Branches> branches;       // where they were looked for
   std::optional<FirstOrder> first_order;  // where it was wanted, for the page
   std::vector<std::string> warnings;
-  bool has_frames = false;      // of an animation, in the result folder
+  std::vector<std::string> surface_doubts;  // clauses, see surface_doubts()
+  bool has_frames = false;                  // of an animation, in the result folder
   bool has_collisions = false;  // the method was to keep facets apart (DynamicOptions::collisions)
   bool has_page = false;        // report.html is written
   std::vector<RecordedShape> shape_history = {};  // to the result, for the page; empty without one

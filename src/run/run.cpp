@@ -106,6 +106,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
                               " pairs of facets pass through each other in the result.");
   for (const std::string& warning : {stretch_warning(report.fields), yield_warning(report.fields)})
     if (!warning.empty()) report.warnings.push_back(warning);
+  report.surface_doubts = surface_doubts(model.mesh);
   withdraw_penetrated(report);
   report.neighbours = check_neighbours(report.solver, result, report.levels);
   if (const std::string warning = neighbour_warning(report.neighbours); !warning.empty())

@@ -253,7 +253,8 @@ double ChordLimits::strain(const std::string& material) const {
   return own == by_material.end() ? of_all : std::min(own->second, of_all);
 }
 
-std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits, bool names_repeated) {
+std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits, bool names_repeated,
+                                      Numbering numbering) {
   std::vector<std::string> doubts;
   if (valve.chords.chords.empty()) {
     const auto tips = valve.chords.papillary.cols();
@@ -267,7 +268,7 @@ std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& lim
   find_without_length(valve, doubts);
   find_loose_ends(graph, doubts);
   find_unheld(valve, graph, doubts);
-  for (const std::string& bare : detail::bare_leaflets(valve)) doubts.push_back(bare);
+  for (const std::string& bare : detail::bare_leaflets(valve, numbering)) doubts.push_back(bare);
   const std::vector<Stretch> ways = stretches(valve, graph, limits);
   find_overstretched(valve, ways, doubts);
   find_all_slack(ways, doubts);

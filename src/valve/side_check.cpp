@@ -109,7 +109,7 @@ std::vector<Piece> pieces_of(const TriangleMesh& mesh, const std::vector<bool>& 
 
 }  // namespace
 
-std::vector<std::string> pressure_side_doubts(const Valve& valve) {
+std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering) {
   const TriangleMesh& mesh = valve.leaflets;
   if (valve.annulus.size() < 3 || mesh.triangle_count() == 0) return {};
   std::vector<bool> is_annulus(static_cast<size_t>(mesh.vertex_count()), false);
@@ -125,7 +125,7 @@ std::vector<std::string> pressure_side_doubts(const Valve& valve) {
     constexpr size_t kFew = 10;
     if (++count > kFew) continue;
     turned.append(count == 1 ? "" : ", ").append(std::to_string(piece.triangles));
-    turned.append(" with triangle ").append(std::to_string(piece.first));
+    turned.append(" with triangle ").append(numbering.of(piece.first));
   }
   if (count == 0) return {};
   const bool has_tips = valve.chords.papillary.cols() > 0;
@@ -136,7 +136,7 @@ std::vector<std::string> pressure_side_doubts(const Valve& valve) {
             " so the pressure acts on the wrong side; turn all triangles over, or set the side of the "
             "pressure."};
   return {"the normals of " + std::to_string(count) + " of " + std::to_string(pieces.size()) +
-          " leaflets (triangles: " + turned + ") point " + where +
+          " leaflets (triangles: " + turned + numbering.note() + ") point " + where +
           " so the pressure acts on the wrong side there; turn their triangles over."};
 }
 

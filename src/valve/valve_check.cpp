@@ -61,7 +61,7 @@ bool runs_upward(const TriangleMesh& mesh, int t, const Edge& edge) {
 
 }  // namespace
 
-std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
+std::vector<std::string> fold_doubts(const TriangleMesh& leaflets, Numbering numbering) {
   constexpr size_t kFew = 10;
   size_t count = 0;
   std::string pairs;
@@ -73,12 +73,12 @@ std::vector<std::string> fold_doubts(const TriangleMesh& leaflets) {
     const double cosine = sign * normal_unless_sliver(leaflets, s).dot(normal_unless_sliver(leaflets, t));
     if (!(cosine < kFlatCosine || (cosine < kFoldedCosine && lower_height(leaflets, edge) > small))) continue;
     if (++count > kFew) continue;
-    pairs.append(pairs.empty() ? "(" : ", (").append(std::to_string(s)).append(", ");
-    pairs.append(std::to_string(t)).append(")");
+    pairs.append(pairs.empty() ? "(" : ", (").append(numbering.of(s)).append(", ");
+    pairs.append(numbering.of(t)).append(")");
   }
   if (count == 0) return {};
   if (count > kFew) pairs.append(" and ").append(std::to_string(count - kFew)).append(" more");
-  return {"neighbouring triangles are folded onto each other: " + pairs +
+  return {"neighbouring triangles are folded onto each other: " + pairs + numbering.note() +
           " (more than 150 degrees between their normals); bending and contact have no direction there. "
           "Unfold the mesh, or move the corners apart."};
 }

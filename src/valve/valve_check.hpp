@@ -1,7 +1,9 @@
 // What is doubtful about a valve before it is solved: its chords, its sizes, the side of its pressure.
+// Vertices and triangles are named by the given numbering, chords, tips and junctions from 0.
 #pragma once
 
 #include "formats/valve.hpp"
+#include "mesh/numbering.hpp"
 
 #include <limits>
 #include <map>
@@ -32,7 +34,7 @@ inline constexpr double kMostChordStress = 1000;
 // numbers of chords (as in valve.chords.chords), junctions or regions, and what to do. Lengths in mm.
 // names_repeated: false leaves out strands between the same two points, which coarse meshes have by right.
 std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits = {},
-                                      bool names_repeated = true);
+                                      bool names_repeated = true, Numbering numbering = {});
 inline constexpr double kOverstretched =
     0.2;  // strain, beyond what the valves at hand were designed for (0.16)
 inline constexpr double kOverstretchedClosed = 0.3;  // strain; chords tear at some 0.2 to 0.4, rough valves
@@ -46,11 +48,11 @@ std::vector<std::string> size_doubts(const Valve& valve);
 // Leaflets whose normals point to the lumen: the pressure is on their other side, that of the papillary tips.
 // Each piece of the surface is judged by the way in which its triangles run along the annulus, around an axis
 // from the annulus to the tips, or without these to the free edges. Nothing where that is not clear.
-std::vector<std::string> pressure_side_doubts(const Valve& valve);
+std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering = {});
 
 // Neighbouring triangles that lie on each other: with a dihedral angle below one degree, and of those higher
 // than 0.6 mean edges with one below 30 degrees. A seam of two flat layers is such a fold too, by right;
 // leaflets have none.
-std::vector<std::string> fold_doubts(const TriangleMesh& leaflets);
+std::vector<std::string> fold_doubts(const TriangleMesh& leaflets, Numbering numbering = {});
 
 }  // namespace coapt

@@ -145,8 +145,9 @@ class SolverXpbd final : public Solver {
 
   // Where the prescribed nodes have to be at a share of a phase; nothing moves those of a scene without
   // motion.
-  Points prescribed_at(const Phase& phase, double share, const XpbdSystem& system) const {
-    if (!motion_.positions) return system.positions();
+  Points prescribed_at(const Phase& phase, double share, const Run& run) const {
+    if (!motion_.positions) return run.system.positions();
+    run.monitor.set_path(share);
     return motion_.positions(phase.from + (phase.to - phase.from) * share);
   }
 
@@ -170,7 +171,7 @@ class SolverXpbd final : public Solver {
     is_at_rest_ = false;
     for (; step <= options_.steps; ++step) {
       const double share = motion_.positions ? std::min(step / motion_steps, 1.0) : 1;
-      const Points target = prescribed_at(phase, share, system);
+      const Points target = prescribed_at(phase, share, run);
       {
         PhaseTimer timer(monitor.phases(), "sweeps");
         system.step(forces.at(system.positions(), phase.heart), target);

@@ -16,7 +16,7 @@ import time
 import unittest
 from xml.etree import ElementTree
 
-from command_case import COAPT, CommandCase, coapt
+from command_case import COAPT, CommandCase, coapt, content_of
 
 try:
     import jsonschema
@@ -191,7 +191,7 @@ class CommandTest(CommandCase):
         self.assertIn(b"cauchy_stress_1_kpa", fields)
         self.assertNotIn(b"first_piola_stress_1_kpa", fields)
         across = self.square_of(sail.replace("[1, 0, 0]", "[0, 0, 1]"))
-        self.assert_bad_input(coapt("solve", across), "direction", "triangle 0")
+        self.assert_bad_input(coapt("solve", across), "direction", "triangle 1, counted from 1")
 
     def test_frames_of_a_motion_share_one_time(self):
         scene = self.generate("mitral", "--triangles", 200, "--contact", "none")
@@ -240,6 +240,23 @@ class CommandTest(CommandCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertTrue(run.stdout.startswith("converged at residual"), run.stdout)
         self.assertEqual(self.result()["certificate"]["stability"], "strict_minimum")
+
+    def test_a_facet_turned_over_is_said_in_the_first_line_and_on_the_page(self):
+        scene = self.generate("disc", "--triangles", 200)
+        self.assertEqual(coapt("solve", scene).returncode, 0)
+        self.assertEqual(self.result()["doubts"], [])
+        mesh = self.folder / content_of(scene)["mesh"]["file"]
+        lines = mesh.read_text().splitlines()
+        face = [k for k, line in enumerate(lines) if line.startswith("f ")][60]
+        lines[face] = "f " + " ".join(reversed(lines[face].split()[1:]))
+        mesh.write_text("\n".join(lines) + "\n")
+        run = coapt("solve", scene)
+        said = "; the normal of 1 facet points against the neighbours'"
+        self.assertIn(said, run.stdout.splitlines()[0], run.stderr)
+        self.assertIn("triangle 61, counted from 1: the normal points", run.stdout)
+        self.assertTrue(self.result()["converged"])
+        self.assertEqual(self.result()["doubts"], [said[2:]])
+        self.assertIn(said[:20], (self.folder / "result" / "report.html").read_text())
 
     def test_warns_when_most_chords_are_slack(self):
         scene = self.generate("mitral", "--triangles", 400)

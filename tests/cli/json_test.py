@@ -83,6 +83,20 @@ class Json(CommandCase):
         lines = re.findall(r"(?m)^  step \d+, \d+ nodes, iteration (\d+), residual \S+ \(wanted \S+\), [\d.]+ s", run.stderr)
         self.assertEqual(len(lines), len((self.folder / "result" / "trace.csv").read_text().splitlines()) - 1)
 
+    def test_progress_tells_the_share_of_a_path(self):
+        def shares(scene, *options):
+            run = coapt("solve", scene, "--verbose", *options, keeps_progress=True)
+            told = [int(share) for share in re.findall(r", path (\d+) %, residual \S+ \(wanted", run.stderr)]
+            self.assertEqual(told, sorted(told))
+            return sorted(set(told))
+
+        disc = self.generate("disc", "--triangles", 100)
+        self.assertEqual(shares(disc), [])
+        self.assertEqual(shares(disc, "--damped-steps", 4), [25, 50, 75, 100])
+        valve = self.generate("mitral", "--triangles", 200, "--contact", "none")
+        valve.write_text(valve.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))
+        self.assertEqual(shares(valve, "--damped-steps", 0, "--max-seconds", 20)[:2], [33, 67])
+
     def test_a_log_has_a_line_every_five_seconds(self):
         scene = self.generate("mitral", "--triangles", 20000)
         run = coapt("solve", scene, "--tolerance", "1e-13", "--max-seconds", 12, keeps_progress=True)
@@ -105,7 +119,7 @@ class Json(CommandCase):
             shown += piece
         os.close(ours)
         self.assertIn(run.wait(), [0, 1, 4])
-        self.assertIn(b"\r  step 1, ", shown)
+        self.assertRegex(shown, rb"\r  step \d+, ")
         self.assertNotIn(b"\n  step", shown)
         self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-200:])
 

@@ -79,7 +79,7 @@ class RepairTest(CommandCase):
         run = coapt("check", out / "scene.json")
         self.assertIn("slivers, longest edge up to", run.stdout, run.stderr)
         mesh.write_text("v 0 0 0\nv 10 0 0\nv 5 1e-6 0\nf 1 2 3\n")
-        self.assert_bad_input(coapt("import", mesh, "-o", self.folder / "none"), "sheet.obj", "triangle 0", "--no-repair")
+        self.assert_bad_input(coapt("import", mesh, "-o", self.folder / "none"), "sheet.obj", "triangle 1, counted from 1", "--no-repair")
         self.assertFalse((self.folder / "none").exists())
 
     def test_import_refuses_a_valve_of_impossible_size_but_no_tent(self):

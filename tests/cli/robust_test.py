@@ -53,6 +53,47 @@ class Robust(CommandCase):
             self.assertIn(run.returncode, [0, 1, 2, 4], run.stdout + run.stderr)
             self.assertNotRegex(run.stdout + run.stderr, r"(?i)\bnan\b", value)
 
+    def test_numbers_beyond_arithmetic_are_refused_and_others_leave_no_infinity(self):
+        def values(node, path=()):
+            for key, value in node.items() if isinstance(node, dict) else enumerate(node):
+                if isinstance(value, (dict, list)):
+                    yield from values(value, (*path, key))
+                elif isinstance(value, str) and re.fullmatch(r"[\d.]+ [A-Za-z/]+", value):
+                    yield (*path, key), value.split()[1]
+
+        for shape in ["disc", "tent", "airbag", "mitral"]:
+            scene = self.generate(shape, "--triangles", 60 if shape != "mitral" else 150)
+            content = content_of(scene)
+            for path, unit in values({"terms": content["terms"]}):
+                for number in ["1e308", "1e49", "1e-300"]:
+                    changed = json.loads(json.dumps(content))
+                    place = changed
+                    for key in path[:-1]:
+                        place = place[key]
+                    place[path[-1]] = f"{number} {unit}"
+                    scene.write_text(json.dumps(changed))
+                    run = coapt("solve", scene, "--max-seconds", 2, "--no-report")
+                    with self.subTest(shape=shape, path=path, number=number):
+                        self.assertNotRegex(run.stdout + run.stderr, r"(?i)\b(nan|inf)\b")
+                        if number == "1e308":
+                            self.assert_bad_input(run, path[-1])
+                            self.assertRegex(run.stderr, "is beyond 1e50 .* is its unit right|the number is out of range")
+                        else:
+                            self.assertIn(run.returncode, [0, 1, 2, 4], run.stdout + run.stderr)
+
+    def test_a_motion_that_nothing_can_follow_is_named_with_its_share_and_a_remedy(self):
+        scene = self.generate("square", "--triangles", 60)
+        content = content_of(scene)
+        content["terms"][0] = {"type": "cst_exponential", "c0": "1 kPa", "c1": "1 kPa", "c2": 1000, "thickness": "1 mm"}
+        content["boundary"].append({"nodes": [0], "move_to": {"translate": [-1e6, 0, 0]}})
+        scene.write_text(json.dumps(content))
+        for options in [], ["--damped-steps", "5"]:
+            run = coapt("solve", scene, *options, "--max-seconds", 20)
+            self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+            said = run.stdout.splitlines()[0]
+            self.assertRegex(said, r"the prescribed motion of .*boundary\[1\].* at \S+ % of it; end it before, ")
+            self.assertNotRegex(run.stdout + run.stderr, r"(?i)\b(nan|inf)\b")
+
     def test_too_little_memory_is_said_and_ends_the_run(self):
         scene = self.generate("mitral", "--triangles", 20000)
         for megabytes in [98, 150, 300]:

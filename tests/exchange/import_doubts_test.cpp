@@ -3,6 +3,7 @@
 #include "exchange/check.hpp"
 #include "exchange/import.hpp"
 #include "formats/json/valve_json.hpp"
+#include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/distance/intersections.hpp"
 #include "scene/build/build.hpp"
@@ -191,6 +192,30 @@ TEST_F(ImportDoubts, PushApartWhatTouchesOnAShortWay) {
   EXPECT_TRUE(tells(imported(valve), "were pushed apart; no vertex moved by more than"));
   const Valve pushed = read_valve(folder_.path() / "b" / "valve.json").valve;
   EXPECT_TRUE(intersecting_pairs(pushed.leaflets.vertices, pushed.leaflets.triangles).empty());
+}
+
+// A sheet of two triangles of which the second is turned over, and one without area, in a file of each
+// format.
+TEST_F(ImportDoubts, CountVerticesAndTrianglesAsTheFileOfTheMeshDoes) {
+  TriangleMesh mesh;
+  mesh.vertices = (Points(3, 5) << 0, 1, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0).finished();
+  mesh.triangles = (Triangles(3, 3) << 0, 0, 1, 1, 3, 0, 2, 2, 4).finished();
+  const auto judged = [&](const std::string& file) {
+    write_mesh(folder_.path() / file, mesh);
+    formats::write_whole(
+        folder_.path() / "scene.json",
+        R"({"mesh": {"file": ")" + file + R"("}, "boundary": [{"nodes": [0], "fix": true}], "terms": [)" +
+            R"({"type": "cst_stvk", "young": "1 MPa", "poisson": 0.4, "thickness": 1},)" +
+            R"({"type": "load_pressure", "value": "0.01 MPa"}], "solver": {"type": "newton"}})");
+    return check(folder_.path() / "scene.json");
+  };
+  const CheckReport obj = judged("sheet.obj"), off = judged("sheet.off");
+  EXPECT_TRUE(tells(obj.defects, "sheet.obj: triangle 3, counted from 1: no area")) << obj.defects.front();
+  EXPECT_TRUE(tells(off.defects, "sheet.off: triangle 2: no area")) << off.defects.front();
+  mesh.vertices(1, 4) = -1;
+  EXPECT_TRUE(
+      tells(judged("sheet.obj").warnings, "sheet.obj: triangle 2, counted from 1: the normal points"));
+  EXPECT_TRUE(tells(judged("sheet.off").warnings, "sheet.off: triangle 1: the normal points"));
 }
 
 TEST_F(ImportDoubts, AreNoneOfThePublishedValves) {

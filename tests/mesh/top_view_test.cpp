@@ -186,6 +186,22 @@ TEST(SpanningSurface, ReproducesAPlaneExactlyAndThePolygonOnItsEdges) {
   EXPECT_EQ(spanned_height(star, star(0, 5), star(1, 5)), star(2, 5));
 }
 
+// A rectangle along the axes but for rounding: places on its edges lie on them and just beside.
+TEST(SpanningSurface, HasAHeightOnEdgesThatRoundingTurns) {
+  for (const double angle : {1e-17, 1e-16, 3e-16, 1e-15, 1e-13}) {
+    Points rectangle(3, 4);
+    rectangle << -10, 10, 10, -10, -8, -8, 8, 8, 0, 1, 2, 3;
+    const Eigen::RowVectorXd x = rectangle.row(0);
+    rectangle.row(0) -= angle * rectangle.row(1);
+    rectangle.row(1) += angle * x;
+    for (int i = 0; i <= 64; ++i) {
+      const double share = i / 64.0;
+      EXPECT_NEAR(spanned_height(rectangle, -10 + 20 * share, -8), share, 1e-9) << angle;
+      EXPECT_NEAR(spanned_height(rectangle, -10 + 20 * share, 8), 3 - share, 1e-9) << angle;
+    }
+  }
+}
+
 TEST(SpanningSurface, LiesNowhereAboveTheHighestChord) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -104,6 +104,11 @@ TEST(DampedPath, SaysWhereItWasCutShort) {
   EXPECT_EQ(found.result.status, Status::IterationLimit);
   EXPECT_NE(found.result.message.find("of the damped path"), std::string::npos) << found.result.message;
   EXPECT_TRUE(found.x.allFinite());
+  const std::vector<Iteration>& trace = found.result.trace;
+  EXPECT_EQ(trace.front().path, 1.0 / kSteps);
+  EXPECT_TRUE(std::is_sorted(trace.begin(), trace.end(),
+                             [](const Iteration& a, const Iteration& b) { return a.path < b.path; }));
+  EXPECT_LT(trace.back().path, 1);
   EXPECT_GT(found.result.residual, 1e-3) << "with all loads, and without dampers";
 }
 

@@ -20,6 +20,7 @@ SOLVES = int(os.environ.get("COAPT_MEMORY_SOLVES", "50"))
 TRIANGLES = 600  # of the valve: x is 9 kB
 SHARE = 0.1  # of x: what caches that still grow may leave behind
 ROWS = 3
+GROWTH = 2 << 20  # of the process [bytes]: a thirtieth of what it holds, 1 kB for each of 2,000 solves
 WARM_UP = 20  # until caches and free lists have their size
 
 
@@ -97,6 +98,24 @@ def test_solves_of_a_valve_leave_nothing_behind():
         assert result.success and result.nit > 0 and result.lines.size and "gap" in result.fields
 
     assert left_behind(solve, SOLVES) < SHARE * nearly.nbytes
+
+
+def test_the_process_stays_as_large_as_it_is(capsys):
+    """What the process holds, pages that the heap keeps included, from a tenth of the solves on."""
+    V, F = disc(8)
+
+    def resident():
+        with open("/proc/self/statm") as sizes:
+            return int(sizes.read().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+    held = []
+    for k in range(SOLVES):
+        assert coapt.minimize(V, F, [ELASTIC, PRESSURE], fixed="boundary").success
+        if k + 1 >= SOLVES // 10:
+            held.append(resident())
+    with capsys.disabled():
+        print(f"\n{SOLVES} solves: {held[0] / 2**20:.1f} MB after the first tenth, {held[-1] / 2**20:.1f} MB at the end")
+    assert held[-1] - held[0] < GROWTH
 
 
 def test_warm_solves_with_gradients_leave_nothing_behind():

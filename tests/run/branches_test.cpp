@@ -187,6 +187,41 @@ TEST(Headline, DoubtsAnEquilibriumWhoseChordsHangSlack) {
   EXPECT_EQ(headline(report).text, "converged; most chords are slack");
 }
 
+TEST(Headline, DoubtsASaddle) {
+  Report report;
+  report.result.message = "converged";
+  report.result.status = Status::Converged;
+  report.result.certificate.is_made = true;
+  report.result.certificate.stability.verdict = Stability::Stable;
+  EXPECT_FALSE(headline(report).is_in_doubt);
+  report.result.certificate.stability.verdict = Stability::Saddle;
+  report.result.certificate.stability.negative_modes = 2;
+  EXPECT_TRUE(headline(report).is_in_doubt);
+  EXPECT_EQ(doubts(report), std::vector<std::string>{"its stability is in doubt (a saddle of the energy, "
+                                                     "with 2 negative modes)"});
+}
+
+// A square of two facets, with one more on their common edge, or one of them turned over.
+TEST(Headline, DoubtsASurfaceOnWhichTheSideOfPressureIsNotDefined) {
+  Report report;
+  report.result.message = "converged";
+  report.result.status = Status::Converged;
+  TriangleMesh mesh;
+  mesh.vertices = (Points(3, 5) << 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 1).finished();
+  mesh.triangles = (Triangles(3, 2) << 0, 0, 1, 2, 2, 3).finished();
+  report.surface_doubts = surface_doubts(mesh);
+  EXPECT_FALSE(headline(report).is_in_doubt);
+  mesh.triangles = (Triangles(3, 3) << 0, 0, 0, 1, 2, 2, 2, 3, 4).finished();
+  report.surface_doubts = surface_doubts(mesh);
+  EXPECT_EQ(headline(report).text, "converged; 1 edge has more than two facets");
+  EXPECT_TRUE(headline(report).is_in_doubt);
+  mesh.triangles = (Triangles(3, 2) << 0, 0, 1, 3, 2, 2).finished();
+  report.surface_doubts = surface_doubts(mesh);
+  EXPECT_EQ(headline(report).text, "converged; the normal of 1 facet points against the neighbours'");
+  report.result.status = Status::Stalled;
+  EXPECT_EQ(headline(report).text, "converged") << "doubts are those of an equilibrium";
+}
+
 TEST(Headline, SaysWhyNoPerturbedStartTellsAnything) {
   Report report;
   report.result.status = Status::Converged;

@@ -18,6 +18,7 @@ class Metrics(TypedDict):
     annulus_area_mm2: float | None  #: area of the annulus opening, seen along its normal [mm2]
     orifice_area_percent: float | None  #: orifice area over annulus area [%]
     regurgitant_area_mm2: float | None  #: of the orifice, what is wider than the contact distance [mm2]
+    orifice_film_area_mm2: float | None  #: of the least surface that closes the same from rim to rim [mm2]
     coaptation_area_mm2: float | None  #: half the area of the leaflets that is in contact [mm2]
     coaptation_length_mm: float | None  #: length of the coaptation line [mm]
     coaptation_height_mm: float | None  #: extent of contact below and across the coaptation line: 90th percentile

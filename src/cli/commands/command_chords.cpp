@@ -4,6 +4,7 @@
 #include "cli/session.hpp"
 #include "cli/written_document.hpp"
 #include "core/error.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/lower_extension.hpp"
 #include "formats/mesh_io.hpp"
@@ -74,7 +75,8 @@ Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& war
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(arguments.input + ": leaflets: missing; chords need a mesh to end on");
   std::vector<std::string> defects;
-  for (const MeshDefect& defect : check_mesh(valve.leaflets, {.orientation_matters = false}))
+  for (const MeshDefect& defect : check_mesh(
+           valve.leaflets, {.orientation_matters = false, .numbering = file_numbering(arguments.input)}))
     if (defect.severity == Severity::Error) defects.push_back(arguments.input + ": " + defect.message);
   if (!defects.empty()) throw InputError(defects);
   ChordNetwork tips;

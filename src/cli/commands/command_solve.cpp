@@ -159,7 +159,10 @@ void print_summary(const RunReport& run) {
     std::printf("  %-22s %.2e (wanted: %g)\n", "residual", result.residual, report.tolerance);
   else
     std::printf("  %-22s not finite (wanted: %g)\n", "residual", report.tolerance);
-  std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
+  if (std::isfinite(result.energy))
+    std::printf("  %-22s %.8g mJ\n", "energy", result.energy);
+  else
+    std::printf("  %-22s not finite\n", "energy");
   print_certificate(result.certificate);
   if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());
   print_undetermined(report);

@@ -5,6 +5,7 @@
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/start_contact.hpp"
 #include "formats/csv_table.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/mesh_check.hpp"
 #include "valve/repair_valve.hpp"
@@ -17,12 +18,13 @@ namespace {
 
 using DefectKind = MeshDefectKind;
 
-std::string first_ten(const std::vector<int>& numbers) {
+std::string first_ten(const std::vector<int>& triangles, Numbering numbering) {
   constexpr size_t kFew = 10;
-  std::string text = numbers.size() == 1 ? "triangle " : "triangles ";
-  for (size_t k = 0; k < std::min(kFew, numbers.size()); ++k)
-    text.append(k == 0 ? "" : ", ").append(std::to_string(numbers[k]));
-  return numbers.size() > kFew ? text + " and " + std::to_string(numbers.size() - kFew) + " more" : text;
+  std::string text = triangles.size() == 1 ? "triangle " : "triangles ";
+  for (size_t k = 0; k < std::min(kFew, triangles.size()); ++k)
+    text.append(k == 0 ? "" : ", ").append(numbering.of(triangles[k]));
+  if (triangles.size() > kFew) text += " and " + std::to_string(triangles.size() - kFew) + " more";
+  return text + numbering.note();
 }
 
 void add_count(const MeshRepair& repair, RepairKind kind, const std::string& one, const std::string& many,
@@ -36,7 +38,7 @@ void add_count(const MeshRepair& repair, RepairKind kind, const std::string& one
       .append(count == 1 ? one : many);
 }
 
-std::string repaired_text(const ValveRepair& repair) {
+std::string repaired_text(const ValveRepair& repair, Numbering numbering) {
   const MeshRepair& leaflets = repair.leaflets;
   std::string done;
   add_count(leaflets, RepairKind::Drop, "repeated triangle left out", "repeated triangles left out", done);
@@ -49,7 +51,7 @@ std::string repaired_text(const ValveRepair& repair) {
     text.append(" ")
         .append(std::to_string(leaflets.slivers.size()))
         .append(leaflets.slivers.size() == 1 ? " sliver (" : " slivers (")
-        .append(first_ten(leaflets.slivers))
+        .append(first_ten(leaflets.slivers, numbering))
         .append(")");
   text.append(": ").append(done).append("; no vertex moved");
   if (leaflets.largest_move > 0)
@@ -85,24 +87,26 @@ bool is_measurable(const std::vector<MeshDefect>& defects) {
 MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Valve& valve,
                           std::vector<std::string>& warnings) {
   const std::string place = file + ": leaflets: ";
-  const std::vector<MeshDefect> before = check_mesh(valve.leaflets);
-  for (const std::string& doubt : fold_doubts(valve.leaflets)) warnings.push_back(place + doubt);
+  const Numbering numbering = file_numbering(file);
+  const std::vector<MeshDefect> before = check_mesh(valve.leaflets, {.numbering = numbering});
+  for (const std::string& doubt : fold_doubts(valve.leaflets, numbering)) warnings.push_back(place + doubt);
   if (!options.repairs) {
     append_doubts(before, before, place, warnings);
-    if (is_measurable(before)) separate_leaflets(options, place, valve, warnings);
+    if (is_measurable(before)) separate_leaflets(options, place, valve, warnings, numbering);
     return {};
   }
   const ValveRepair repair = repair_valve(valve, kSliverAspect);
   const MeshRepair& leaflets = repair.leaflets;
   if (!leaflets.left.empty())
     throw InputError(
-        place + first_ten(leaflets.left) + (leaflets.left.size() == 1 ? ": a sliver" : ": slivers") +
-        " (longest edge above " + number_text(kSliverAspect) +
+        place + first_ten(leaflets.left, numbering) +
+        (leaflets.left.size() == 1 ? ": a sliver" : ": slivers") + " (longest edge above " +
+        number_text(kSliverAspect) +
         " times the height) on which a solve stalls, and which no step repairs, as their corners "
         "are held or carry chords, or lie on the rim; remesh there, or keep them by --no-repair");
-  if (leaflets.is_changed()) warnings.push_back(place + repaired_text(repair));
+  if (leaflets.is_changed()) warnings.push_back(place + repaired_text(repair, numbering));
   append_doubts(before, leaflets.is_changed() ? check_mesh(valve.leaflets) : before, place, warnings);
-  if (is_measurable(before)) separate_leaflets(options, place, valve, warnings);
+  if (is_measurable(before)) separate_leaflets(options, place, valve, warnings, numbering);
   return leaflets;
 }
 

@@ -53,13 +53,13 @@ bool push_apart(const std::string& contact, Valve& valve, double& largest_move) 
 }  // namespace
 
 void separate_leaflets(const ImportOptions& options, const std::string& place, Valve& valve,
-                       std::vector<std::string>& warnings) {
+                       std::vector<std::string>& warnings, Numbering numbering) {
   const FacetPairs pairs = refused_pairs(valve.leaflets, options.contact);
   if (pairs.empty()) return;
   const std::string found =
       place + std::to_string(pairs.size()) +
       (pairs.size() == 1 ? " pair of triangles touches or passes" : " pairs of triangles touch or pass") +
-      " through each other (" + listed(pairs) + ")";
+      " through each other (" + listed(pairs, numbering) + ")";
   if (options.contact == "none") {
     warnings.push_back(found +
                        "; the scene has no contact, so it can be solved, but neither the start nor "

@@ -4,6 +4,7 @@
 
 #include "exchange/import.hpp"
 #include "formats/valve.hpp"
+#include "mesh/numbering.hpp"
 
 #include <string>
 #include <vector>
@@ -16,6 +17,6 @@ namespace coapt::detail {
 // a published model, which chooses its contact later, and where nothing is to be repaired it is a warning.
 // place: the file, for messages. Pre: corners in range, coordinates finite.
 void separate_leaflets(const ImportOptions& options, const std::string& place, Valve& valve,
-                       std::vector<std::string>& warnings);
+                       std::vector<std::string>& warnings, Numbering numbering);
 
 }  // namespace coapt::detail

@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kCells = 64;       // along each side of the grid
 constexpr int kDirections = 90;  // of chords: one every two degrees
+constexpr double kOnEdge =
+    1e-14;  // 1 + cosine of the angle under which an edge is seen from a place on it, by rounding
 
 struct Hit {
   double distance = kInfinity, height = 0;
@@ -29,8 +31,7 @@ double spanned_height(const Points& polygon, double x, double y) {
     const Eigen::Vector2d a = polygon.col(i).head<2>() - place, b = polygon.col(k).head<2>() - place;
     const double ra = a.norm(), rb = b.norm(), dot = a.dot(b), cross = a[0] * b[1] - a[1] * b[0];
     if (ra == 0) return polygon(2, i);
-    if (cross == 0 && dot <= 0)  // on this edge
-      return (rb * polygon(2, i) + ra * polygon(2, k)) / (ra + rb);
+    if (ra * rb + dot <= kOnEdge * ra * rb) return (rb * polygon(2, i) + ra * polygon(2, k)) / (ra + rb);
     // Tangent of half the angle under which the edge is seen; each end of the edge gets its share.
     const double tangent = cross / (ra * rb + dot);
     weights += tangent / ra + tangent / rb;

@@ -167,7 +167,9 @@ std::string summary(const Certificate& certificate) {
   if (const double rest = std::max(certificate.balance.force, certificate.balance.moment);
       certificate.is_balance_clear && std::isfinite(rest))
     text += ", reactions balance to " + number_text(rest, 2);
-  if (const auto& worst = certificate.imbalance)
+  if (const auto& worst = certificate.imbalance; worst && !std::isfinite(worst->force))
+    text += ", out-of-balance force not finite at node " + std::to_string(worst->node);
+  else if (worst)
     text += ", largest out-of-balance force " + number_text(worst->force, 2) + " at node " +
             std::to_string(worst->node) + " (most of it by " + worst->term + ")";
   return text;

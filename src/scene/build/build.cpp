@@ -1,6 +1,7 @@
 #include "scene/build/build.hpp"
 
 #include "core/error.hpp"
+#include "formats/file_numbering.hpp"
 #include "scene/build/build_parts.hpp"
 #include "scene/build/fibres.hpp"
 #include "scene/build/scene_geometry.hpp"
@@ -61,7 +62,8 @@ std::vector<TermPointer> build_terms(const Scene& scene, const SceneGeometry& ge
                          return model.fibres;
                        },
                        geometry.links,
-                       finest_geometry(geometry).patches};
+                       finest_geometry(geometry).patches,
+                       scene.mesh ? file_numbering(scene.mesh->file) : Numbering()};
   std::vector<TermPointer> terms;
   for (const BuildStage stage : kBuildStages)
     for (const TermSpec& spec : scene.terms) {
@@ -112,6 +114,10 @@ Model build(const Scene& scene, const SceneGeometry& geometry, const GivenTerms&
 
   model.wants_first_piola = scene.wants_first_piola;
   model.motion = motion_path(prescribed, model.X, scene.motion_steps);
+  if (model.motion.positions)
+    for (const BoundaryEntry& entry : scene.boundary)
+      if (!entry.path.empty())
+        model.motion.parts.push_back({entry.where, selected_nodes(entry.nodes, geometry, entry.where)});
   model.objective = std::make_unique<Objective>(model.X, prescribed.fixed, std::move(terms));
   model.objective->use_threads(thread_count(scene.solver));
   model.q0 = model.objective->unknowns(model.X);

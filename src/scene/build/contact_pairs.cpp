@@ -62,14 +62,15 @@ void write_facet_pairs(const std::string& path, const FacetPairs& pairs) {
   formats::write_whole(path, text);
 }
 
-std::string listed(const FacetPairs& pairs) {
+std::string listed(const FacetPairs& pairs, Numbering numbering) {
   std::string list;
   for (size_t k = 0; k < std::min(pairs.size(), kListed); ++k)
     list.append(k > 0 ? ", " : "")
-        .append(std::to_string(pairs[k][0]))
+        .append(numbering.of(pairs[k][0]))
         .append("-")
-        .append(std::to_string(pairs[k][1]));
-  return pairs.size() > kListed ? list + ", ..." : list;
+        .append(numbering.of(pairs[k][1]));
+  if (pairs.size() > kListed) list += ", ...";
+  return list + numbering.note();
 }
 
 }  // namespace coapt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/distance/intersections.hpp"
+#include "mesh/numbering.hpp"
 #include "scene/build/model.hpp"
 
 #include <array>
@@ -28,6 +29,6 @@ FacetPairs read_facet_pairs(const std::string& path, int facet_count);
 void write_facet_pairs(const std::string& path, const FacetPairs& pairs);
 
 // "12-345, 13-346, ...", at most twenty of them.
-std::string listed(const FacetPairs& pairs);
+std::string listed(const FacetPairs& pairs, Numbering numbering = {});
 
 }  // namespace coapt

@@ -1,6 +1,7 @@
 #include "scene/build/supports.hpp"
 
 #include "energy/connected_parts.hpp"
+#include "formats/file_numbering.hpp"
 #include "mesh/mesh_check.hpp"
 
 #include <algorithm>
@@ -36,6 +37,7 @@ void check_surface(const Scene& scene, Model& model, std::vector<std::string>& d
   MeshCheckOptions options;
   options.orientation_matters = has_pressure(scene);
   options.contact = has_finite_contact(scene);
+  options.numbering = file_numbering(scene.mesh->file);
   for (const MeshDefect& defect : check_mesh(model.mesh, options)) {
     const std::string message = scene.mesh->file.string() + ": " + defect.message;
     if (defect.severity == Severity::Error) {
@@ -65,7 +67,7 @@ void hold_isolated_nodes(Model& model, const std::map<std::string, PlacedNetwork
   if (isolated.empty()) return;
   for (const int node : isolated) fixed.col(node).setConstant(true);
   model.warnings.push_back("Nodes on no triangle and no chord stay where they are: " + first_few(isolated) +
-                           ".");
+                           " (numbers of nodes count from 0).");
 }
 
 void warn_of_unsupported_parts(Model& model, const std::vector<TermPointer>& terms, const FixedMask& fixed) {
@@ -82,7 +84,7 @@ void warn_of_unsupported_parts(Model& model, const std::vector<TermPointer>& ter
   model.warnings.push_back(
       "No prescribed coordinate keeps " + std::to_string(loose.size()) + " connected part(s) with " +
       std::to_string(count) + " nodes in all, named by one node each, from shifting along an axis: " +
-      first_few(loose) + ". Their position is not determined (rigid-body modes)" +
+      first_few(loose) + " (counted from 0). Their position is not determined (rigid-body modes)" +
       (is_loaded ? "; under a load that is not in balance there is no equilibrium." : "."));
 }
 

@@ -33,6 +33,9 @@ enum class KeyKind {
   Integers        // one whole number or a list of them
 };
 
+// Size of a number of a scene, in mm, N and MPa: products of a few such numbers stay within double precision.
+inline constexpr double kGreatestNumber = 1e50;
+
 struct KeySpec;
 
 // Of these keys one must be given: exactly one, or at least one.

@@ -4,6 +4,7 @@
 #include "energy/term.hpp"
 #include "energy/term_kind.hpp"
 #include "formats/valve.hpp"
+#include "mesh/numbering.hpp"
 #include "scene/build/model.hpp"
 #include "scene/file/scene.hpp"
 #include "scene/file/schema.hpp"
@@ -51,6 +52,7 @@ struct BuildContext {
   // the membrane term that covers it: the triangles of a patch, 1 or 0 for each of scene_mesh.
   const std::map<std::string, std::vector<std::array<int, 2>>>& links;
   const std::map<std::string, Vector>& patches;
+  Numbering numbering;  // of the mesh, in messages
 };
 
 using TermPointer = std::unique_ptr<EnergyTerm>;

@@ -115,7 +115,8 @@ Points warp_directions(const TermSpec& spec, BuildContext& context) {
   for (const int t : membrane_triangles(spec, context)) {
     const Vec3 normal = area_vector(model.X, model.mesh.triangles.col(t)).normalized();
     if (along.cross(normal).norm() < kAcross)
-      defects.push_back(p.where("direction") + ": triangle " + std::to_string(t) +
+      defects.push_back(p.where("direction") + ": triangle " + context.numbering.of(t) +
+                        context.numbering.note() +
                         " lies across it, so that it gives no warp there; take another, or leave it out: the "
                         "warp then follows the fibres");
   }

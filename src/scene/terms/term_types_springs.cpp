@@ -52,18 +52,19 @@ struct Springs {
   std::vector<Spring::Rest> rest;
 };
 
-std::string too_short(const std::string& where, const Edge& edge, int t, double length) {
-  return where + ": edge " + std::to_string(edge.a) + "-" + std::to_string(edge.b) + " of triangle " +
-         std::to_string(t) + " is " + number_text(length) +
+std::string too_short(const std::string& where, const Edge& edge, int t, double length, Numbering numbering) {
+  return where + ": edge " + numbering.of(edge.a) + "-" + numbering.of(edge.b) + " of triangle " +
+         numbering.of(t) + numbering.note() + " is " + number_text(length) +
          " mm long, next to nothing beside the triangle's other edges: its spring would be stiff beyond "
          "measure; join its ends in the mesh";
 }
 
 // sheets: by triangle; null: not covered. fibres: null where the curves are one. Throws InputError with all
 // edges that cannot be springs.
-Springs edge_springs(const Parameters& p, const Model& model, const std::vector<std::optional<Sheet>>& sheets,
-                     const Points* fibres) {
+Springs edge_springs(const Parameters& p, const BuildContext& context,
+                     const std::vector<std::optional<Sheet>>& sheets, const Points* fibres) {
   const bool resists = p.text("compression") == "resisted";
+  const Model& model = context.model;
   Springs all;
   std::vector<std::string> defects;
   for (const Edge& edge : edges(model.mesh.triangles)) {
@@ -75,7 +76,7 @@ Springs edge_springs(const Parameters& p, const Model& model, const std::vector<
       if (!sheet) continue;
       const double area = area_vector(model.X, model.mesh.triangles.col(t)).norm();
       if (!(area <= kMostSlender * length * length)) {
-        defects.push_back(too_short(p.where(), edge, t, length));
+        defects.push_back(too_short(p.where(), edge, t, length, context.numbering));
         continue;
       }
       const double cosine = fibres == nullptr ? 1 : along.dot(fibres->col(t)) / length;
@@ -104,7 +105,7 @@ TermPointer build_spring(const TermSpec& spec, BuildContext& context) {
     sheets[static_cast<size_t>(t)] = sheet;
   }
   const Points* fibres = is_orthotropic(p) ? &context.fibres() : nullptr;
-  Springs springs = edge_springs(p, context.model, sheets, fibres);
+  Springs springs = edge_springs(p, context, sheets, fibres);
   note_membrane(spec, triangles, properties, context.model);
   return std::make_unique<ElementTerm<Spring>>(spec.name, std::move(springs.nodes), std::move(springs.rest));
 }

@@ -40,7 +40,7 @@ std::vector<std::string> bare_regions(const TriangleMesh& mesh, const std::vecto
 
 // Their triangles, and the first of these.
 std::vector<std::string> bare_pieces(const TriangleMesh& mesh, const Components& parts,
-                                     const std::vector<int>& ends) {
+                                     const std::vector<int>& ends, Numbering numbering) {
   const auto count = static_cast<size_t>(parts.count);
   std::vector<bool> is_held(count, false);
   for (const int v : ends)
@@ -55,7 +55,7 @@ std::vector<std::string> bare_pieces(const TriangleMesh& mesh, const Components&
   std::vector<std::string> doubts;
   for (size_t part = 0; part < count; ++part)
     if (!is_held[part] && triangles[part] > 0)
-      doubts.push_back("the leaflet of triangle " + std::to_string(first[part]) + " (" +
+      doubts.push_back("the leaflet of triangle " + numbering.of(first[part]) + numbering.note() + " (" +
                        std::to_string(triangles[part]) +
                        " triangles): no chord inserts there while others have chords" + kRemedy);
   return doubts;
@@ -141,7 +141,7 @@ std::optional<BareRun> longest_bare(const Valve& valve, const std::vector<int>& 
 
 }  // namespace
 
-std::vector<std::string> bare_leaflets(const Valve& valve) {
+std::vector<std::string> bare_leaflets(const Valve& valve, Numbering numbering) {
   const TriangleMesh& mesh = valve.leaflets;
   const std::vector<int> ends = insertions(valve);
   if (ends.empty()) return {};
@@ -150,7 +150,7 @@ std::vector<std::string> bare_leaflets(const Valve& valve) {
   const Components parts = connected_components(mesh);
   std::vector<std::string> doubts = bare_regions(mesh, is_held);
   if (!doubts.empty()) return doubts;
-  doubts = bare_pieces(mesh, parts, ends);
+  doubts = bare_pieces(mesh, parts, ends, numbering);
   for (const std::vector<int>& loop : free_edges(valve, parts)) {
     const int part = parts.of_vertex[static_cast<size_t>(loop.front())];
     std::vector<int> own;
@@ -158,8 +158,8 @@ std::vector<std::string> bare_leaflets(const Valve& valve) {
       if (parts.of_vertex[static_cast<size_t>(v)] == part) own.push_back(v);
     const std::optional<BareRun> bare = longest_bare(valve, loop, own);
     if (!bare || bare->share <= kMostBare) continue;
-    doubts.push_back("the free edge from vertex " + std::to_string(bare->from) + " to vertex " +
-                     std::to_string(bare->to) + " (" + number_text(100 * bare->share, 2) +
+    doubts.push_back("the free edge from vertex " + numbering.of(bare->from) + " to vertex " +
+                     numbering.of(bare->to) + numbering.note() + " (" + number_text(100 * bare->share, 2) +
                      " % of it): no chord inserts there while the rest has chords" + kRemedy);
   }
   return doubts;

@@ -8,6 +8,7 @@
 #include "formats/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace coapt {
 namespace {
@@ -60,7 +61,8 @@ Column read_heading(const std::string& heading, const TermType& type, const std:
 }
 
 bool is_allowed(double value, const KeySpec& key) {
-  return value <= key.max && (key.excludes_min ? value > key.min : value >= key.min);
+  return std::abs(value) <= kGreatestNumber && value <= key.max &&
+         (key.excludes_min ? value > key.min : value >= key.min);
 }
 
 std::vector<Column> read_columns(const std::string& path, const TermType& type, int rows,

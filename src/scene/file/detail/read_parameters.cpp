@@ -30,6 +30,13 @@ std::string limits_text(const KeySpec& key) {
 
 std::optional<double> within_limits(double value, const Item& item) {
   const KeySpec& key = item.key;
+  if (!(std::abs(value) <= kGreatestNumber)) {
+    item.refuse(
+        "read " + shown(item.json) + ", with which nothing can be computed: it is beyond 1e50" +
+        (key.dimension == kDimensionless ? "" : std::string(" ").append(internal_unit(key.dimension))) +
+        "; is its unit right?");
+    return std::nullopt;
+  }
   if (value < key.min || value > key.max || (key.excludes_min && value == key.min)) {
     item.refuse("read " + shown(item.json) + "; must be " + limits_text(key));
     return std::nullopt;
