@@ -21,7 +21,7 @@ TRIANGLES = 600  # of the valve: x is 9 kB
 SHARE = 0.1  # of x: what caches that still grow may leave behind
 ROWS = 3
 GROWTH = 2 << 20  # of the process [bytes]: a thirtieth of what it holds, 1 kB for each of 2,000 solves
-WARM_UP = 20  # until caches and free lists have their size
+WARM_UP = 80  # until caches, free lists and work arrays have their size: 70 were seen to be needed
 
 
 class HeapCounts(ctypes.Structure):

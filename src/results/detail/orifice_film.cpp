@@ -56,7 +56,7 @@ class Film {
     double area = kInfinity;
     Vector weights = Vector::Ones(u_.size());
     for (int solve = 0; solve < kMostSolves; ++solve) {
-      settle(weights);
+      relax(weights);
       weights = slopes();
       const double last = area;
       area = weights.sum() * share_;
@@ -81,7 +81,7 @@ class Film {
   }
 
   // Each node at the mean of its neighbours, by the weights of the steps to them.
-  void settle(const Vector& weights) {
+  void relax(const Vector& weights) {
     std::vector<Eigen::Triplet<double>> entries;
     Vector right = Vector::Zero(u_.size());
     for (int k = 0; k < u_.size(); ++k) {
