@@ -14,9 +14,12 @@ namespace {
 constexpr double kTravel = 0.2;  // of the extent, by which its share of the loads moves a node in one step
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
-constexpr double kNearEnd = 10;          // damping of a path that begins near its end, over that of others
-constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
-constexpr double kHold = 1e-4;  // of the damping: holds free nodes where a step is asked for its stability
+constexpr double kFollows = 1e-3;        // residual without dampers of a shape that all but follows its loads
+constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, while it does
+constexpr int kMostShares = 8;     // in one step
+constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
+constexpr double kMostFall = 0.5;  // of the damping, from one step to the next at the full problem
+constexpr double kHold = 1e-4;     // of the damping: holds free nodes where a step is asked for its stability
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
 constexpr int kMostInStep =
@@ -57,7 +60,7 @@ class DampedPath {
   bool has_ended() const { return is_blocked_ || has_failed_ || ends_the_run(outcome_.status); }
   double load() const {
     if (is_loaded()) return 1;
-    return std::min(1.0, static_cast<double>(result_.damped_steps) / problem_.continuation.damped_steps);
+    return std::min(1.0, static_cast<double>(taken_shares_) / problem_.continuation.damped_steps);
   }
   bool is_at_full_problem() const { return load() == 1 && moved_ == 1; }
 
@@ -85,6 +88,7 @@ class DampedPath {
   void take_step() {
     ++result_.damped_steps;
     Objective& objective = problem_.objective;
+    raise_load();
     objective.scale(load(), 1);
     advance_motion();
     if (is_blocked_) return;
@@ -118,6 +122,15 @@ class DampedPath {
     if (!factor->factorise(hessian)) ++result_.unstable_steps;
   }
 
+  // One share of the loads a step as long as the shape moves; more where it has all but come to rest under
+  // those that it has, so that the dampers hardly matter.
+  void raise_load() {
+    if (load() == 1) return;
+    const bool follows = taken_shares_ > 0 && true_residual() < kFollows;
+    shares_ = std::clamp(follows ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
+    taken_shares_ += shares_;
+  }
+
   // What is pressed together or overstretched gives way in the next steps, up to a limit.
   void advance_motion() {
     if (!problem_.motion.positions) moved_ = load();
@@ -137,9 +150,10 @@ class DampedPath {
   Monitor& monitor_;
   Result& result_;
   Outcome outcome_;
-  double damping_ = 0;           // of each unknown [force/length]
-  double moved_ = 0;             // of the prescribed motion
-  double residual_ = kInfinity;  // of the last step at the full problem
+  double damping_ = 0;                 // of each unknown [force/length]
+  int taken_shares_ = 0, shares_ = 1;  // of the loads: so far; in the last step
+  double moved_ = 0;                   // of the prescribed motion
+  double residual_ = kInfinity;        // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
   bool is_blocked_ = false, has_failed_ = false;
 };

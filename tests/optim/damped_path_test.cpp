@@ -150,12 +150,12 @@ TEST(DampedPath, TakesItsStepsWithoutDampersWhereNothingLoads) {
   Objective objective(mesh.vertices, fixed_nodes(mesh.vertex_count(), rim_of(mesh)),
                       terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
   Problem problem{objective, objective.unknowns()};
-  problem.continuation.damped_steps = 3;
+  problem.continuation.damped_steps = 20;
   problem.motion.positions = [&](double t) { return Points((1 + 0.1 * t) * mesh.vertices); };
   const auto solver = built_in_solvers().at("newton")({});
   const Result result = solve(*solver, problem, {.tolerance = 1e-9});
   EXPECT_EQ(result.status, Status::Converged) << result.message;
-  EXPECT_EQ(result.damped_steps, 3);
+  EXPECT_EQ(result.damped_steps, 5) << "it follows what holds it: 1, 2, 4, 8 and 5 shares";
   EXPECT_LT((objective.positions(result.q) - 1.1 * mesh.vertices).norm(), 1e-6) << "stretched evenly";
 }
 

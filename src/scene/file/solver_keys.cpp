@@ -197,8 +197,9 @@ KeySpec continuation_key() {
                                .fallback = "0",
                                .min = 0,
                                .max = 100000,
-                               .doc = "Equal steps of all loads and of the prescribed motion along a damped "
-                                      "path, which the order of the nodes and the method hardly ever divert "
+                               .doc = "Steps of all loads and of the prescribed motion along a damped path, "
+                                      "fewer where the shape all but follows them, which the order of the "
+                                      "nodes and the method hardly ever divert "
                                       "to another shape, at two to four times the time; 0: none. It takes "
                                       "neither load_steps nor stiffness_steps."}}},
           .doc =
