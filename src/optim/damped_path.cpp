@@ -14,7 +14,7 @@ namespace {
 constexpr double kTravel = 0.2;  // of the extent, by which its share of the loads moves a node in one step
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
-constexpr double kFollows = 1e-3;        // residual without dampers of a shape that all but follows its loads
+constexpr double kFollows = 1e-3;        // drag of the dampers on a shape that all but follows its loads
 constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, while it does
 constexpr int kMostShares = 8;     // in one step
 constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
@@ -93,13 +93,15 @@ class DampedPath {
     advance_motion();
     if (is_blocked_) return;
     if (!is_loaded()) monitor_.set_path(std::min(load(), moved_));
-    objective.damp(Vector::Constant(result_.q.size(), damping_), result_.q);
+    const Vector before = result_.q;
+    objective.damp(Vector::Constant(result_.q.size(), damping_), before);
     if (is_loaded()) monitor_.limit_iterations(kMostInStep);
     outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, kStepTolerance,
                                            result_.outer_iterations, outcome_.note);
     const bool is_slow = outcome_.status == Status::IterationLimit && monitor_.has_reached_limit();
     if (is_slow) outcome_.status = Status::Stalled;
     monitor_.lift_limit();
+    drag_ = objective.relative_residual(result_.q, damping_ * (result_.q - before));
     objective.damp({}, {});
     has_failed_ = is_slow || (is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost);
     if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();
@@ -123,10 +125,10 @@ class DampedPath {
   }
 
   // One share of the loads a step as long as the shape moves; more where it has all but come to rest under
-  // those that it has, so that the dampers hardly matter.
+  // those that it has, so that the dampers hardly pull.
   void raise_load() {
     if (load() == 1) return;
-    const bool follows = taken_shares_ > 0 && true_residual() < kFollows;
+    const bool follows = taken_shares_ > 0 && drag_ < kFollows;
     shares_ = std::clamp(follows ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
     taken_shares_ += shares_;
   }
@@ -152,6 +154,7 @@ class DampedPath {
   Outcome outcome_;
   double damping_ = 0;                 // of each unknown [force/length]
   int taken_shares_ = 0, shares_ = 1;  // of the loads: so far; in the last step
+  double drag_ = 0;                    // of the dampers in the last step, relative as a residual is
   double moved_ = 0;                   // of the prescribed motion
   double residual_ = kInfinity;        // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
