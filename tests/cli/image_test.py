@@ -19,6 +19,25 @@ encoding: raw
 TRUTH = ("image.nrrd", "labels.nrrd", "surface.obj", "surface.vtp", "annulus.mrk.json", "free_edge.mrk.json")
 
 
+def dicom_slice(number, height, values):
+    """2 x 3 voxels of 16 bits in explicit VR little endian (DICOM PS3.5 and PS3.10)."""
+    def element(group, tag, kind, value):
+        if len(value) % 2:
+            value += b"\0" if kind in ("UI", "OB") else b" "
+        long = kind in ("OW", "OB")
+        return struct.pack("<HH2s", group, tag, kind.encode()) + struct.pack("<HI" if long else "<H", *([0] if long else []), len(value)) + value
+    ct, instance, whole = b"1.2.840.10008.5.1.4.1.1.2", f"1.2.3.4.{number}".encode(), lambda n: struct.pack("<H", n)
+    meta = element(2, 1, "OB", b"\0\1") + element(2, 2, "UI", ct) + element(2, 3, "UI", instance) + element(
+        2, 0x10, "UI", b"1.2.840.10008.1.2.1") + element(2, 0x12, "UI", b"1.2.3")
+    texts = ((0x8, 0x16, "UI", ct), (0x8, 0x18, "UI", instance), (0x8, 0x60, "CS", b"CT"), (0x20, 0xd, "UI", b"1.2.3.9"),
+             (0x20, 0xe, "UI", b"1.2.3.4"), (0x20, 0x13, "IS", str(number).encode()), (0x20, 0x32, "DS", f"10\\20\\{height}".encode()),
+             (0x20, 0x37, "DS", b"0\\1\\0\\-1\\0\\0"), (0x28, 2, "US", whole(1)), (0x28, 4, "CS", b"MONOCHROME2"),
+             (0x28, 0x10, "US", whole(3)), (0x28, 0x11, "US", whole(2)), (0x28, 0x30, "DS", b"0.6\\0.5"), (0x28, 0x100, "US", whole(16)),
+             (0x28, 0x101, "US", whole(16)), (0x28, 0x102, "US", whole(15)), (0x28, 0x103, "US", whole(0)),
+             (0x7fe0, 0x10, "OW", struct.pack("<6H", *values)))
+    return bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + b"".join(element(*text) for text in texts)
+
+
 class Image(CommandCase):
     def setUp(self):
         super().setUp()
@@ -42,6 +61,23 @@ class Image(CommandCase):
         run = coapt("image", "info", self.volume)
         for piece in ("2 x 3 x 4 voxels of uint8", "0.5, 0.6, 0.7 mm", "-10, -20, 30 mm (LPS", "0 to 23"):
             self.assertIn(piece, run.stdout)
+
+    def test_a_dicom_series_is_read_and_a_broken_one_does_not_end_the_command(self):
+        series = self.folder / "series"
+        series.mkdir()
+        for k in range(4):  # names in another order than the slices
+            (series / f"slice{9 - k}").write_bytes(dicom_slice(4 - k, 30 + 0.7 * k, range(6 * k, 6 * k + 6)))
+        info = self.info(series)
+        self.assertEqual((info["format"], info["voxel_kind"], info["size"], info["range"]), ("DICOM", "uint16", [2, 3, 4], [0, 23]))
+        for found, wanted in zip(info["spacing_mm"] + info["origin_mm"] + info["direction"][0], [0.5, 0.6, 0.7, 10, 20, 30, 0, 1, 0]):
+            self.assertAlmostEqual(found, wanted, 6)
+        out = self.folder / "w.nrrd"
+        self.assertEqual(coapt("image", "convert", series, "-o", out).returncode, 0)
+        self.assertEqual((self.info(out)["size"], self.info(out)["range"]), ([2, 3, 4], [0, 23]))
+        whole = (series / "slice9").read_bytes()
+        for length in range(140, len(whole), 23):  # at some of these GDCM ends its process, which is a copy of the command
+            (series / "slice9").write_bytes(whole[:length])
+            self.assert_bad_input(coapt("image", "info", series), "series")
 
     def test_info_of_a_series_wants_no_frame_and_convert_does(self):
         fields = FIELDS.replace("dimension: 3", "dimension: 4").replace("sizes:", "sizes: 2").replace(

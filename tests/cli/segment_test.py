@@ -81,6 +81,28 @@ class SegmentAnImage(CommandCase):
 
     def test_options_that_belong_to_another_method_are_refused(self):
         self.assert_bad_input(self.segment("--threshold", 3, "--method", "ridge"), "--threshold", "isosurface")
+        self.assert_bad_input(self.segment("--inhibition", "edge", "--method", "ridge"), "--inhibition", "burlina-2010")
+
+    def test_burlinas_method_leaves_its_pieces_and_a_valve(self):
+        seeds = self.folder / "seeds.mrk.json"
+
+        def marks(*points):
+            controls = [{"position": point, "label": str(number)} for number, point in enumerate(points)]
+            seeds.write_text(json.dumps({"markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "controlPoints": controls}]}))
+        ring = [point["position"] for point in json.loads(self.ring.read_text())["markups"][0]["controlPoints"]]
+        middle = [sum(point[axis] for point in ring) / len(ring) for axis in range(3)]
+        marks(middle)
+        options = ("--method", "burlina-2010", "--dynamic-range", 50, "--seeds", seeds)
+        self.assert_bad_input(self.segment(*options), "seeds.mrk.json", "expected 2")
+        marks(middle, [middle[0], middle[1], middle[2] - 24])
+        figures, _ = self.found(*options, "--keep")
+        self.assertGreater(figures["level_set"]["steps"], 50)
+        for mean in self.distances():
+            self.assertLess(mean, 0.4)
+        chambers = fields_and_voxels(self.folder / "out/chambers.nrrd")[1]
+        self.assertEqual(set(chambers), {0, 1, 2})
+        for name in ("thin_tissue.nrrd", "tissue_mask.nrrd", "evidence.nrrd"):
+            self.assertTrue((self.folder / "out" / name).exists(), name)
 
     def changed(self, name, change, voxels=lambda data: data):
         fields, data = fields_and_voxels(self.image)

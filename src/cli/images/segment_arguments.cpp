@@ -10,15 +10,27 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <system_error>
 #include <unistd.h>
 
 namespace coapt::cli {
 namespace {
 
+const std::map<std::string, SegmentMethod> kMethods = {{"ridge", SegmentMethod::Ridge},
+                                                       {"isosurface", SegmentMethod::Isosurface},
+                                                       {"burlina-2010", SegmentMethod::Burlina2010}};
+
 SegmentOptions segment_options(const SegmentArguments& arguments) {
   SegmentOptions options;
-  options.method = arguments.method == "isosurface" ? SegmentMethod::Isosurface : SegmentMethod::Ridge;
+  options.method = kMethods.at(arguments.method);
+  options.inhibition = arguments.inhibition == "edge" ? Inhibition::Edge : Inhibition::Intensity;
+  if (!arguments.seeds.empty()) {
+    options.seeds = papillary_points(arguments.seeds);
+    if (options.seeds->cols() != 2)
+      throw InputError(arguments.seeds + ": has " + std::to_string(options.seeds->cols()) +
+                       " points; expected 2, one in the atrium and one in the ventricle");
+  }
   options.annulus = annulus_curve(arguments.annulus);
   if (!arguments.papillary.empty())
     options.ventricle = papillary_points(arguments.papillary).rowwise().mean();
@@ -74,12 +86,24 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
                      "Standard deviation of the blur across the leaflets, such as 0.4mm (default: found)");
   auto* method =
       command
-          .add_option("--method", arguments.method,
-                      "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
-                      "is above a threshold")
-          ->check(CLI::IsMember({"ridge", "isosurface"}))
+          .add_option(
+              "--method", arguments.method,
+              "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
+              "is above a threshold; burlina-2010: what the thin-tissue detector and the level set of "
+              "that paper leave")
+          ->check(CLI::IsMember({"ridge", "isosurface", "burlina-2010"}))
           ->capture_default_str();
   command.add_option("--threshold", arguments.threshold, "Of the isosurface (default: Otsu's)")
+      ->needs(method);
+  command
+      .add_option("--inhibition", arguments.inhibition,
+                  "Of burlina-2010, what stops its contours: edge (eq. 7) or intensity (eq. 8)")
+      ->check(CLI::IsMember({"edge", "intensity"}))
+      ->capture_default_str()
+      ->needs(method);
+  command
+      .add_option("--seeds", arguments.seeds,
+                  "Of burlina-2010: two points (.mrk.json), in the blood of the atrium and of the ventricle")
       ->needs(method);
   command
       .add_option(
@@ -100,6 +124,8 @@ Volume printed_volume(const std::string& path, const std::optional<int>& frame) 
 Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volume) {
   if (arguments.threshold && arguments.method != "isosurface")
     throw InputError("--threshold: belongs to --method isosurface");
+  if ((!arguments.seeds.empty() || arguments.inhibition != "intensity") && arguments.method != "burlina-2010")
+    throw InputError("--seeds and --inhibition: belong to --method burlina-2010");
   const SegmentOptions options = segment_options(arguments);
   try {
     const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());

@@ -15,7 +15,12 @@ constexpr double kNearSide = 1.5, kFarSide = 2.5;  // of what lies beside it [mm
 constexpr double kEdgeReadingStep = 0.25;          // [mm]
 constexpr double kLevelFrom = 2, kLevelTo = 6;     // from the annulus, where all leaflets are [mm]
 constexpr double kShortest = 3;                    // leaflet [mm]
-constexpr double kBrighterSideShare = 0.5;         // of the contrast in the evidence, over that of the sheet
+constexpr double kBrighterShare = 1.0 / 3;         // of the contrast in the evidence where chords follow
+constexpr double kBrighterShareInBlood = 0.5;      // and where blood follows
+constexpr double kLeafletInBlood = 0.64;           // as kLeaflet, where blood follows
+constexpr double kBloodBelow = 0.05,
+                 kChordsAbove = 0.2;          // strength beyond the edge, over that of the leaflets
+constexpr double kFanFrom = 2.5, kFanTo = 5;  // from the edge, where that is read [mm]
 constexpr double kLeaflet = 0.75;      // evidence over that of the leaflets, from which there is leaflet
 constexpr double kChords = 0.55;       // what fans of chords have
 constexpr double kEchoGap = 0.2;       // what gaps in the echoes have, and blood
@@ -80,12 +85,16 @@ double level_of(const Eigen::MatrixXd& values, const Eigen::MatrixXd& lengths) {
 }
 
 // 1 where leaflets are, on the median; 0 where nothing is known.
+Eigen::MatrixXd over_level(const Eigen::MatrixXd& values, const Eigen::MatrixXd& lengths) {
+  const double level = level_of(values, lengths);
+  const double unit = level > 0 ? level : 1;
+  return values.unaryExpr([unit](double value) { return std::isfinite(value) ? value / unit : 0; });
+}
+
+// Of the sheet and of the contrast with the brighter side, by the share of the latter.
 Eigen::MatrixXd leaflet_evidence(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& brighter,
-                                 const Eigen::MatrixXd& lengths) {
-  const double sheet = level_of(strength, lengths), side = level_of(brighter, lengths);
-  Eigen::MatrixXd evidence = sheet > 0 ? Eigen::MatrixXd(strength / sheet) : strength;
-  if (side > 0) evidence = (evidence + kBrighterSideShare / side * brighter) / (1 + kBrighterSideShare);
-  return evidence.unaryExpr([](double value) { return std::isfinite(value) ? value : 0; });
+                                 double share) {
+  return (1 - share) * strength + share * brighter;
 }
 
 // What a millimetre speaks for leaflet. Least of all where chords fan out: a gap may be one of the echoes.
@@ -138,18 +147,18 @@ Vector smoothed(const Vector& lengths, const LayerGrid& grid, const Eigen::Matri
   return smooth;
 }
 
-// Evidence at a length along a column, the mean of the columns beside it [mm].
-double evidence_at(const Eigen::MatrixXd& evidence, const Eigen::MatrixXd& lengths, int column,
-                   double length) {
+// At a length along a column [mm], the mean with this number of columns to each side.
+double value_at(const Eigen::MatrixXd& evidence, const Eigen::MatrixXd& lengths, int column, double length,
+                int beside) {
   const auto columns = static_cast<int>(lengths.cols());
   double sum = 0;
-  for (int other = column - kBeside; other <= column + kBeside; ++other) {
+  for (int other = column - beside; other <= column + beside; ++other) {
     const int c = (other + columns) % columns;
     Eigen::Index row = 0;
     while (row + 1 < lengths.rows() && lengths(row, c) < length) ++row;
     sum += evidence(row, c);
   }
-  return sum / (2 * kBeside + 1);
+  return sum / (2 * beside + 1);
 }
 
 // Where blood and no chords follow, an end that blurs fades sooner: there the edge lies where the evidence
@@ -159,15 +168,42 @@ Vector moved_to_blood(const Vector& ends, const Eigen::MatrixXd& evidence, const
   for (int column = 0; column < static_cast<int>(ends.size()); ++column) {
     double beyond = 0;
     for (double t = kBeyondFrom; t <= kBeyondTo; t += kStateStep)
-      beyond = std::max(beyond, evidence_at(evidence, lengths, column, ends[column] + t));
+      beyond = std::max(beyond, value_at(evidence, lengths, column, ends[column] + t, kBeside));
     const double blood = std::clamp(1 - beyond / kChords, 0.0, 1.0);
     const double least = kLeaflet - (kLeaflet - kEndInBlood) * blood;
     for (double t = 0; t <= kFarthestMove; t += kEdgeReadingStep) {
-      if (evidence_at(evidence, lengths, column, ends[column] + t) < least) break;
+      if (value_at(evidence, lengths, column, ends[column] + t, kBeside) < least) break;
       moved[column] = ends[column] + t;
     }
   }
   return moved;
+}
+
+// 1: blood follows everywhere, 0: chords do, by the mean strength beyond the ends.
+double share_of_blood(const Vector& ends, const Eigen::MatrixXd& strength, const Eigen::MatrixXd& lengths) {
+  double sum = 0;
+  int count = 0;
+  for (int column = 0; column < static_cast<int>(ends.size()); ++column)
+    for (double t = kFanFrom; t <= kFanTo; t += kStateStep, ++count)
+      sum += std::min(value_at(strength, lengths, column, ends[column] + t, 0), 1.0);
+  return std::clamp((kChordsAbove - sum / count) / (kChordsAbove - kBloodBelow), 0.0, 1.0);
+}
+
+// Along each column, before it is smoothed [mm]. Where blood follows the strength of the sheet fades some two
+// millimetres before the edge and the contrast does not: once a first edge says so it is found again.
+Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& brighter,
+                  const Eigen::MatrixXd& lengths) {
+  Eigen::MatrixXd shown = leaflet_evidence(strength, brighter, kBrighterShare);
+  Vector ends = kStateStep * closed_polygon(end_costs(shown, lengths), {});
+  const double blood = share_of_blood(ends, strength, lengths);
+  if (blood > 0) {
+    shown = leaflet_evidence(strength, brighter,
+                             kBrighterShare + blood * (kBrighterShareInBlood - kBrighterShare))
+                .array() +
+            blood * (kLeaflet - kLeafletInBlood);
+    ends = kStateStep * closed_polygon(end_costs(shown, lengths), {});
+  }
+  return moved_to_blood(ends, shown, lengths);
 }
 
 }  // namespace
@@ -183,9 +219,10 @@ FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const La
     throw InputError(
         "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
         "volume's frame (LPS), and are the leaflets bright in it?");
-  const Eigen::MatrixXd shown = leaflet_evidence(strengths(evidence, grid), contrast.brighter, lengths);
-  const Vector polygon = kStateStep * closed_polygon(end_costs(shown, lengths), {});
-  const Vector found = moved_to_blood(polygon, shown, lengths);
+  const Eigen::MatrixXd strength = over_level(strengths(evidence, grid), lengths);
+  const bool has_side = level_of(contrast.brighter, lengths) > 0;  // else the strength has to do alone
+  const Vector found =
+      found_ends(strength, has_side ? over_level(contrast.brighter, lengths) : strength, lengths);
   edge.lengths = smoothed(found, grid, lengths);
   edge.deviation = std::sqrt((found - edge.lengths).squaredNorm() / grid.columns);
   for (int column = 0; column < grid.columns; ++column)

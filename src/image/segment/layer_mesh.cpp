@@ -12,8 +12,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kCutSnap = 0.3;  // of an edge, within which the cut goes through a vertex
-constexpr int kRoundings = 30;    // of making triangles round
+constexpr double kCutSnap = 0.3;    // of an edge, within which the cut goes through a vertex
+constexpr double kShortEdge = 0.5;  // of the wanted length
+constexpr int kRoundings = 30;      // of making triangles round
 
 TriangleMesh grid_mesh(const LayerGrid& grid) {
   TriangleMesh mesh;
@@ -102,6 +103,9 @@ LayerMesh layer_mesh(const LayerGrid& grid, const Vector& ends, double edge_leng
                              .kinds = {},
                              .lines = {}})
                   .mesh;
+  round_triangles(mesh.mesh, fine, kRoundings);
+  collapse_short_edges(mesh.mesh, kShortEdge * edge_length);
+  mesh.mesh = compacted(mesh.mesh);
   round_triangles(mesh.mesh, fine, kRoundings);
   name_rims(mesh, grid);
   place_on_grid(mesh, whole);

@@ -16,6 +16,8 @@ namespace {
 constexpr double kGoodAngle = 30;    // below it an angle never gets smaller [degrees]
 constexpr double kFlipCosine = 0.8;  // between the normals at an edge that may be flipped
 constexpr double kLeastGain = 1e-3;  // of a flip, so that no edge is flipped to and fro [degrees]
+constexpr double kCutAngle = 20;     // a triangle with two edges on a rim is cut off below it [degrees]
+constexpr int kCollapses = 20;       // rounds at most, in each of which edges apart from each other go
 constexpr double kWay = 0.7;         // towards the middle of the neighbours, at each round
 
 double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -166,7 +168,129 @@ void flip_edges(TriangleMesh& mesh) {
   }
 }
 
+// The triangles at each vertex, and which vertices lie on a rim.
+struct Corners {
+  std::vector<std::vector<int>> triangles;
+  std::vector<char> is_rim;
+};
+
+Corners corners_of(const TriangleMesh& mesh, const std::vector<Edge>& all) {
+  const auto n = static_cast<size_t>(mesh.vertex_count());
+  Corners corners{std::vector<std::vector<int>>(n), std::vector<char>(n, 0)};
+  for (int t = 0; t < mesh.triangle_count(); ++t)
+    for (const int v : mesh.triangles.col(t)) corners.triangles[static_cast<size_t>(v)].push_back(t);
+  for (const Edge& edge : all)
+    if (edge.triangles.size() == 1)
+      corners.is_rim[static_cast<size_t>(edge.a)] = corners.is_rim[static_cast<size_t>(edge.b)] = 1;
+  return corners;
+}
+
+std::set<int> neighbours_of(const TriangleMesh& mesh, const Corners& corners, int vertex) {
+  std::set<int> around;
+  for (const int t : corners.triangles[static_cast<size_t>(vertex)])
+    for (const int v : mesh.triangles.col(t)) around.insert(v);
+  around.erase(vertex);
+  return around;
+}
+
+// Whether the mesh stays manifold, with the same rims, when the edge becomes a point.
+bool can_collapse(const TriangleMesh& mesh, const Corners& corners, const Edge& edge) {
+  const auto is_rim = [&](int v) { return corners.is_rim[static_cast<size_t>(v)] != 0; };
+  if (edge.triangles.size() == 2 && is_rim(edge.a) && is_rim(edge.b)) return false;
+  const std::set<int> a = neighbours_of(mesh, corners, edge.a), b = neighbours_of(mesh, corners, edge.b);
+  return static_cast<size_t>(std::count_if(a.begin(), a.end(), [&](int v) { return b.contains(v); })) ==
+         edge.triangles.size();
+}
+
+// Moves both ends to one place, b becoming a; false, and nothing is changed, where no angle grows by it.
+bool collapse(TriangleMesh& mesh, const Corners& corners, const Edge& edge) {
+  const auto a = static_cast<size_t>(edge.a), b = static_cast<size_t>(edge.b);
+  std::vector<int> around = corners.triangles[a];
+  around.insert(around.end(), corners.triangles[b].begin(), corners.triangles[b].end());
+  const double least = least_around(mesh, around);
+  std::erase_if(around,
+                [&](int t) { return std::count(edge.triangles.begin(), edge.triangles.end(), t) > 0; });
+  if (around.empty()) return false;
+  const Vec3 at_a = mesh.vertices.col(edge.a), at_b = mesh.vertices.col(edge.b);
+  const Vec3 there = corners.is_rim[a] == corners.is_rim[b] ? Vec3(0.5 * (at_a + at_b))
+                     : corners.is_rim[a] != 0               ? at_a
+                                                            : at_b;
+  std::vector<Vec3> normals;
+  for (const int t : around)
+    normals.push_back(area_vector(mesh.vertices, mesh.triangles.col(t)).normalized());
+  mesh.vertices.col(edge.a) = mesh.vertices.col(edge.b) = there;
+  bool is_better = least_around(mesh, around) > least;
+  for (size_t k = 0; k < around.size(); ++k)
+    is_better = is_better && area_vector(mesh.vertices, mesh.triangles.col(around[k])).dot(normals[k]) > 0;
+  if (!is_better) {
+    mesh.vertices.col(edge.a) = at_a;
+    mesh.vertices.col(edge.b) = at_b;
+    return false;
+  }
+  for (const int t : corners.triangles[b])
+    for (int& v : mesh.triangles.col(t))
+      if (v == edge.b) v = edge.a;
+  return true;
+}
+
+// Those that have two edges on a rim, a third inside, and a small angle.
+std::vector<char> rim_slivers(const TriangleMesh& mesh, const std::vector<Edge>& all) {
+  std::vector<int> rims(static_cast<size_t>(mesh.triangle_count()), 0);
+  for (const Edge& edge : all)
+    if (edge.triangles.size() == 1) ++rims[static_cast<size_t>(edge.triangles[0])];
+  std::vector<char> is_sliver(rims.size());
+  for (size_t t = 0; t < rims.size(); ++t)
+    is_sliver[t] = rims[t] == 2 && least_around(mesh, {static_cast<int>(t)}) < kCutAngle;
+  return is_sliver;
+}
+
+void keep_triangles(TriangleMesh& mesh, const std::vector<char>& is_gone) {
+  Triangles kept(3, mesh.triangle_count());
+  Eigen::Index count = 0;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const Eigen::Vector3i corners = mesh.triangles.col(t);
+    const bool is_flat = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+    if (!is_flat && is_gone[static_cast<size_t>(t)] == 0) kept.col(count++) = corners;
+  }
+  mesh.triangles = kept.leftCols(count);
+}
+
+// One round; the number of edges that became points.
+int collapse_once(TriangleMesh& mesh, double shortest) {
+  std::vector<Edge> all = edges(mesh.triangles);
+  const Corners corners = corners_of(mesh, all);
+  const auto length = [&](const Edge& edge) {
+    return (mesh.vertices.col(edge.a) - mesh.vertices.col(edge.b)).norm();
+  };
+  std::erase_if(all, [&](const Edge& edge) { return length(edge) >= shortest; });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Edge& a, const Edge& b) { return length(a) < length(b); });
+  std::vector<char> is_touched(static_cast<size_t>(mesh.vertex_count()), 0);
+  int count = 0;
+  for (const Edge& edge : all) {
+    std::set<int> around = neighbours_of(mesh, corners, edge.a);
+    around.merge(neighbours_of(mesh, corners, edge.b));
+    if (std::any_of(around.begin(), around.end(),
+                    [&](int v) { return is_touched[static_cast<size_t>(v)] != 0; }))
+      continue;
+    if (!can_collapse(mesh, corners, edge) || !collapse(mesh, corners, edge)) continue;
+    ++count;
+    for (const int v : around) is_touched[static_cast<size_t>(v)] = 1;
+  }
+  keep_triangles(mesh, std::vector<char>(static_cast<size_t>(mesh.triangle_count()), 0));
+  return count;
+}
+
 }  // namespace
+
+void collapse_short_edges(TriangleMesh& mesh, double shortest) {
+  for (int round = 0; round < kCollapses; ++round) {
+    const int collapsed = collapse_once(mesh, shortest);
+    const std::vector<char> slivers = rim_slivers(mesh, edges(mesh.triangles));
+    keep_triangles(mesh, slivers);
+    if (collapsed == 0 && std::count(slivers.begin(), slivers.end(), 1) == 0) break;
+  }
+}
 
 void round_triangles(TriangleMesh& mesh, const TriangleMesh& surface, int rounds) {
   const TriangleTree tree(surface.vertices, surface.triangles);

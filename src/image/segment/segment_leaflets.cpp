@@ -64,20 +64,14 @@ class Phases {
   std::optional<PhaseTimer> timer_;
 };
 
-// What the sheet is looked for in: the volume, or what the mask or the threshold says is leaflet.
-Volume looked_at(const Volume& volume, const SegmentOptions& options, std::optional<double>& threshold) {
-  if (options.mask) {
-    Volume occupied = volume_like(volume, 0);
-    for (int k = 0; k < volume.size[2]; ++k)
-      for (int j = 0; j < volume.size[1]; ++j)
-        for (int i = 0; i < volume.size[0]; ++i)
-          if (sample(*options.mask, position_of(volume, Vec3(i, j, k)), 0) > 0.5)
-            occupied.values[volume.voxel(i, j, k)] = 1;
-    return occupied;
-  }
-  if (options.method == SegmentMethod::Ridge) return volume;
-  threshold = options.threshold ? *options.threshold : otsu_threshold(volume);
-  return greatest_part(volume, *threshold);
+Volume occupied_by_mask(const Volume& volume, const Volume& mask) {
+  Volume occupied = volume_like(volume, 0);
+  for (int k = 0; k < volume.size[2]; ++k)
+    for (int j = 0; j < volume.size[1]; ++j)
+      for (int i = 0; i < volume.size[0]; ++i)
+        if (sample(mask, position_of(volume, Vec3(i, j, k)), 0) > 0.5)
+          occupied.values[volume.voxel(i, j, k)] = 1;
+  return occupied;
 }
 
 // The unit vector to the ventricle: as said, or to the side on which there are leaflets.
@@ -92,6 +86,35 @@ Vec3 side_of_ventricle(const SheetEvidence& evidence, const SegmentOptions& opti
         evidence_on_side(evidence, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
   }
   return found[0] >= found[1] ? plane.normal : Vec3(-plane.normal);
+}
+
+// Where no seeds are given the contours begin in the middle of the annulus, and below it in the ventricle.
+BurlinaSegmentation burlina_pieces(const Volume& volume, const SegmentOptions& options,
+                                   const AnnulusPlane& plane, TrackOptions track) {
+  BurlinaOptions burlina{.inhibition = options.inhibition, .scale = sheet_scales(volume).front()};
+  if (options.seeds) {
+    burlina.atrium = options.seeds->col(0);
+    burlina.ventricle = options.seeds->col(1);
+    return segment_burlina_2010(volume, burlina);
+  }
+  burlina.atrium = plane.middle;
+  const Vec3 down = side_of_ventricle(sheet_evidence(volume, sheet_scales(volume)), options, plane, track);
+  burlina.ventricle = place_in_ventricle(without_speckle(volume), plane.middle, down, plane.diameter);
+  return segment_burlina_2010(volume, burlina);
+}
+
+// What the sheet is looked for in: the volume, or what is leaflet by the mask, the threshold or Burlina's
+// method.
+Volume looked_at(const Volume& volume, const SegmentOptions& options, const AnnulusPlane& plane,
+                 const TrackOptions& track, std::optional<double>& threshold, Segmentation& result) {
+  if (options.mask) return occupied_by_mask(volume, *options.mask);
+  if (options.method == SegmentMethod::Ridge) return volume;
+  if (options.method == SegmentMethod::Burlina2010) {
+    result.burlina = burlina_pieces(volume, options, plane, track);
+    return result.burlina->leaflets;
+  }
+  threshold = options.threshold ? *options.threshold : otsu_threshold(volume);
+  return greatest_part(volume, *threshold);
 }
 
 // The points above the edge that the image shows.
@@ -143,6 +166,9 @@ void add_warnings(Segmentation& result) {
   if (result.least_angle < kLeastAngle)
     result.warnings.push_back("the least angle of the mesh is " + number_text(result.least_angle, 3) +
                               " degrees, below " + number_text(kLeastAngle, 2));
+  if (result.burlina && !result.burlina->is_done)
+    result.warnings.push_back("the contours of the chambers still grew after " +
+                              std::to_string(result.burlina->steps) + " steps");
   if (result.thickness_median <= 0)
     result.warnings.push_back("no thickness could be fitted; the valve states none");
 }
@@ -180,12 +206,12 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const Volume part = around_annulus(volume, options.annulus, options.ventricle);
   result.size = part.size;
   std::optional<double> threshold;
-  const Volume seen = looked_at(part, options, threshold);
+  TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
+                     .greatest_length = kGreatestShare * plane.diameter};
+  const Volume seen = looked_at(part, options, plane, track, threshold, result);
   SheetEvidence evidence = sheet_evidence(seen, sheet_scales(part));
 
   phases.begin("layer from the annulus");
-  TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
-                     .greatest_length = kGreatestShare * plane.diameter};
   track.ventricle = side_of_ventricle(evidence, options, plane, track);
   LayerGrid grid = track_layer(evidence, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
   const LayerFit fit = fit_layer(grid, evidence, options.smoothing, kFitRounds);

@@ -1,6 +1,7 @@
 #include "image/segment/sheet_evidence.hpp"
 
 #include "core/error.hpp"
+#include "image/detail/itk_volume.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -10,14 +11,12 @@
 #include <itkHessianRecursiveGaussianImageFilter.h>
 #include <itkImageRegionConstIterator.h>
 #include <itkImageToHistogramFilter.h>
-#include <itkMedianImageFilter.h>
 #include <itkOtsuThresholdCalculator.h>
 #include <itkRelabelComponentImageFilter.h>
 
 namespace coapt {
 namespace {
 
-using FloatImage = itk::Image<float, 3>;
 using LabelImage = itk::Image<unsigned int, 3>;
 using TensorImage = itk::Image<itk::SymmetricSecondRankTensor<float, 3>, 3>;
 
@@ -28,30 +27,6 @@ constexpr double kScales[] = {0.7, 1.0, 1.4};
 constexpr double kLeastScale = 0.8;
 // Bins of the histograms that thresholds are found in.
 constexpr unsigned int kBins = 256;
-
-// In the frame of the grid: the direction of its axes is left out.
-FloatImage::Pointer as_image(const Volume& volume) {
-  const auto image = FloatImage::New();
-  FloatImage::SizeType size;
-  FloatImage::SpacingType spacing;
-  for (unsigned int axis = 0; axis < 3; ++axis) {
-    size[axis] = static_cast<itk::SizeValueType>(volume.size[axis]);
-    spacing[axis] = volume.spacing[axis];
-  }
-  image->SetRegions(FloatImage::RegionType(size));
-  image->SetSpacing(spacing);
-  image->Allocate();
-  std::copy(volume.values.begin(), volume.values.end(), image->GetBufferPointer());
-  return image;
-}
-
-FloatImage::Pointer without_speckle(const FloatImage::Pointer& image) {
-  const auto filter = itk::MedianImageFilter<FloatImage, FloatImage>::New();
-  filter->SetInput(image);
-  filter->SetRadius(1);
-  filter->Update();
-  return filter->GetOutput();
-}
 
 // Takes over what is clearer at this scale.
 void add_scale(SheetEvidence& evidence, const FloatImage::Pointer& image, double scale) {
@@ -116,6 +91,8 @@ void normalise(SheetEvidence& evidence) {
 }
 
 }  // namespace
+
+Volume without_speckle(const Volume& volume) { return as_volume(without_speckle(as_image(volume)), volume); }
 
 double otsu_threshold(const Volume& volume) {
   const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());

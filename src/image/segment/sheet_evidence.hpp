@@ -12,6 +12,9 @@ struct SheetEvidence {
   std::vector<Eigen::Vector3f> normals;  // of each voxel, of either sign, in space
 };
 
+// A median over 3 x 3 x 3 voxels.
+Volume without_speckle(const Volume& volume);
+
 // Those at which leaflets are looked for: 0.7, 1 and 1.4 mm, as far as they are at least 0.8 voxels [mm].
 std::vector<double> sheet_scales(const Volume& volume);
 

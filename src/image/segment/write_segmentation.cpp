@@ -38,30 +38,34 @@ OrderedJson document(const Segmentation& found, const std::string& volume, const
   const auto fitted = static_cast<double>(found.thickness.array().isFinite().count());
   OrderedJson phases = OrderedJson::object();
   for (const auto& [phase, seconds] : found.times.wall()) phases[phase] = seconds;
-  return {{"volume", volume},
-          {"annulus", annulus},
-          {"voxels", found.size},
-          {"vertices", valve.leaflets.vertex_count()},
-          {"triangles", valve.leaflets.triangle_count()},
-          {"least_angle_deg", found.least_angle},
-          {"area_mm2", surface_area(valve.leaflets.vertices, valve.leaflets.triangles)},
-          {"annulus_length_mm", loop_length(valve, valve.annulus)},
-          {"free_edge_length_mm", loop_length(valve, valve.free_edge)},
-          {"thickness_mm",
-           {{"median", found.thickness_median},
-            {"p05", quantile(found.thickness, 0.05)},
-            {"p95", quantile(found.thickness, 0.95)},
-            {"fitted_share", fitted / std::max(1.0, static_cast<double>(found.thickness.size()))}}},
-          {"deviation_mm", {{"mean", found.deviation.mean()}, {"p95", quantile(found.deviation, 0.95)}}},
-          {"free_edge_deviation_mm", found.edge_deviation},
-          {"ridge_noise_mm", found.noise},
-          {"ridge_noise_area_mm2", found.noise_area},
-          {"blur_mm", found.blur},
-          {"contrast", found.contrast},
-          {"shown_share", found.shown_share},
-          {"phase_seconds", phases},
-          {"cpu_seconds", found.cpu_seconds},
-          {"warnings", found.warnings}};
+  OrderedJson written = {
+      {"volume", volume},
+      {"annulus", annulus},
+      {"voxels", found.size},
+      {"vertices", valve.leaflets.vertex_count()},
+      {"triangles", valve.leaflets.triangle_count()},
+      {"least_angle_deg", found.least_angle},
+      {"area_mm2", surface_area(valve.leaflets.vertices, valve.leaflets.triangles)},
+      {"annulus_length_mm", loop_length(valve, valve.annulus)},
+      {"free_edge_length_mm", loop_length(valve, valve.free_edge)},
+      {"thickness_mm",
+       {{"median", found.thickness_median},
+        {"p05", quantile(found.thickness, 0.05)},
+        {"p95", quantile(found.thickness, 0.95)},
+        {"fitted_share", fitted / std::max(1.0, static_cast<double>(found.thickness.size()))}}},
+      {"deviation_mm", {{"mean", found.deviation.mean()}, {"p95", quantile(found.deviation, 0.95)}}},
+      {"free_edge_deviation_mm", found.edge_deviation},
+      {"ridge_noise_mm", found.noise},
+      {"ridge_noise_area_mm2", found.noise_area},
+      {"blur_mm", found.blur},
+      {"contrast", found.contrast},
+      {"shown_share", found.shown_share},
+      {"phase_seconds", phases},
+      {"cpu_seconds", found.cpu_seconds},
+      {"warnings", found.warnings}};
+  if (found.burlina)
+    written["level_set"] = {{"steps", found.burlina->steps}, {"is_done", found.burlina->is_done}};
+  return written;
 }
 
 }  // namespace
@@ -79,6 +83,11 @@ void write_segmentation(const std::filesystem::path& folder, const Segmentation&
   surface.texts.push_back({"SPACE", {"LPS"}});
   write_vtp(folder / "leaflets.vtp", surface);
   if (found.strength) write_volume(folder / "evidence.nrrd", *found.strength, VoxelKind::Float32);
+  if (found.strength && found.burlina) {
+    write_volume(folder / "thin_tissue.nrrd", found.burlina->thin_tissue, VoxelKind::Float32);
+    write_volume(folder / "chambers.nrrd", found.burlina->chambers, VoxelKind::UInt8);
+    write_volume(folder / "tissue_mask.nrrd", found.burlina->leaflets, VoxelKind::UInt8);
+  }
   formats::write_durable(folder / "segmentation.json", json_text(document(found, volume, annulus), 2) + "\n");
 }
 

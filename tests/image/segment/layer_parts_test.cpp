@@ -45,6 +45,31 @@ TEST(ClosedPath, IsTheCheapestOfAll) {
   }
 }
 
+TEST(CollapseShortEdges, MakesAPointOfTwoThatAllButCoincide) {
+  constexpr int kColumns = 40, kRows = 6;
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, kColumns * kRows);
+  mesh.triangles.resize(3, 2 * kColumns * (kRows - 1));
+  Eigen::Index t = 0;
+  for (int row = 0; row < kRows; ++row)
+    for (int column = 0; column < kColumns; ++column) {
+      const double angle = 2 * std::numbers::pi * column / kColumns;
+      mesh.vertices.col(row * kColumns + column) = Vec3(6 * std::cos(angle), 6 * std::sin(angle), row);
+      if (row + 1 == kRows) continue;
+      const int next = (column + 1) % kColumns, a = row * kColumns + column, b = row * kColumns + next;
+      mesh.triangles.col(t++) << a, b, b + kColumns;
+      mesh.triangles.col(t++) << a, b + kColumns, a + kColumns;
+    }
+  const int moved = 2 * kColumns + 10;
+  mesh.vertices.col(moved) = 0.03 * mesh.vertices.col(moved) + 0.97 * mesh.vertices.col(moved + 1);
+  ASSERT_LT(least_angle(mesh), 3);
+  const Eigen::Index before = mesh.triangles.cols();
+  collapse_short_edges(mesh, 0.5);
+  EXPECT_GT(least_angle(mesh), 15);
+  EXPECT_EQ(mesh.triangles.cols(), before - 2);
+  EXPECT_EQ(boundary_loops(mesh.triangles).size(), 2u);
+}
+
 TEST(ClosedPolygon, FollowsAWaveAndPassesOverAGap) {
   // Costs grow with the distance from a wave; where nothing is known they are all the same.
   constexpr int kColumns = 120, kStates = 40;
