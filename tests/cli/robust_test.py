@@ -159,3 +159,14 @@ class Robust(CommandCase):
 
 if __name__ == "__main__":
     unittest.main(argv=[__file__])
+    def test_a_scene_called_by_its_bare_name_has_its_folder_for_results(self):
+        scene = self.generate("disc", "--triangles", 100)
+        self.edited(scene, lambda content: content.update(output={"folder": "own"}))
+        for command in ["solve", "mesh-study", "sensitivity", "compare"]:
+            options = ["--levels", 1] if command == "mesh-study" else []
+            run = coapt(command, scene.name, *options, cwd=self.folder)
+            self.assertIn(run.returncode, [0, 1, 4], command + ": " + run.stdout + run.stderr)
+        self.assertTrue((self.folder / "own" / "result.json").exists())
+        self.edited(scene, lambda content: content.update(output={"folder": "../outside"}))
+        self.assert_bad_input(coapt("solve", scene.name, cwd=self.folder), "output.folder", "-o")
+
