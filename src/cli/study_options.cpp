@@ -8,6 +8,7 @@
 
 #include <charconv>
 
+#include <utility>
 namespace coapt::cli {
 namespace {
 
@@ -37,10 +38,10 @@ RunOptions StudyArguments::options(const Session& session) const {
   return options;
 }
 
-std::filesystem::path StudyArguments::folder_for(const Scene& read,
-                                                 const std::vector<std::string>& names) const {
+std::filesystem::path StudyArguments::folder_for(const Scene& read, const std::vector<std::string>& names,
+                                                 std::vector<std::filesystem::path> others) const {
   std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
-  refuse_replaced_inputs(read, path, names);
+  refuse_replaced_inputs(read, path, names, std::move(others));
   return path;
 }
 

@@ -207,7 +207,8 @@ void run_command(const TuneArguments& arguments, Session& session) {
   };
   std::optional<OutputFolder> output;
   if (const std::optional<Scene> scene = readable_scene(arguments.scene))
-    output.emplace(arguments.folder_for(*scene, {"tuning.json", "tuning.csv", "tuning.html", "tuned.json"}));
+    output.emplace(arguments.folder_for(*scene, {"tuning.json", "tuning.csv", "tuning.html", "tuned.json"},
+                                        {arguments.target}));
   TuneCheckpoint checkpoint(arguments.checkpoint, arguments.scene, options, run);
   const ChordTuning found = tune_chords(arguments.scene, all_solvers(), all_minimisers(), options, run);
   end_progress();
