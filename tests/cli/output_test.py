@@ -4,6 +4,7 @@ Usage: output_test.py COAPT_BINARY [unittest arguments]
 """
 import fcntl
 import json
+import re
 import resource
 import signal
 import subprocess
@@ -74,7 +75,6 @@ class Output(CommandCase):
         self.assert_bad_input(coapt("solve", named, "-o", self.folder), "result.json")
         self.assertEqual(json.loads(named.read_text()), content)
 
-    def test_analyses_share_a_folder(self):
     def test_no_command_replaces_a_file_that_it_reads(self):
         scene = self.generate("mitral", "--triangles", 250)
         edits = self.folder / "intervene.json"
@@ -104,6 +104,7 @@ class Output(CommandCase):
         self.assertEqual(len(other["warnings"]), 1, other)
         self.assertIn("mesh.obj", other["warnings"][0])
 
+    def test_analyses_share_a_folder(self):
         scene, out = self.generate("mitral", "--triangles", 250), self.folder / "out"
         self.assertIn(coapt("solve", scene, "-o", out).returncode, [0, 4])
         before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
@@ -126,6 +127,9 @@ class Output(CommandCase):
         self.assertIn("is the disk full?", run.stderr)
         self.assertIn("closed.vtp", run.stderr)
         self.assertIn("residual", run.stdout)
+        said = re.search(r"(?m)^written to .* \((.*)\)$", run.stdout)[1].split(", ")
+        self.assertIn("result.json", said)
+        self.assertEqual([name for name in said if not (out / name).exists()], [])
         written = json.loads((out / "result.json").read_text())
         self.assertIn(written["status"], ["converged", "stalled"])
         self.assertEqual([path.name for path in out.iterdir() if ".part" in path.name], [])
