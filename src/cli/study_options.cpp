@@ -3,12 +3,13 @@
 #include "cli/command_line.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
+#include "core/error.hpp"
 #include "formats/text.hpp"
 #include "run/replaced_inputs.hpp"
 
 #include <charconv>
-
 #include <utility>
+
 namespace coapt::cli {
 namespace {
 
@@ -24,6 +25,15 @@ std::string steps_defect(const std::string& text) {
          ", read " + text;
 }
 
+// That a scene states. What is wrong with the scene is said by whoever solves it.
+std::optional<double> stated_tolerance(const std::string& scene) {
+  try {
+    return load_scene(scene).solver.tolerance;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 RunOptions StudyArguments::options(const Session& session) const {
@@ -34,7 +44,7 @@ RunOptions StudyArguments::options(const Session& session) const {
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, options.tolerance);
+  options.observer = make_observer(session, options.tolerance ? options.tolerance : stated_tolerance(scene));
   return options;
 }
 
