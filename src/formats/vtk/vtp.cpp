@@ -40,7 +40,8 @@ class VtpReader {
     const pugi::xml_node data = document_.child("VTKFile").child("PolyData");
     if (!data) defects_.fail("is not a VTK XML file of type PolyData");
     read_coding(document_.child("VTKFile"));
-    for (const pugi::xml_node& piece : data.children("Piece")) read_piece(piece);
+    for (const pugi::xml_node& piece : data.children("Piece"))
+      if (!holds_too_much_) read_piece(piece);
     if (left_out_ > 0)
       builder_.warnings.push_back(defects_.file() + ": " + std::to_string(left_out_) +
                                   " points, lines or strips are no polygons and were left out");
@@ -127,7 +128,8 @@ class VtpReader {
   // Takes numbers of this width [bytes] from those that may still be decoded, also where their array proves
   // to be damaged: many pieces may name the same one.
   void take(std::uint64_t size, size_t width) {
-    if (size / width > numbers_left_)
+    if (size / width > numbers_left_) holds_too_much_ = true;
+    if (holds_too_much_)
       throw InputError("announces " + std::to_string(size >> 20) +
                        " MB, with which the file would hold more than " +
                        std::to_string(most_numbers() >> 20) +
@@ -248,6 +250,7 @@ class VtpReader {
   bool appended_is_base64_ = false;
   VtkCoding coding_;
   std::uint64_t numbers_left_ = most_numbers();  // that may still be decoded
+  bool holds_too_much_ = false;
   std::vector<int> regions_;
   bool has_regions_ = false;
   size_t left_out_ = 0;
