@@ -82,6 +82,7 @@ void run_application(const std::vector<std::string>& given, Session& session, Te
     app->parse(std::vector<std::string>(arguments.rbegin(),
                                         arguments.rend()));  // from the last on, as CLI11 wants them
   } catch (const CLI::Success& wanted) {                     // help or version
+    if (const auto unknown = unknown_command(*app, arguments)) throw InputError(*unknown);
     session.exit_code = app->exit(wanted);
   } catch (const CLI::ParseError& error) {
     throw InputError(argument_error(*app, error, arguments));

@@ -29,6 +29,36 @@ std::vector<std::string> all_option_names(const CLI::App& command) {
   return names;
 }
 
+// The command that was named last, and how to speak of it.
+struct Place {
+  explicit Place(const CLI::App& app) {
+    const std::vector<const CLI::App*> named = named_commands(app);
+    command = named.back();
+    depth = named.size() - 1;
+    std::string names;
+    for (size_t k = 1; k < named.size(); ++k) names += " " + named[k]->get_name();
+    path = "coapt" + names;
+    help = "; `coapt help" + names + "` tells more";
+  }
+
+  const CLI::App* command = nullptr;
+  size_t depth = 0;  // 0: the application itself
+  std::string path, help;
+};
+
+// Of an option that takes one of a few words, and was given another.
+std::optional<std::string> unknown_value(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::vector<std::string> allowed = allowed_values(*option);
+    if (allowed.empty()) continue;
+    for (const std::string& value : option->results())
+      if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
+        return option->get_name() + ": there is no \"" + value + "\"" + suggestion(value, allowed) +
+               "; there are: " + listed(allowed);
+  }
+  return std::nullopt;
+}
+
 // "--solvr" of "--solvr=newton".
 std::string name_of(const std::string& argument) { return argument.substr(0, argument.find('=')); }
 
@@ -41,30 +71,33 @@ std::vector<std::string> with_help_option(std::vector<std::string> arguments) {
   return arguments;
 }
 
-std::string argument_error(const CLI::App& app, const CLI::ParseError& error,
-                           const std::vector<std::string>& arguments) {
-  const std::vector<const CLI::App*> named = named_commands(app);
-  const CLI::App& command = *named.back();
-  std::string path;
-  for (size_t k = 1; k < named.size(); ++k) path += " " + named[k]->get_name();
-  const std::string help = "; `coapt help" + path + "` tells more";
-
+std::optional<std::string> unknown_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const Place place(app);
+  const std::vector<std::string> known = command_names(*place.command);
+  if (known.empty()) return std::nullopt;
   std::vector<std::string> words;
   for (const std::string& argument : arguments)
     if (!argument.starts_with('-')) words.push_back(argument);
-  if (const std::vector<std::string> known = command_names(command); !known.empty()) {
-    if (words.size() < named.size()) return "coapt" + path + ": which? There are: " + listed(known) + help;
-    const std::string& word = words[named.size() - 1];
-    return "coapt" + path + ": there is no \"" + word + "\"" + suggestion(word, known) +
-           "; there are: " + listed(known) + help;
-  }
-  const std::vector<std::string> options = all_option_names(command);
+  if (words.size() <= place.depth) return std::nullopt;
+  const std::string& word = words[place.depth];
+  return place.path + ": there is no \"" + word + "\"" + suggestion(word, known) +
+         "; there are: " + listed(known) + place.help;
+}
+
+std::string argument_error(const CLI::App& app, const CLI::ParseError& error,
+                           const std::vector<std::string>& arguments) {
+  if (const auto unknown = unknown_command(app, arguments)) return *unknown;
+  const Place place(app);
+  if (const std::vector<std::string> known = command_names(*place.command); !known.empty())
+    return place.path + ": which? There are: " + listed(known) + place.help;
+  const std::vector<std::string> options = all_option_names(*place.command);
   for (const std::string& argument : arguments) {
     const std::string name = name_of(argument);
     if (name.starts_with("--") && std::find(options.begin(), options.end(), name) == options.end())
-      return "coapt" + path + ": there is no option " + name + suggestion(name, options) + help;
+      return place.path + ": there is no option " + name + suggestion(name, options) + place.help;
   }
-  return "coapt" + path + ": " + error.what() + help;
+  if (const auto value = unknown_value(*place.command)) return place.path + ": " + *value + place.help;
+  return place.path + ": " + error.what() + place.help;
 }
 
 }  // namespace coapt::cli

@@ -4,6 +4,7 @@
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
 #include "core/number_text.hpp"
+#include "formats/whole_file.hpp"
 
 #include <cstdio>
 #include <system_error>
@@ -28,10 +29,20 @@ CLI::Option* add_checkpoint_arguments(CLI::App& command, CheckpointArguments& ar
       "Go on with the " + work + " that this file keeps, and keep it there (or in --checkpoint)");
 }
 
+namespace {
+
+std::optional<formats::FileLock> lock_beside(const fs::path& path) {
+  formats::refuse_what_is_no_file(path);
+  if (path.empty()) return std::nullopt;
+  return formats::FileLock::taken(fs::path(path) += ".lock");
+}
+
+}  // namespace
+
 CheckpointFile::CheckpointFile(const CheckpointArguments& arguments, std::string work, std::string command)
     : path_(arguments.file.empty() ? arguments.resumed : arguments.file),
       resumed_(arguments.resumed),
-      lock_(path_.empty() ? std::nullopt : formats::FileLock::taken(fs::path(path_) += ".lock")),
+      lock_(lock_beside(path_)),
       work_(std::move(work)),
       command_(std::move(command)) {}
 

@@ -72,6 +72,21 @@ Observer make_observer(const Session& session, std::optional<double> wanted) {
   };
 }
 
+std::function<void(std::size_t)> make_job_progress(const Session& session, std::string jobs,
+                                                   std::size_t count) {
+  if (session.is_quiet) return [](std::size_t) {};
+  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  const double pause = is_terminal ? 1 : kLogPause, start = wall_seconds();
+  return [=, last = start](std::size_t ended) mutable {
+    const double now = wall_seconds(), elapsed = now - start;
+    if (now - last < pause) return;
+    last = now;
+    const std::string line = job_progress_line(jobs, ended, count, elapsed);
+    std::fprintf(stderr, is_terminal ? "\r  %s\033[K" : "  %s\n", line.c_str());
+    std::fflush(stderr);
+  };
+}
+
 void end_progress() {
   if (isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
 }

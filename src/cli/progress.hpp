@@ -4,7 +4,10 @@
 #include "cli/session.hpp"
 #include "optim/solver.hpp"
 
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace coapt::cli {
 
@@ -22,6 +25,11 @@ bool is_interrupted();
 // elsewhere as a line every five seconds, none for --quiet, for --verbose a line at every iterate. Asks the
 // run to stop after an interrupt.
 Observer make_observer(const Session& session, std::optional<double> wanted = std::nullopt);
+
+// The same of jobs that go on beside each other, to be called again and again with how many have ended since
+// this call: "2 of 5 points, 14.0 s, about 21 s left".
+std::function<void(std::size_t ended)> make_job_progress(const Session& session, std::string jobs,
+                                                         std::size_t count);
 
 // Takes the line of a terminal away.
 void end_progress();

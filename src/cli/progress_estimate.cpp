@@ -6,6 +6,14 @@
 #include <cmath>
 
 namespace coapt::cli {
+namespace {
+
+// ", about 30 s left"; number_text() of one digit would say 3e+01.
+std::string left_text(double seconds) {
+  return ", about " + fixed_text(std::max(seconds, 0.1), seconds < 1 ? 1 : 0) + " s left";
+}
+
+}  // namespace
 
 void ProgressEstimate::see(const Iteration& now) {
   if (now.outer_iteration != round_ || now.seconds < now_s_) {  // another step, or another solve
@@ -31,8 +39,15 @@ std::string progress_line(const Iteration& now, long nodes, std::optional<double
          std::to_string(now.iteration) +
          (std::isnan(now.path) ? "" : ", path " + fixed_text(100 * now.path, 0) + " %") + ", residual " +
          number_text(now.residual, 2) + (wanted ? " (wanted " + number_text(*wanted, 2) + ")" : "") + ", " +
-         fixed_text(elapsed_s, 1) + " s" +
-         (left_s ? ", about " + number_text(std::max(*left_s, 0.1), 1) + " s left in this step" : "");
+         fixed_text(elapsed_s, 1) + " s" + (left_s ? left_text(*left_s) + " in this step" : "");
+}
+
+std::string job_progress_line(const std::string& jobs, std::size_t ended, std::size_t count,
+                              double elapsed_s) {
+  const double left_s =
+      ended == 0 ? 0 : elapsed_s * static_cast<double>(count - ended) / static_cast<double>(ended);
+  return std::to_string(ended) + " of " + std::to_string(count) + " " + jobs + ", " +
+         fixed_text(elapsed_s, 1) + " s" + (ended == 0 ? "" : left_text(left_s));
 }
 
 }  // namespace coapt::cli

@@ -3,6 +3,7 @@
 
 #include "optim/solver.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -28,5 +29,9 @@ class ProgressEstimate {
 // the way is not the one that is reported.
 std::string progress_line(const Iteration& now, long nodes, std::optional<double> wanted, double elapsed_s,
                           std::optional<double> left_s);
+
+// "2 of 5 points, 14.0 s, about 21 s left": by the mean time of those that have ended.
+std::string job_progress_line(const std::string& jobs, std::size_t ended, std::size_t count,
+                              double elapsed_s);
 
 }  // namespace coapt::cli

@@ -185,9 +185,11 @@ void write_shape_scene(const std::string& name, const ShapeOptions& options,
   const std::vector<Shape> all = shapes();
   const auto shape =
       std::find_if(all.begin(), all.end(), [&](const Shape& candidate) { return candidate.name == name; });
+  std::vector<std::string> known = shape_names();
+  known.insert(known.begin(), {"mitral", "tricuspid"});
   if (shape == all.end())
-    throw InputError("shape \"" + name + "\" is not known" + suggestion(name, shape_names()) +
-                     "; there are: mitral, tricuspid, " + listed(shape_names()));
+    throw InputError("shape \"" + name + "\" is not known" + suggestion(name, known) +
+                     "; there are: " + listed(known));
   check_options(*shape, options);
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -3,10 +3,12 @@
 #include "cli/command_line.hpp"
 #include "cli/progress.hpp"
 #include "cli/solvers.hpp"
+#include "core/error.hpp"
 #include "formats/text.hpp"
 #include "run/replaced_inputs.hpp"
 
 #include <charconv>
+#include <utility>
 
 namespace coapt::cli {
 namespace {
@@ -23,6 +25,15 @@ std::string steps_defect(const std::string& text) {
          ", read " + text;
 }
 
+// That a scene states. What is wrong with the scene is said by whoever solves it.
+std::optional<double> stated_tolerance(const std::string& scene) {
+  try {
+    return load_scene(scene).solver.tolerance;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 RunOptions StudyArguments::options(const Session& session) const {
@@ -33,14 +44,14 @@ RunOptions StudyArguments::options(const Session& session) const {
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, options.tolerance);
+  options.observer = make_observer(session, options.tolerance ? options.tolerance : stated_tolerance(scene));
   return options;
 }
 
-std::filesystem::path StudyArguments::folder_for(const Scene& read,
-                                                 const std::vector<std::string>& names) const {
+std::filesystem::path StudyArguments::folder_for(const Scene& read, const std::vector<std::string>& names,
+                                                 std::vector<std::filesystem::path> others) const {
   std::filesystem::path path = folder.empty() ? result_folder(read) : std::filesystem::path(folder);
-  refuse_replaced_inputs(read, path, names);
+  refuse_replaced_inputs(read, path, names, std::move(others));
   return path;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/session.hpp"
 #include "run/branches.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct StudyArguments {
   RunOptions options(const Session& session) const;
   // Where the files go: `-o`, or the scene's result folder. Throws InputError where that is not allowed, and
   // where a file of one of these names, see refuse_replaced_inputs(), would take the place of an input.
-  std::filesystem::path folder_for(const Scene& read, const std::vector<std::string>& names) const;
+  std::filesystem::path folder_for(const Scene& read, const std::vector<std::string>& names,
+                                   std::vector<std::filesystem::path> others = {}) const;
 };
 
 // For a number given as an option: empty, or what is wrong with it. CLI11's own checks let NaN pass.

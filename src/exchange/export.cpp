@@ -9,6 +9,7 @@
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "scene/build/scene_geometry.hpp"
+#include "scene/file/named_files.hpp"
 
 namespace coapt {
 namespace {
@@ -38,6 +39,17 @@ Markup markup_of(const Scene& scene, const std::string& what) {
   return {what, is_rim && points.cols() >= 3 ? "ClosedCurve" : "Fiducial", points, {}};
 }
 
+// Throws InputError where `out` is the file to export from, or one that this scene names.
+void refuse_replaced_inputs(const std::filesystem::path& from, const std::filesystem::path& out) {
+  std::error_code unreadable;
+  if (std::filesystem::equivalent(from, out, unreadable))
+    throw InputError(out.string() + ": is the file to export from; write to another");
+  if (formats::lower_extension(from) != ".json" || !std::filesystem::exists(out, unreadable)) return;
+  for (const std::filesystem::path& input : named_files(read_json(from), from.parent_path()))
+    if (std::filesystem::equivalent(input, out, unreadable))
+      throw InputError(out.string() + ": is read by " + from.string() + "; write to another file");
+}
+
 std::vector<std::string> export_mesh(const std::filesystem::path& from, const std::filesystem::path& out) {
   MeshFile file;
   if (formats::lower_extension(from) == ".json") {
@@ -58,9 +70,7 @@ std::vector<std::string> export_mesh(const std::filesystem::path& from, const st
 
 std::vector<std::string> export_file(const std::filesystem::path& from, const std::filesystem::path& out,
                                      const std::string& what) {
-  std::error_code unreadable;
-  if (std::filesystem::equivalent(from, out, unreadable))
-    throw InputError(out.string() + ": is the file to export from; write to another");
+  refuse_replaced_inputs(from, out);
   if (is_markup_file(out)) {
     write_markups(out, {markup_of(load_scene(from), what)});
     return {};

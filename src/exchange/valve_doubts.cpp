@@ -39,12 +39,16 @@ ChordNetwork joined_networks(const SceneGeometry& geometry) {
   return all;
 }
 
-// Whether a pressure acts on the side that the normals point to. One on the other side was asked for by name:
-// it opens the valve.
-bool presses_front(const Scene& scene) {
-  return std::any_of(scene.terms.begin(), scene.terms.end(), [](const TermSpec& term) {
-    return kind_of(term) == TermKind::Pressure && term.parameters.text("side") == "front" &&
-           term.parameters.number("value") > 0;
+// Greatest pressure [MPa] that fills a ventricle through a valve, 30 mmHg: a lower one on the back of the
+// leaflets may well be there to open them.
+constexpr double kFillingPressure = 0.004;
+
+// Whether more than this pressure acts on this side of the leaflets: "front", to which the normals point, or
+// "back".
+bool presses(const Scene& scene, const std::string& side, double least) {
+  return std::any_of(scene.terms.begin(), scene.terms.end(), [&](const TermSpec& term) {
+    return kind_of(term) == TermKind::Pressure && term.parameters.text("side") == side &&
+           term.parameters.number("value") > least;
   });
 }
 
@@ -105,7 +109,8 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   for (const std::string& doubt : size_doubts(valve))
     if (std::find(sizes.begin(), sizes.end(), doubt) == sizes.end()) sizes.push_back(doubt);
   add(file, sizes);
-  if (presses_front(scene)) add(file, pressure_side_doubts(valve, numbering));
+  if (presses(scene, "front", 0)) add(file, pressure_side_doubts(valve, numbering));
+  if (presses(scene, "back", kFillingPressure)) add(file, pressure_side_doubts(valve, numbering, true));
   for (const std::string& doubt : detail::load_doubts(scene)) doubts.push_back(doubt);
   add(file, detail::law_doubts(scene, model));
   add(scene.mesh->file.string(), fold_doubts(valve.leaflets, numbering));

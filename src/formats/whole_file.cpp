@@ -1,6 +1,7 @@
 #include "formats/whole_file.hpp"
 
 #include "core/output_error.hpp"
+#include "formats/file_kind.hpp"
 
 #include <chrono>
 #include <fstream>
@@ -9,14 +10,20 @@
 
 namespace coapt::formats {
 
-void refuse_what_is_no_file(const std::filesystem::path& path) {
+std::optional<std::string> what_is_no_file(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) return;
-  if (std::filesystem::is_directory(status))
-    throw InputError(path.string() + ": is a folder; name a file in it");
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(path.string() + ": is a device or a pipe, no file");
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return std::nullopt;
+  if (std::filesystem::is_directory(status)) return "is a folder; name a file in it";
+  return std::string("is a ") +
+         (std::filesystem::is_fifo(status)     ? "pipe"
+          : std::filesystem::is_socket(status) ? "socket"
+                                               : "device") +
+         ", no file";
+}
+
+void refuse_what_is_no_file(const std::filesystem::path& path) {
+  if (const auto reason = what_is_no_file(path)) throw InputError(path.string() + ": " + *reason);
 }
 
 std::string read_whole(const std::filesystem::path& path, std::uintmax_t greatest) {

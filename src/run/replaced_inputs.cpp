@@ -1,9 +1,10 @@
 #include "run/replaced_inputs.hpp"
 
 #include "core/error.hpp"
-#include "solve/checkpoint.hpp"
+#include "scene/file/named_files.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -26,19 +27,22 @@ const std::vector<std::string>& solve_files() {
   return names;
 }
 
-void refuse_replaced_inputs(const Scene& scene, const fs::path& folder,
-                            const std::vector<std::string>& names) {
+void refuse_replaced_inputs(const Scene& scene, const fs::path& folder, const std::vector<std::string>& names,
+                            std::vector<fs::path> others) {
   std::error_code error;
-  if (!fs::is_regular_file(scene.file, error)) return;
-  std::vector<fs::path> inputs = named_files(scene);
-  inputs.push_back(scene.file);
+  std::vector<fs::path> inputs = std::move(others);
+  if (fs::is_regular_file(scene.file, error)) {
+    for (const fs::path& file : named_files(scene)) inputs.push_back(file);
+    inputs.push_back(scene.file);
+  }
   std::vector<std::string> defects;
   for (const fs::path& input : inputs)
-    if (fs::equivalent(fs::absolute(input).parent_path(), folder, error) &&
+    if (!input.empty() && fs::equivalent(fs::absolute(input).parent_path(), folder, error) &&
         std::any_of(names.begin(), names.end(),
                     [&](const std::string& name) { return fits(input.filename().string(), name); }))
-      defects.push_back(input.string() + ": is read by the scene and would be replaced by a result; choose " +
-                        "another folder than " + folder.string() + " with -o");
+      defects.push_back(input.string() +
+                        ": is read and would be replaced by a result; choose another folder than " +
+                        folder.string() + " with -o");
   if (!defects.empty()) throw InputError(defects);
 }
 

@@ -12,9 +12,11 @@ namespace coapt {
 // The names of all files that a solve may write into its folder.
 const std::vector<std::string>& solve_files();
 
-// Throws InputError where the scene file, or a file that it names, is one of those names in the folder;
-// "*.obj" and "closed_*" are patterns with one star. A scene in memory has no file.
+// Throws InputError where the scene file, a file that it names, or one of the other inputs, is one of those
+// names in the folder; empty paths name none, and "*.obj" and "closed_*" are patterns with one star. A scene
+// in memory has no file.
 void refuse_replaced_inputs(const Scene& scene, const std::filesystem::path& folder,
-                            const std::vector<std::string>& names);
+                            const std::vector<std::string>& names,
+                            std::vector<std::filesystem::path> others = {});
 
 }  // namespace coapt

@@ -23,10 +23,14 @@ namespace coapt {
 
 namespace {
 
-// Whether `path` is the folder or lies in it, where links lead.
+// Where links lead; an empty path, as the folder of a bare name, is the working directory.
+std::filesystem::path real_path(const std::filesystem::path& path) {
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path.empty() ? "." : path));
+}
+
+// Whether `path` is the folder or lies in it.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  const auto inner = std::filesystem::weakly_canonical(std::filesystem::absolute(path)),
-             outer = std::filesystem::weakly_canonical(std::filesystem::absolute(folder));
+  const auto inner = real_path(path), outer = real_path(folder);
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 

@@ -4,6 +4,7 @@
 #include "core/number_text.hpp"
 #include "formats/json/checksummed_cbor.hpp"
 #include "formats/whole_file.hpp"
+#include "scene/file/named_files.hpp"
 #include "solve/resumable_record.hpp"
 
 namespace coapt {
@@ -15,21 +16,8 @@ constexpr const char* kBeginAnew = "solve without --resume to begin anew";
 constexpr Seal kSeal = {"coapt checkpoint", "checkpoint of coapt", "2",
                         "; solve without --resume to begin anew"};
 
-// Every text that is the path of a file.
-void find_named_files(const Json& json, const fs::path& folder, std::vector<fs::path>& files) {
-  if (json.is_structured()) {
-    for (const Json& item : json) find_named_files(item, folder, files);
-  } else if (json.is_string()) {
-    std::error_code error;
-    const fs::path file = folder / json.get_ref<const std::string&>();
-    if (fs::is_regular_file(file, error)) files.push_back(file);
-  }
-}
-
 void add_named_files(const Json& json, const fs::path& folder, Fingerprint& result) {
-  std::vector<fs::path> files;
-  find_named_files(json, folder, files);
-  for (const fs::path& file : files) result.add(fingerprint(formats::read_whole(file)));
+  for (const fs::path& file : named_files(json, folder)) result.add(fingerprint(formats::read_whole(file)));
 }
 
 Json end_json(const MinimisationEnd& end) {
@@ -88,12 +76,6 @@ std::string scene_fingerprint(const Scene& scene) {
   result.add(json.dump(-1, ' ', false, Json::error_handler_t::replace));
   add_named_files(json, scene.file.parent_path(), result);
   return result.digits();
-}
-
-std::vector<fs::path> named_files(const Scene& scene) {
-  std::vector<fs::path> files;
-  find_named_files(read_json(scene.file), scene.file.parent_path(), files);
-  return files;
 }
 
 std::string named_files_fingerprint(const std::string& scene, const fs::path& folder) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace coapt {
 
@@ -26,10 +25,6 @@ struct RunIdentity {
 // damped steps, which may be given from outside, stand apart in the identity. Throws InputError where the
 // scene was not read from a file.
 std::string scene_fingerprint(const Scene& scene);
-
-// The files that the scene names: every text in it that is the path of one. Throws InputError where the scene
-// was not read from a file.
-std::vector<std::filesystem::path> named_files(const Scene& scene);
 
 // 16 hexadecimal digits of all that the files hold which the text of a scene in `folder` names. Throws
 // InputError for what is no JSON.

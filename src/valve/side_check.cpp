@@ -83,6 +83,9 @@ struct Piece {
   bool is_turned_over() const {
     return swept > 0 ? turning < -kLeastTurning * swept : facing < -kLeastFacing * area;
   }
+  bool is_right_side_out() const {
+    return swept > 0 ? turning > kLeastTurning * swept : facing > kLeastFacing * area;
+  }
 };
 
 std::vector<Piece> pieces_of(const TriangleMesh& mesh, const std::vector<bool>& is_annulus,
@@ -109,7 +112,7 @@ std::vector<Piece> pieces_of(const TriangleMesh& mesh, const std::vector<bool>& 
 
 }  // namespace
 
-std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering) {
+std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering, bool is_on_back) {
   const TriangleMesh& mesh = valve.leaflets;
   if (valve.annulus.size() < 3 || mesh.triangle_count() == 0) return {};
   std::vector<bool> is_annulus(static_cast<size_t>(mesh.vertex_count()), false);
@@ -121,7 +124,7 @@ std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numb
   std::string turned;
   size_t count = 0;
   for (const Piece& piece : pieces) {
-    if (!piece.is_turned_over()) continue;
+    if (!(is_on_back ? piece.is_right_side_out() : piece.is_turned_over())) continue;
     constexpr size_t kFew = 10;
     if (++count > kFew) continue;
     turned.append(count == 1 ? "" : ", ").append(std::to_string(piece.triangles));
@@ -129,6 +132,13 @@ std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numb
   }
   if (count == 0) return {};
   const bool has_tips = valve.chords.papillary.cols() > 0;
+  if (is_on_back)
+    return {"the pressure acts on the back of " +
+            (count == pieces.size() ? "the leaflets"
+                                    : std::to_string(count) + " of " + std::to_string(pieces.size()) +
+                                          " leaflets (triangles: " + turned + numbering.note() + ")") +
+            ", in the lumen, " + (has_tips ? "away from the papillary tips" : "from which blood comes") +
+            ", so it acts on the wrong side and opens the valve; set the side of the pressure to \"front\"."};
   const std::string where =
       has_tips ? "into the lumen, away from the papillary tips," : "into the lumen, from which blood comes,";
   if (count == pieces.size())

@@ -48,7 +48,10 @@ std::vector<std::string> size_doubts(const Valve& valve);
 // Leaflets whose normals point to the lumen: the pressure is on their other side, that of the papillary tips.
 // Each piece of the surface is judged by the way in which its triangles run along the annulus, around an axis
 // from the annulus to the tips, or without these to the free edges. Nothing where that is not clear.
-std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering = {});
+// is_on_back: the pressure acts on the side that the normals come from, and those are told whose normals do
+// not point to the lumen.
+std::vector<std::string> pressure_side_doubts(const Valve& valve, Numbering numbering = {},
+                                              bool is_on_back = false);
 
 // Neighbouring triangles that lie on each other: with a dihedral angle below one degree, and of those higher
 // than 0.6 mean edges with one below 30 degrees. A seam of two flat layers is such a fold too, by right;

@@ -68,6 +68,26 @@ class Arguments(CommandCase):
         self.assert_bad_input(coapt("solve", "x.json", "--solvr=newton"), "no option --solvr;")
         self.assert_bad_input(coapt("solve", "--solver", "newton"), "coapt solve: ", "SCENE")
 
+    def test_an_unknown_value_of_an_option_names_the_nearest(self):
+        into = ("-o", self.folder / "out")
+        for arguments, option, meant in [(("generate", "mitral", "--membrane", "tension_feild", *into), "--membrane", "tension_field"),
+                                         (("generate", "mitral", "--contact=barier", *into), "--contact", "barrier"),
+                                         (("generate", "mitral", "--preset", "closd", *into), "--preset", "closed"),
+                                         (("generate", "mitral", "--model", "hamer-2011", *into), "--model", "hammer-2011"),
+                                         (("tune", "x.json", "--sides", "targt"), "--sides", "target"),
+                                         (("schema", "scen"), "WHICH", "scene")]:
+            with self.subTest(arguments):
+                self.assert_bad_input(coapt(*arguments), option, f'did you mean "{meant}"?', "; there are: ")
+        self.assert_bad_input(coapt("generate", "mitrl", *into), "mitrl", 'did you mean "mitral"?')
+        scene = self.generate("mitral", "--triangles", 250)
+        for name, meant in [("chords.lenth", "length_scale"), ("pressure.value", "load_pressure")]:
+            self.assert_bad_input(coapt("sensitivity", scene, "--parameters", name), f'did you mean "{meant}"?')
+
+    def test_help_of_an_unknown_command_names_the_nearest(self):
+        for words in ("help", "slve"), ("slve", "--help"):
+            self.assert_bad_input(coapt(*words), 'there is no "slve"', 'did you mean "solve"')
+        self.assert_bad_input(coapt("help", "image", "convrt"), 'there is no "convrt"', 'did you mean "convert"')
+
     def test_help_is_a_word(self):
         for words in (("help",), ("--help",)):
             run = coapt(*words)

@@ -93,6 +93,11 @@ class Image(CommandCase):
         self.assertEqual(self.info(out)["range"], [1, 47])
         self.assertAlmostEqual(self.info(out)["box_mm"]["high"][0], -8.8, 5)
 
+    def test_convert_does_not_replace_its_source(self):
+        before = self.volume.read_bytes()
+        self.assert_bad_input(coapt("image", "convert", self.volume, "--kind", "float32", "-o", self.volume), "v.nrrd", "another")
+        self.assertEqual(self.volume.read_bytes(), before)
+
     def test_spacing_that_a_file_does_not_state_can_be_given(self):
         bare = self.folder / "bare.nrrd"
         bare.write_bytes(b"NRRD0005\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n\n" + bytes(24))

@@ -103,6 +103,29 @@ class Json(CommandCase):
         lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
         self.assertIn(len(lines), [1, 2, 3], run.stderr)
 
+    def test_every_command_tells_the_residual_that_is_wanted(self):
+        scene = self.generate("disc", "--triangles", 100)
+        for command, *options in [("compare", "--methods", "newton"), ("mesh-study", "--levels", 1), ("sensitivity",)]:
+            run = coapt(command, scene, "-o", self.folder / command, "--verbose", *options, keeps_progress=True)
+            lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
+            self.assertGreater(len(lines), 0, run.stderr)
+            self.assertEqual([line for line in lines if "(wanted 1e-08)" not in line], [], command)
+
+    def test_a_study_tells_how_many_points_are_through(self):
+        scene = self.generate("mitral", "--triangles", 6000)
+        run = coapt("study", scene, "--sweep", "load_pressure.value=100,120,140mmHg", "-j", 1, "--max-seconds", 6,
+                    "-o", self.folder / "out", keeps_progress=True)
+        self.assertRegex(run.stderr, r"(?m)^  [012] of 3 points, \d+\.\d s(, about [\d.]+ s left)?$")
+        self.assertNotIn("step", run.stderr)
+
+    def test_a_quiet_study_says_which_points_were_refused(self):
+        scene = self.generate("disc", "--triangles", 100)
+        run = coapt("study", scene, "--sweep", "load_pressure.value=1,2kPa", "--solver", "nwton", "-q", "-o", self.folder / "out")
+        self.assertEqual((run.returncode, run.stdout), (1, ""))
+        self.assertEqual(len(run.stderr.splitlines()), 2, run.stderr)
+        for line, value in zip(run.stderr.splitlines(), ["1 kPa", "2 kPa"]):
+            self.assertTrue(line.startswith(f"coapt: error: load_pressure.value = {value}  "), line)
+
     def test_a_terminal_has_one_line(self):
         scene = self.generate("mitral", "--triangles", 2500)
         ours, theirs = pty.openpty()

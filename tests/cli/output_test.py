@@ -4,6 +4,7 @@ Usage: output_test.py COAPT_BINARY [unittest arguments]
 """
 import fcntl
 import json
+import re
 import resource
 import signal
 import subprocess
@@ -74,6 +75,35 @@ class Output(CommandCase):
         self.assert_bad_input(coapt("solve", named, "-o", self.folder), "result.json")
         self.assertEqual(json.loads(named.read_text()), content)
 
+    def test_no_command_replaces_a_file_that_it_reads(self):
+        scene = self.generate("mitral", "--triangles", 250)
+        edits = self.folder / "intervene.json"
+        edits.write_text(json.dumps({"type": "ring", "size": "95 %"}))
+        (self.folder / "alias.obj").symlink_to("leaflets.obj")
+        before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        for name in ["leaflets.obj", "alias.obj", "scene.json"]:
+            self.assert_bad_input(coapt("export", scene, "-o", self.folder / name), name, "write to another")
+        self.assert_bad_input(coapt("export", scene.name, "-o", "leaflets.obj", cwd=self.folder), "leaflets.obj")
+        self.assert_bad_input(coapt("intervene", scene, "--edits", edits, "-o", self.folder), "intervene.json", "-o")
+        target = self.folder / "tuned.json"
+        target.write_bytes(before["valve.json"])
+        self.assert_bad_input(coapt("tune", scene, "--target", target, "-o", self.folder), "tuned.json", "-o")
+        target.unlink()
+        self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, before)
+        self.assertEqual(coapt("export", scene, "-o", self.folder / "new.obj").returncode, 0)
+
+    def test_generate_says_what_it_replaces(self):
+        scene = self.generate("disc", "--triangles", 100)
+        scene.write_text(scene.read_text() + "// mine\n")
+        run = coapt("generate", "disc", "--triangles", 100, "-o", self.folder)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.stderr, f"coapt: warning: {scene}: was there with other content, and is replaced\n")
+        again = coapt("generate", "disc", "--triangles", 100, "-o", self.folder, "--json")
+        self.assertEqual((again.stderr, json.loads(again.stdout)["warnings"]), ("", []))
+        other = json.loads(coapt("generate", "disc", "--triangles", 200, "-o", self.folder, "--json").stdout)
+        self.assertEqual(len(other["warnings"]), 1, other)
+        self.assertIn("mesh.obj", other["warnings"][0])
+
     def test_analyses_share_a_folder(self):
         scene, out = self.generate("mitral", "--triangles", 250), self.folder / "out"
         self.assertIn(coapt("solve", scene, "-o", out).returncode, [0, 4])
@@ -97,6 +127,9 @@ class Output(CommandCase):
         self.assertIn("is the disk full?", run.stderr)
         self.assertIn("closed.vtp", run.stderr)
         self.assertIn("residual", run.stdout)
+        said = re.search(r"(?m)^written to .* \((.*)\)$", run.stdout)[1].split(", ")
+        self.assertIn("result.json", said)
+        self.assertEqual([name for name in said if not (out / name).exists()], [])
         written = json.loads((out / "result.json").read_text())
         self.assertIn(written["status"], ["converged", "stalled"])
         self.assertEqual([path.name for path in out.iterdir() if ".part" in path.name], [])

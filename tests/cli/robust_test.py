@@ -4,6 +4,7 @@ Usage: robust_test.py COAPT_BINARY [unittest arguments]
 """
 import json
 import os
+import pathlib
 import re
 import resource
 import subprocess
@@ -114,22 +115,24 @@ class Robust(CommandCase):
 
     def test_pipes_devices_and_folders_are_named_as_such(self):
         scene = self.generate("mitral", "--triangles", 300)
-        pipe = self.folder / "pipe.obj"
+        pipe = self.folder / "x.obj"  # a name that does not say what it is
         os.mkfifo(pipe)
         for path, what in [(pipe, "pipe"), ("/dev/zero", "device"), (self.folder, "folder")]:
             for arguments in [["solve", path], ["check", path], ["import", path, "-o", self.folder / "new"],
                               ["export", path, "-o", self.folder / "x.feb"], ["register", path, path],
-                              ["solve", scene, "--resume", path], ["tune", scene, "--target", path],
+                              ["solve", scene, "--resume", path], ["solve", scene, "--checkpoint", path],
+                              ["compare", scene, "--closed", path], ["tune", scene, "--target", path],
                               ["generate", "mitral", "--annulus", path, "-o", self.folder / "new"]]:
                 with self.subTest(arguments):
-                    self.assert_bad_input(coapt(*arguments, timeout=20), what)
-        for key in ["file", "sets"]:
+                    self.assert_bad_input(coapt(*arguments, timeout=20), f"is a {what}")
+        self.assertEqual([file.name for file in pathlib.Path("/dev").iterdir() if file.name.startswith("zero.")], [])
+        for place, key in [("mesh", "file"), ("mesh", "sets"), ("reference", "closed_surface")]:
             changed = self.folder / "changed.json"
             content = content_of(scene)
-            content["mesh"][key] = "pipe.obj"
+            content.setdefault(place, {})[key] = "x.obj"
             changed.write_text(json.dumps(content))
-            self.assert_bad_input(coapt("solve", changed, timeout=20), "pipe")
-            self.assert_bad_input(coapt("check", changed, timeout=20), "pipe")
+            self.assert_bad_input(coapt("solve", changed, timeout=20), f"{place}.{key}: ", "is a pipe")
+            self.assert_bad_input(coapt("check", changed, timeout=20), f"{place}.{key}: ", "is a pipe")
 
     def test_twenty_thousand_terms_are_read_in_seconds(self):
         scene = self.generate("disc", "--triangles", 100)
@@ -155,6 +158,17 @@ class Robust(CommandCase):
         self.edited(scene, lambda content: content.update(output={"folder": "inside/deep"}))
         self.assertEqual(coapt("solve", scene).returncode, 0)
         self.assertTrue((self.folder / "inside" / "deep" / "result.json").exists())
+
+    def test_a_scene_called_by_its_bare_name_has_its_folder_for_results(self):
+        scene = self.generate("disc", "--triangles", 100)
+        self.edited(scene, lambda content: content.update(output={"folder": "own"}))
+        for command in ["solve", "mesh-study", "sensitivity", "compare"]:
+            options = ["--levels", 1] if command == "mesh-study" else []
+            run = coapt(command, scene.name, *options, cwd=self.folder)
+            self.assertIn(run.returncode, [0, 1, 4], command + ": " + run.stdout + run.stderr)
+        self.assertTrue((self.folder / "own" / "result.json").exists())
+        self.edited(scene, lambda content: content.update(output={"folder": "../outside"}))
+        self.assert_bad_input(coapt("solve", scene.name, cwd=self.folder), "output.folder", "-o")
 
 
 if __name__ == "__main__":

@@ -200,6 +200,20 @@ TEST(Import, NamesWhatIsDoubtfulAboutAValveAsCheckDoes) {
   EXPECT_FALSE(says(check(folder.path() / "b" / "scene.json").warnings, "wrong side"));
 }
 
+TEST(Import, OfWhatOpensTheValveAFillingPressureAloneIsNoDoubt) {
+  const TemporaryFolder folder;
+  write_valve_scene(generated_valve(), folder.path());
+  std::string text = text_of(folder.path() / "scene.json");
+  text.replace(text.find("\"front\""), 7, "\"back\"");
+  std::ofstream(folder.path() / "scene.json") << text;
+  EXPECT_TRUE(says(check(folder.path() / "scene.json").warnings, "wrong side and opens the valve"));
+  const size_t value = text.find("120 mmHg");
+  ASSERT_NE(value, std::string::npos) << text;
+  text.replace(value, 8, "2 mmHg");
+  std::ofstream(folder.path() / "scene.json") << text;
+  EXPECT_FALSE(says(check(folder.path() / "scene.json").warnings, "wrong side"));
+}
+
 // Without the repair it stalls after tens of thousands of iterations at a residual above 20.
 TEST(Import, MakesTheRelaxedMitralValveSolvable) {
   for (const char* size : {"n64", "n128"}) {

@@ -195,7 +195,7 @@ def test_progress_follows_the_iterates_beside_a_callback(bars):
                             callback=lambda at: seen.append(at.residual))
     (bar,) = bars
     assert bar.n == len(bar.texts) == len(seen) > 3 and not bar.is_open
-    assert bar.texts[-1].startswith(f"residual {seen[-1]:.1e}, energy ") and result.success
+    assert bar.texts[-1] == f"residual {seen[-1]:.1e}" and result.success
     assert not coapt.minimize(*disc(4), [ELASTIC, PRESSURE], fixed="boundary", progress=True, callback=lambda at: False).success
 
 
@@ -221,4 +221,4 @@ def test_the_bar_of_tqdm_is_written(capfd):
     pytest.importorskip("tqdm", reason="python3-tqdm is not installed: progress is tested with a stand-in alone")
     coapt.minimize(*disc(4), [ELASTIC, PRESSURE], fixed="boundary", progress=True)
     told = capfd.readouterr()
-    assert "coapt: " in told.err and "residual " in told.err and "mJ" in told.err and told.out == ""
+    assert "coapt: " in told.err and "residual " in told.err and told.out == ""

@@ -76,6 +76,17 @@ TEST(PressureSide, IsToldWhereTheFreeEdgeIsAsWideAsTheAnnulus) {
   }
 }
 
+TEST(PressureSide, IsToldOfAPressureOnTheBack) {
+  Valve valve = tube(0);
+  EXPECT_TRUE(
+      names(pressure_side_doubts(valve, {}, true), "on the wrong side and opens the valve; set the side"));
+  turn_over(valve.leaflets, 0, valve.leaflets.triangle_count());
+  EXPECT_TRUE(pressure_side_doubts(valve, {}, true).empty());
+  valve = semilunar();
+  turn_over(valve.leaflets, 0, valve.leaflets.triangle_count() / 3);
+  EXPECT_TRUE(names(pressure_side_doubts(valve, {}, true), "2 of 3 leaflets"));
+}
+
 TEST(PressureSide, IsThatOfTheTipsWhereverTheLeafletsHang) {
   Valve valve = tube(0);
   valve.chords.papillary.row(2) *= -1;

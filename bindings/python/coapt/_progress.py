@@ -21,7 +21,7 @@ def shown(callback: Callback | None, is_wanted: bool) -> Iterator[Callback | Non
 
     def see(at: _core.Iterate) -> Any:
         bar.update(1)
-        bar.set_postfix_str(f"residual {at.residual:.1e}, energy {at.energy:.6g} mJ", refresh=False)
+        bar.set_postfix_str(f"residual {at.residual:.1e}", refresh=False)
         return None if callback is None else callback(at)
 
     try:

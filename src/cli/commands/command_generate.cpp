@@ -9,13 +9,18 @@
 #include "exchange/valve_models.hpp"
 #include "formats/json/closed_curve.hpp"
 #include "formats/json/markups.hpp"
+#include "formats/whole_file.hpp"
 #include "valve/generators/mitral.hpp"
 #include "valve/generators/rough_valve.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace coapt::cli {
@@ -104,9 +109,32 @@ void write_mitral(const GenerateArguments& arguments) {
   write_valve_scene(valve, arguments.folder, options);
 }
 
+// What the files that a shape is made of hold in the folder; of a shape that was generated there before.
+std::map<std::string, std::string> generated_files(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  std::error_code error;
+  for (const char* name : {"scene.json", "valve.json", "leaflets.obj", "closed_reference.obj", "mesh.obj",
+                           "chain.json", "README.md"})
+    if (std::filesystem::is_regular_file(folder / name, error))
+      files.emplace(name, formats::read_whole(folder / name));
+  return files;
+}
+
+// Of each file that held something else before.
+std::vector<std::string> replaced_files(const std::map<std::string, std::string>& before,
+                                        const std::filesystem::path& folder) {
+  const std::map<std::string, std::string> now = generated_files(folder);
+  std::vector<std::string> warnings;
+  for (const auto& [name, content] : before)
+    if (const auto found = now.find(name); found != now.end() && found->second != content)
+      warnings.push_back((folder / name).string() + ": was there with other content, and is replaced");
+  return warnings;
+}
+
 std::string generate(const GenerateArguments& arguments) {
   check_measured(arguments);
   const OutputFolder output(arguments.folder);
+  const std::map<std::string, std::string> before = generated_files(output.path());
   if (is_given(arguments, "--rough")) {
     write_rough(arguments);
   } else if (arguments.what == "tricuspid") {
@@ -116,7 +144,9 @@ std::string generate(const GenerateArguments& arguments) {
   } else {
     write_shape(arguments);
   }
-  return announce_scene(arguments.folder);
+  const std::vector<std::string> warnings = replaced_files(before, output.path());
+  for (const std::string& warning : warnings) std::fprintf(stderr, "coapt: warning: %s\n", warning.c_str());
+  return announce_scene(arguments.folder, warnings);
 }
 
 }  // namespace

@@ -16,9 +16,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace coapt::cli {
@@ -125,6 +127,9 @@ void show_image(const ImageArguments& arguments, Session& session) {
 }
 
 void convert_image(const ImageArguments& arguments, Session& session) {
+  std::error_code is_missing;
+  if (std::filesystem::equivalent(arguments.file, arguments.output, is_missing))
+    throw InputError(arguments.output + ": is the volume to convert; write to another file");
   const VolumeFile file = read_volume(arguments.file, read_options(arguments));
   for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
   const VoxelKind kind = arguments.kind.empty() ? file.kind : voxel_kind(arguments.kind).value();

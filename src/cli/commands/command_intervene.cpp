@@ -34,8 +34,8 @@ void run_command(const InterveneArguments& arguments, Session& session) {
   options.edits = arguments.edits;
   options.report = [](const RunReport&) { end_progress(); };
   RunOptions run = arguments.options(session);
-  const OutputFolder output(arguments.folder_for(load_scene(arguments.scene),
-                                                 {"intervene.json", "intervene.csv", "intervene.html"}));
+  const OutputFolder output(arguments.folder_for(
+      load_scene(arguments.scene), {"intervene.json", "intervene.csv", "intervene.html"}, options.files));
   run.folder = output.path();
   const BeforeAfter found = intervene(arguments.scene, all_solvers(), options, run);
   write_intervene(found);

@@ -9,6 +9,7 @@
 #include "core/components.hpp"
 #include "core/error.hpp"
 #include "exchange/valve_doubts.hpp"
+#include "formats/json/suggestion.hpp"
 #include "formats/json/units.hpp"
 #include "results/result_warnings.hpp"
 #include "run/branches.hpp"
@@ -16,6 +17,7 @@
 #include "study/bench/accuracy.hpp"
 #include "tuning/first_order.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -48,17 +50,21 @@ void print_others(const std::optional<Branches>& branches, const char* metric, c
   std::printf(")");
 }
 
-// Prints one metric with its range over the other equilibria, if any were found.
+// Freed et al. 1999, of the long-axis view.
+constexpr const char* kHealthyProlapse = "healthy: below 2 mm, Freed et al. 1999";
+
+// Prints one metric with its range over the other equilibria, if any were found, and with a remark.
 struct MetricPrinter {
   const std::optional<Branches>& branches;
 
   void operator()(const char* label, const std::optional<double>& value, const char* unit, const char* format,
-                  const char* metric) const {
+                  const char* metric, const char* remark = "") const {
     if (!value) return;
     std::printf("  %-22s ", label);
     std::printf(format, *value);
     std::printf("%s%s", unit[0] == 0 ? "" : " ", unit);
     print_others(branches, metric, format);
+    if (remark[0] != 0) std::printf(" (%s)", remark);
     std::printf("\n");
   }
 };
@@ -113,7 +119,8 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
   print("coaptation length", m.coaptation_length_mm, "mm", "%.2f", "coaptation_length_mm");
   print("coaptation height", m.coaptation_height_mm, "mm", "%.2f", "coaptation_height_mm");
   print("tenting height", m.tenting_height_mm, "mm", "%.2f", "tenting_height_mm");
-  print("prolapse height", m.prolapse_height_mm, "mm", "%.2f", "prolapse_height_mm");
+  print("prolapse height", m.prolapse_height_mm, "mm", "%.2f", "prolapse_height_mm",
+        m.healthy_closure.empty() ? "" : kHealthyProlapse);
   if (model.mesh.triangle_count() > 0) {
     std::printf("  %-22s %.6g mm2 (open: %.6g mm2)", "area", m.leaflet_area_closed_mm2,
                 m.leaflet_area_open_mm2);
@@ -122,6 +129,7 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
   }
   print("greatest strain", m.max_principal_strain, "", "%.4f", "max_principal_strain");
   print("strain on 95 % below", m.p95_principal_strain, "", "%.4f", "p95_principal_strain");
+  print("strain on 99 % below", m.p99_principal_strain, "", "%.4f", "p99_principal_strain");
   print("greatest chord force", m.max_chord_force_n, "N", "%.4g", "max_chord_force_n");
   print("greatest chord strain", m.max_chord_strain, "", "%.4f", "max_chord_strain");
   print("greatest displacement", m.max_displacement_mm, "mm", "%.4g", "max_displacement_mm");
@@ -148,7 +156,19 @@ void print_undetermined(const Report& report) {
   std::printf(")\n");
 }
 
-void print_summary(const RunReport& run) {
+// The files of the result but those that one of the sentences about what could not be written names.
+std::string written_files(const RunReport& run, const std::vector<std::string>& unwritten) {
+  std::vector<std::string> files;
+  for (const std::string& file : result_files(run.model, run.report)) {
+    const std::string place = (run.folder / file).string() + ":";
+    if (std::none_of(unwritten.begin(), unwritten.end(),
+                     [&](const std::string& defect) { return defect.starts_with(place); }))
+      files.push_back(file);
+  }
+  return listed(files);
+}
+
+void print_summary(const RunReport& run, const std::vector<std::string>& unwritten) {
   const Report& report = run.report;
   const std::optional<Branches>& branches = report.branches;
   const Result& result = report.result;
@@ -176,9 +196,7 @@ void print_summary(const RunReport& run) {
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_checker.c_str());
   if (report.reference) print_reference(*report.reference);
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
-  std::string files;
-  for (const std::string& file : result_files(run.model, report)) files += (files.empty() ? "" : ", ") + file;
-  std::printf("written to %s (%s)\n", run.folder.string().c_str(), files.c_str());
+  std::printf("written to %s (%s)\n", run.folder.string().c_str(), written_files(run, unwritten).c_str());
 }
 
 // Before the solve, which may take long, and in the warnings of its result.
@@ -258,7 +276,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
     });
   end_progress();
   session.document = result_json(report.model, report.report);
-  print_summary(report);
+  print_summary(report, unwritten);
   if (checkpoint) checkpoint->finish(arguments.scene, unwritten.empty());
   if (!unwritten.empty()) return print_unwritten(unwritten);
   const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;

@@ -55,13 +55,25 @@ int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
   }
 }
 
-void print_point(const PointResult& result, const ParameterStudy& study, size_t finished) {
-  std::printf("  %zu of %zu  ", finished, study.point_count);
+// "pressure.value = 80 mmHg  " of each value of the point.
+std::string values_text(const PointResult& result, const ParameterStudy& study) {
+  std::string text;
   for (size_t k = 0; k < study.sweeps.size(); ++k)
-    std::printf("%s = %s  ", study.sweeps[k].path.c_str(), result.values[k].c_str());
+    text += study.sweeps[k].path + " = " + result.values[k] + "  ";
+  return text;
+}
+
+void print_point(const PointResult& result, const ParameterStudy& study, size_t finished) {
+  std::printf("  %zu of %zu  %s", finished, study.point_count, values_text(result, study).c_str());
   if (const auto value = result.metric(study.metric)) std::printf("%s %.6g  ", study.metric.c_str(), *value);
   std::printf("%s\n", result.has_converged() ? "" : (result.status + ": " + result.message).c_str());
   std::fflush(stdout);
+}
+
+// Where nothing else is printed.
+void tell_refused(const PointResult& result, const ParameterStudy& study) {
+  if (result.status == "refused")
+    std::fprintf(stderr, "coapt: error: %s%s\n", values_text(result, study).c_str(), result.message.c_str());
 }
 
 void print_ranking(const ParameterStudy& study) {
@@ -80,6 +92,13 @@ void print_study(const ParameterStudy& study, const std::filesystem::path& folde
               folder.string().c_str());
 }
 
+std::filesystem::path study_folder(const ParameterStudyArguments& arguments, const Scene& first) {
+  const std::filesystem::path folder =
+      arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
+  refuse_replaced_inputs(first, folder, {"study.json", "study.csv", "study.html"});
+  return folder;
+}
+
 void run_study(const ParameterStudyArguments& arguments, Session& session) {
   listen_for_interrupts();
   const std::filesystem::path scene = arguments.scene;
@@ -93,9 +112,7 @@ void run_study(const ParameterStudyArguments& arguments, Session& session) {
   study.point_count = points.size();
   const Scene first = parse_scene(points.front().scene, scene);
   study.scene_title = scene_title(first);
-  const std::filesystem::path folder =
-      arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
-  refuse_replaced_inputs(first, folder, {"study.json", "study.csv", "study.html"});
+  const std::filesystem::path folder = study_folder(arguments, first);
   const OutputFolder output(folder);
 
   std::vector<std::optional<PointResult>> results(points.size());
@@ -105,12 +122,15 @@ void run_study(const ParameterStudyArguments& arguments, Session& session) {
     if (!arguments.starts_over) results[point.number] = read_point(place, point);
     if (!results[point.number]) open.push_back(point.number);
   }
-  if (open.size() < points.size())
-    std::printf("%zu of %zu points are there already\n", points.size() - open.size(), points.size());
-
-  size_t finished = points.size() - open.size();
+  const size_t before = points.size() - open.size();
+  if (before > 0) std::printf("%zu of %zu points are there already\n", before, points.size());
+  size_t finished = before;
   PoolCallbacks callbacks;
-  callbacks.stops = is_interrupted;
+  const auto show_progress = make_job_progress(session, "points", open.size());
+  callbacks.stops = [&] {
+    show_progress(finished - before);
+    return is_interrupted();
+  };
   callbacks.work = [&](size_t job) {
     const StudyPoint& point = points[open[job]];
     return solve_point(point, scene, point_folder(folder, point.number), arguments);
@@ -124,6 +144,8 @@ void run_study(const ParameterStudyArguments& arguments, Session& session) {
       return;
     }
     ++finished;
+    end_progress();
+    if (session.is_quiet) tell_refused(*results[point.number], study);
     print_point(*results[point.number], study, finished);
   };
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -195,6 +195,7 @@ void run_command(const TuneArguments& arguments, Session& session) {
   listen_for_interrupts();
   ChordTuningOptions options = tuning_options(arguments);
   RunOptions run = arguments.options(session);
+  run.observer = make_observer(session);  // the first solve has another tolerance than the trials
   run.folder = arguments.folder;
   if (arguments.total_seconds > 0) run.max_seconds = arguments.total_seconds;
   options.is_cancelled = [] { return is_interrupted(); };
@@ -207,7 +208,8 @@ void run_command(const TuneArguments& arguments, Session& session) {
   };
   std::optional<OutputFolder> output;
   if (const std::optional<Scene> scene = readable_scene(arguments.scene))
-    output.emplace(arguments.folder_for(*scene, {"tuning.json", "tuning.csv", "tuning.html", "tuned.json"}));
+    output.emplace(arguments.folder_for(*scene, {"tuning.json", "tuning.csv", "tuning.html", "tuned.json"},
+                                        {arguments.target}));
   TuneCheckpoint checkpoint(arguments.checkpoint, arguments.scene, options, run);
   const ChordTuning found = tune_chords(arguments.scene, all_solvers(), all_minimisers(), options, run);
   end_progress();

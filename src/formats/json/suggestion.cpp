@@ -3,6 +3,24 @@
 #include <algorithm>
 
 namespace coapt {
+namespace {
+
+// Whether the word is one of the parts of the name between underscores, but for a letter or two: "lenth" of
+// "length_scale".
+bool is_part(std::string_view word, std::string_view name) {
+  constexpr size_t kShortest = 4;  // that says anything
+  if (word.size() < kShortest) return false;
+  for (size_t from = 0; from <= name.size();) {
+    const size_t end = std::min(name.find('_', from), name.size());
+    if (end - from >= kShortest &&
+        edit_distance(word, name.substr(from, end - from)) <= static_cast<int>(word.size() / kShortest))
+      return true;
+    from = end + 1;
+  }
+  return false;
+}
+
+}  // namespace
 
 // Optimal string alignment; three rows of the table are enough.
 int edit_distance(std::string_view a, std::string_view b) {
@@ -32,6 +50,9 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
     least = distance;
     best = &name;
   }
+  if (best == nullptr)
+    for (const std::string& name : names)
+      if (best == nullptr && is_part(word, name)) best = &name;
   return best == nullptr ? "" : "; did you mean \"" + *best + "\"?";
 }
 

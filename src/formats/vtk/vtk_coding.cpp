@@ -53,33 +53,40 @@ std::string inflated(std::string_view packed, size_t size) {
 }
 
 // Header: number of blocks, their size, size of the last one where it is partial, packed size of each.
-std::string inflated_array(const Block& block, const VtkCoding& coding) {
+std::string inflated_array(const Block& block, const VtkCoding& coding,
+                           const std::function<void(std::uint64_t)>& announced) {
   const size_t width = coding.wide_header ? 8 : 4;
   const std::uint64_t block_count = words(block.bytes(0, width), coding)[0];
   if (block_count == 0) return {};
   if (block_count > (std::uint64_t{1} << 31)) throw InputError("announces more blocks than the file has");
   const size_t header_size = width * (3 + static_cast<size_t>(block_count));
+  announced(header_size);
   const std::vector<std::uint64_t> header = words(block.bytes(0, header_size), coding);
-  std::string result;
-  size_t at = header_size;
-  std::uint64_t packed_size = 0;
+  const auto size_of = [&](size_t b) {
+    return b + 1 == block_count && header[2] > 0 ? header[2] : header[1];
+  };
+  std::uint64_t packed_size = 0, size = 0;
   for (size_t b = 0; b < block_count; ++b) {
-    if (header[3 + b] > (std::uint64_t{1} << 40)) throw InputError("announces more data than the file has");
+    const bool is_beyond = header[3 + b] > (std::uint64_t{1} << 40);
+    if (is_beyond || size_of(b) / kDeflateRatio > header[3 + b] + 1)
+      throw InputError("announces more data than the file has");
     packed_size += header[3 + b];
+    size += size_of(b);
   }
-  const std::string packed = block.bytes(at, packed_size);
-  at = 0;
+  announced(packed_size);
+  announced(size);
+  const std::string packed = block.bytes(header_size, packed_size);
+  std::string result;
+  result.reserve(size);
+  size_t at = 0;
   for (size_t b = 0; b < block_count; ++b) {
-    const bool is_last_partial = b + 1 == block_count && header[2] > 0;
-    const std::uint64_t size = is_last_partial ? header[2] : header[1];
-    if (size / kDeflateRatio > header[3 + b] + 1) throw InputError("announces more data than the file has");
-    result += inflated(std::string_view(packed).substr(at, header[3 + b]), size);
+    result += inflated(std::string_view(packed).substr(at, header[3 + b]), size_of(b));
     at += header[3 + b];
   }
   return result;
 }
 #else
-std::string inflated_array(const Block&, const VtkCoding&) {
+std::string inflated_array(const Block&, const VtkCoding&, const std::function<void(std::uint64_t)>&) {
   throw InputError("is compressed; rebuild with zlib (Debian: zlib1g-dev), or write it uncompressed");
 }
 #endif
@@ -116,11 +123,13 @@ std::string decoded_base64(std::string_view text, size_t count) {
   return bytes;
 }
 
-std::string array_bytes(std::string_view text, bool is_base64, const VtkCoding& coding) {
+std::string array_bytes(std::string_view text, bool is_base64, const VtkCoding& coding,
+                        const std::function<void(std::uint64_t)>& announced) {
   const Block block(text, is_base64);
-  if (coding.compressed) return inflated_array(block, coding);
+  if (coding.compressed) return inflated_array(block, coding, announced);
   const size_t width = coding.wide_header ? 8 : 4;
   const std::uint64_t size = words(block.bytes(0, width), coding)[0];
+  announced(size);
   return block.bytes(width, size);
 }
 

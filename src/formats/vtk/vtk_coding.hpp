@@ -3,6 +3,8 @@
 
 #include "formats/bytes.hpp"
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -20,7 +22,10 @@ struct VtkCoding {
 std::string decoded_base64(std::string_view text, size_t count);
 
 // The bytes of the array that begins at the start of `block` (which may go on behind it).
-// Throws InputError, the bare reason, when the block is shorter than its header says, or cannot be inflated.
-std::string array_bytes(std::string_view block, bool is_base64, const VtkCoding& coding);
+// announced: called before anything is decoded, with the number of bytes that this takes: header, packed data
+// and what they are said to hold; what it throws ends the reading. Throws InputError, the bare reason, when
+// the block is shorter than its header says, or cannot be inflated to just what that says.
+std::string array_bytes(std::string_view block, bool is_base64, const VtkCoding& coding,
+                        const std::function<void(std::uint64_t)>& announced);
 
 }  // namespace coapt::formats

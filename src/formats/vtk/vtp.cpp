@@ -24,6 +24,11 @@ constexpr TypeName kTypes[] = {{"Int8", Scalar::Int8},       {"UInt8", Scalar::U
                                {"Float32", Scalar::Float32}, {"Float64", Scalar::Float64}};
 constexpr double kMostRegions = 10000;
 
+// Numbers that a file may hold besides those that its bytes account for, and for each of its bytes. A mesh
+// has at most some two a byte, however well it is packed; zlib's best is a thousand bytes for one.
+constexpr std::uint64_t kMostNumbers = std::uint64_t{8} << 20;
+constexpr std::uint64_t kMostNumbersPerByte = 10;
+
 class VtpReader {
  public:
   VtpReader(std::string_view bytes, const std::string& file)
@@ -35,7 +40,8 @@ class VtpReader {
     const pugi::xml_node data = document_.child("VTKFile").child("PolyData");
     if (!data) defects_.fail("is not a VTK XML file of type PolyData");
     read_coding(document_.child("VTKFile"));
-    for (const pugi::xml_node& piece : data.children("Piece")) read_piece(piece);
+    for (const pugi::xml_node& piece : data.children("Piece"))
+      if (!holds_too_much_) read_piece(piece);
     if (left_out_ > 0)
       builder_.warnings.push_back(defects_.file() + ": " + std::to_string(left_out_) +
                                   " points, lines or strips are no polygons and were left out");
@@ -107,8 +113,9 @@ class VtpReader {
         if (offset > appended_.size()) return fail("its offset lies behind the appended data");
         block = appended_.substr(offset);
       }
-      const std::string bytes = array_bytes(block, !is_appended || appended_is_base64_, coding_);
       const size_t width = byte_count(type->type);
+      const std::string bytes = array_bytes(block, !is_appended || appended_is_base64_, coding_,
+                                            [&](std::uint64_t size) { take(size, width); });
       std::vector<Number> values(bytes.size() / width);
       for (size_t i = 0; i < values.size(); ++i)
         values[i] = checked<Number>(load_as<double>(type->type, bytes.data() + i * width, coding_.swap));
@@ -117,6 +124,19 @@ class VtpReader {
       return fail(error.what());
     }
   }
+
+  // Takes numbers of this width [bytes] from those that may still be decoded, also where their array proves
+  // to be damaged: many pieces may name the same one.
+  void take(std::uint64_t size, size_t width) {
+    if (size / width > numbers_left_) holds_too_much_ = true;
+    if (holds_too_much_)
+      throw InputError("announces " + std::to_string(size >> 20) +
+                       " MB, with which the file would hold more than " +
+                       std::to_string(most_numbers() >> 20) +
+                       " million numbers, the most that are read of one of its size; write it uncompressed");
+    numbers_left_ -= size / width;
+  }
+  std::uint64_t most_numbers() const { return kMostNumbers + kMostNumbersPerByte * bytes_.size(); }
 
   template <class Number>
   static Number checked(double value) {
@@ -229,6 +249,8 @@ class VtpReader {
   std::string_view appended_;
   bool appended_is_base64_ = false;
   VtkCoding coding_;
+  std::uint64_t numbers_left_ = most_numbers();  // that may still be decoded
+  bool holds_too_much_ = false;
   std::vector<int> regions_;
   bool has_regions_ = false;
   size_t left_out_ = 0;

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "formats/lower_extension.hpp"
+#include "formats/whole_file.hpp"
 #include "image/detail/dicom_structure.hpp"
 #include "image/detail/meta_image.hpp"
 #include "image/detail/stated_geometry.hpp"
@@ -43,7 +44,7 @@ itk::ImageIOBase::Pointer reader_for(const fs::path& path, std::string& format) 
 void check_file(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw InputError(path.string() + ": does not exist");
-  if (!fs::is_regular_file(path, error)) throw InputError(path.string() + ": is no regular file");
+  formats::refuse_what_is_no_file(path);
   if (fs::file_size(path, error) == 0)
     throw InputError(path.string() + ": is empty; copy or export it again");
 }

@@ -1,6 +1,7 @@
 #include "study/detail/method_list.hpp"
 
 #include "exchange/mass_spring_scene.hpp"
+#include "formats/file_kind.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/build/xpbd_body.hpp"
 #include "scene/terms/term_types.hpp"
@@ -33,7 +34,9 @@ void check_names(const std::vector<std::string>& methods, const std::vector<std:
 void check_closed(const Scene& scene, const fs::path& closed, std::vector<std::string>& defects) {
   std::error_code error;
   if (closed.empty()) return;
-  if (!fs::is_regular_file(closed, error))
+  if (const auto reason = formats::what_is_no_file(closed))
+    defects.push_back("--closed: " + closed.string() + " " + *reason);
+  else if (!fs::is_regular_file(closed, error))
     defects.push_back("--closed: file " + closed.string() + " not found; give a surface (.obj, .ply, ...)");
   if (!scene.mesh)
     defects.push_back("--closed: " + scene.file.string() + " has no mesh that could be compared with it");

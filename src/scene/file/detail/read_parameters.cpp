@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/number_text.hpp"
+#include "formats/file_kind.hpp"
 #include "formats/json/json_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "scene/file/detail/read_item.hpp"
@@ -292,7 +293,10 @@ std::optional<std::string> read_file(const Item& item) {
   const std::filesystem::path path = (item.reading.folder / *text).lexically_normal();
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) return path.string();
-  item.refuse("file " + shown(item.json) + " not found; looked for " + path.string());
+  if (const auto reason = formats::what_is_no_file(path))
+    item.refuse("file " + shown(item.json) + " " + *reason + " (" + path.string() + ")");
+  else
+    item.refuse("file " + shown(item.json) + " not found; looked for " + path.string());
   return std::nullopt;
 }
 
