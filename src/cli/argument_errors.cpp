@@ -9,6 +9,8 @@
 namespace coapt::cli {
 namespace {
 
+constexpr const char* kPythonCommand = "kernel";  // its formulas are read by SymPy
+
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : shown_commands(app)) names.push_back(command->get_name());
@@ -55,6 +57,9 @@ std::string argument_error(const CLI::App& app, const CLI::ParseError& error,
   if (const std::vector<std::string> known = command_names(command); !known.empty()) {
     if (words.size() < named.size()) return "coapt" + path + ": which? There are: " + listed(known) + help;
     const std::string& word = words[named.size() - 1];
+    if (named.size() == 1 && word == kPythonCommand)
+      return "coapt: \"" + word + "\" is a command of the Python module: python3 -m coapt " + word +
+             " --help tells more";
     return "coapt" + path + ": there is no \"" + word + "\"" + suggestion(word, known) +
            "; there are: " + listed(known) + help;
   }
