@@ -9,6 +9,8 @@
 namespace coapt::cli {
 namespace {
 
+constexpr const char* kPythonCommand = "kernel";  // its formulas are read by SymPy
+
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : shown_commands(app)) names.push_back(command->get_name());
@@ -80,6 +82,9 @@ std::optional<std::string> unknown_command(const CLI::App& app, const std::vecto
     if (!argument.starts_with('-')) words.push_back(argument);
   if (words.size() <= place.depth) return std::nullopt;
   const std::string& word = words[place.depth];
+  if (place.depth == 0 && word == kPythonCommand)
+    return "coapt: \"" + word + "\" is a command of the Python module: python3 -m coapt " + word +
+           " --help tells more";
   return place.path + ": there is no \"" + word + "\"" + suggestion(word, known) +
          "; there are: " + listed(known) + place.help;
 }

@@ -2,24 +2,20 @@
 
 #include "core/error.hpp"
 #include "core/number_text.hpp"
+#include "exchange/detail/import_laws.hpp"
 #include "exchange/detail/import_repair.hpp"
+#include "exchange/detail/import_source.hpp"
 #include "exchange/detail/law_doubts.hpp"
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/valve_curves.hpp"
 #include "exchange/valve_doubts.hpp"
 #include "exchange/valve_models.hpp"
 #include "formats/json/json_text.hpp"
-#include "formats/json/markups.hpp"
-#include "formats/json/read_json.hpp"
-#include "formats/json/suggestion.hpp"
 #include "formats/json/units.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/lower_extension.hpp"
-#include "formats/mesh_io.hpp"
-#include "formats/utf8.hpp"
 #include "formats/whole_file.hpp"
 #include "scene/build/build.hpp"
-#include "scene/terms/term_types.hpp"
 #include "valve/valve_check.hpp"
 #include "valve/valve_import.hpp"
 
@@ -165,125 +161,6 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
   list.insert(list.end(), more.begin(), more.end());
 }
 
-// A surface alone: its longest rim is the annulus, and the other one, if there is one, the free edge.
-Valve valve_of_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings) {
-  MeshFile read = read_mesh(file);
-  append(warnings, read.warnings);
-  Valve valve;
-  valve.name = formats::as_utf8(file.stem().string());
-  valve.leaflets = std::move(read.mesh);
-  detail::choose_annulus(valve, {});
-  return valve;
-}
-
-const std::string* key_of(const Material& law, const std::string& key) {
-  const auto found =
-      std::find_if(law.keys.begin(), law.keys.end(), [&](const auto& entry) { return entry.first == key; });
-  return found == law.keys.end() ? nullptr : &found->second;
-}
-
-bool is_sheet(const Material& law) {
-  const TermType* type = find_term_type(law.type);
-  return type != nullptr && (type->kind == TermKind::Membrane || type->kind == TermKind::Spring);
-}
-
-bool has_compression(const TermType& type) {
-  return std::any_of(type.spec.keys.begin(), type.spec.keys.end(),
-                     [](const KeySpec& key) { return key.name == "compression"; });
-}
-
-// Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
-// are springs. A law that a valve JSON states as a term stays what it says, or resists where the options say
-// so.
-void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
-  const TermType* type = find_term_type(law.type);
-  if (type == nullptr) return;
-  const bool resists = options.membrane == LinearLeaflets::ResistsCompression;
-  if (type->is_linear && (resists || !type->is_relaxed)) {
-    if (is_own && !resists) return;
-    law.type = detail::linear_membrane_type(options);
-    if (find_term_type(law.type)->kind == TermKind::Spring)
-      std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
-  } else if (resists && has_compression(*type) && key_of(law, "compression") == nullptr) {
-    law.keys.emplace_back("compression", "\"resisted\"");
-  }
-}
-
-// Incompressible membranes. A shell of a program that wrote the file keeps its volume by the program's own
-// rule (section Poisson's ratio 0.5 in the published tricuspid valve), whatever the volumetric term of its
-// law is.
-void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::string>& warnings) {
-  std::vector<std::string> regions;
-  for (auto& [region, law] : valve.membranes)
-    if (std::erase_if(law.keys, [](const auto& key) { return key.first == "bulk"; }) > 0)
-      regions.push_back(region.empty() ? "the leaflets" : region);
-  if (regions.empty()) return;
-  warnings.push_back(
-      file + ": states a bulk modulus (" + listed(regions) +
-      "); the membranes are taken as incompressible, as the shells of finite-element runs keep "
-      "their volume. --bulk stated takes the modulus as it is.");
-}
-
-// The moduli of the options in the place of the valve's laws. A law of another thickness than the valve's
-// becomes a linear law of its own.
-void take_moduli(const ImportOptions& options, Valve& valve) {
-  if (!options.young.empty()) {
-    const std::string usual = quoted(exact_text(valve.thickness) + " mm");
-    std::erase_if(valve.membranes, [&](const auto& entry) {
-      const std::string* thickness = key_of(entry.second, "thickness");
-      return thickness == nullptr || *thickness == usual;
-    });
-    for (auto& [region, law] : valve.membranes) {
-      Material linear{detail::linear_membrane_type(options), {{"young", quoted(options.young)}}};
-      if (options.membrane != LinearLeaflets::Springs)
-        linear.keys.emplace_back("poisson", exact_text(options.poisson));
-      linear.keys.emplace_back("thickness", *key_of(law, "thickness"));
-      law = std::move(linear);
-    }
-  }
-  if (!options.chord_young.empty()) valve.cables.clear();
-}
-
-// Gives membranes the thickness that the file does not state. True where one, with a law or none, lacked it.
-bool complete_thickness(const ImportOptions& options, Valve& valve) {
-  if (valve.thickness > 0) return false;
-  bool is_missing = valve.leaflets.region_names.empty();
-  for (const std::string& region : valve.leaflets.region_names)
-    is_missing |= !valve.membranes.contains(region);
-  for (auto& [region, law] : valve.membranes)
-    if (is_sheet(law) && key_of(law, "thickness") == nullptr) {
-      law.keys.emplace_back("thickness", quoted(exact_text(options.default_thickness) + " mm"));
-      is_missing = true;
-    }
-  return is_missing;
-}
-
-Valve read_any(const std::filesystem::path& file, ImportOptions& options,
-               std::vector<std::string>& warnings) {
-  if (is_markup_file(file))
-    throw InputError(
-        file.string() +
-        ": points and curves alone are no valve; give its leaflets (a mesh) and this file behind "
-        "--annulus-closed or --papillary");
-  if (is_model_file(file)) {
-    ValveModel model = read_model(file);
-    append(warnings, model.warnings);
-    if (options.model.empty() && options.pressure_model.empty() && model.is_pressure_dead)
-      options.pressure_model = "frozen";
-    if (options.model.empty() && options.contact.empty() && !model.has_contact) {
-      options.contact = "none";
-      warnings.push_back(file.string() + ": has no contact, nor has the scene; --contact barrier adds it.");
-    }
-    apply_membrane_option(options, model.valve);
-    return std::move(model.valve);
-  }
-  if (formats::lower_extension(file) != ".json") return valve_of_mesh(file, warnings);
-  ValveFile read = read_valve(file);
-  append(warnings, read.warnings);
-  for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
-  return std::move(read.valve);
-}
-
 void apply_model(const std::string& file, Valve& valve, ImportOptions& options) {
   if (!options.young.empty() || !options.chord_young.empty())
     throw InputError(
@@ -299,9 +176,9 @@ void apply_model(const std::string& file, Valve& valve, ImportOptions& options) 
 // What the file does not state and the scene must have.
 void complete_valve(const std::string& file, const ImportOptions& options, Valve& valve,
                     std::vector<std::string>& warnings) {
-  if (!options.keeps_bulk) leave_bulk_out(file, valve, warnings);
-  take_moduli(options, valve);
-  if (complete_thickness(options, valve))
+  if (!options.keeps_bulk) detail::leave_bulk_out(file, valve, warnings);
+  detail::take_moduli(options, valve);
+  if (detail::complete_thickness(options, valve))
     warnings.push_back(file + ": states no leaflet thickness; the scene has " +
                        exact_text(options.default_thickness) + " mm.");
   if (valve.pressure == 0 && options.pressure.empty())
@@ -326,9 +203,9 @@ void refuse_sizes(const std::string& file, const Valve& valve) {
 }
 
 // The valve with the laws of its scene, and whether this can be built at all.
-void judge_scene(const Scene& scene, const Valve& valve, const std::string& file, bool is_valve,
-                 std::vector<std::string>& warnings) {
-  append(warnings, valve_doubts(valve, file, detail::chord_limits(scene)));
+void judge_scene(const Scene& scene, const Valve& valve, const std::string& file, Numbering numbering,
+                 bool is_valve, std::vector<std::string>& warnings) {
+  append(warnings, valve_doubts(valve, file, numbering, detail::chord_limits(scene)));
   try {
     const Model model = build(scene);
     if (!is_valve) return;
@@ -348,10 +225,6 @@ std::optional<LinearLeaflets> linear_leaflets(const std::string& name) {
   return std::nullopt;
 }
 
-void apply_membrane_option(const ImportOptions& options, Valve& valve) {
-  for (auto& [region, law] : valve.membranes) take_membrane_option(options, false, law);
-}
-
 void write_valve_scene(const Valve& valve, const std::filesystem::path& out_dir,
                        const ImportOptions& options) {
   check_options(options);
@@ -368,7 +241,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
                                       const ImportOptions& given) {
   ImportOptions options = given;
   std::vector<std::string> warnings;
-  Valve valve = read_any(file, options, warnings);
+  auto [valve, numbering] = detail::read_source(file, options, warnings);
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
   // Any mesh has a longest rim; an annulus has been named.
@@ -387,13 +260,15 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
     return under_pressure;
   };
   if (is_valve && !options.takes_any_size) refuse_sizes(file.string(), loaded());
-  const MeshRepair repair = detail::judge_leaflets(options, file.string(), valve, warnings);
+  const MeshRepair repair = detail::judge_leaflets(options, file.string(), numbering, valve, warnings);
   if (!options.model.empty()) apply_model(file.string(), valve, options);  // of the repaired mesh
+  if (const std::string missing = detail::missing_chords(file.string(), options, valve); !missing.empty())
+    warnings.push_back(missing);
   write_valve_scene(valve, out_dir, options);
   detail::write_repairs(out_dir / "repairs.csv", repair);
   Valve judged = loaded();
   if (!is_valve) judged.annulus.clear();  // a rim of any surface, whose side nobody knows
-  judge_scene(load_scene(out_dir / "scene.json"), judged, file.string(), is_valve, warnings);
+  judge_scene(load_scene(out_dir / "scene.json"), judged, file.string(), numbering, is_valve, warnings);
   return warnings;
 }
 

@@ -1,6 +1,7 @@
 #include "exchange/valve_doubts.hpp"
 
 #include "exchange/detail/law_doubts.hpp"
+#include "exchange/detail/strain_doubts.hpp"
 #include "formats/file_numbering.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/lower_extension.hpp"
@@ -67,10 +68,9 @@ void find_unused_chords(const Scene& scene, std::vector<std::string>& doubts) {
 
 }  // namespace
 
-std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file,
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file, Numbering numbering,
                                       const ChordLimits& limits) {
   std::vector<std::string> doubts;
-  const Numbering numbering = file_numbering(file);
   for (const std::vector<std::string>& list : {chord_doubts(valve, limits, true, numbering),
                                                size_doubts(valve), pressure_side_doubts(valve, numbering)})
     for (const std::string& doubt : list) doubts.push_back(file + ": " + doubt);
@@ -79,9 +79,15 @@ std::vector<std::string> valve_doubts(const Valve& valve, const std::string& fil
 
 std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model,
                                       bool names_repeated) {
-  const auto annulus = geometry.model.sets.find("annulus");
-  if (!scene.mesh || annulus == geometry.model.sets.end() || annulus->second.empty()) return {};
   const std::string file = scene.file.string();
+  std::vector<std::string> doubts;
+  const auto add = [&](const std::string& place, const std::vector<std::string>& list) {
+    for (const std::string& doubt : list) doubts.push_back(place + ": " + doubt);
+  };
+  const auto annulus = geometry.model.sets.find("annulus");
+  const bool is_valve = scene.mesh && annulus != geometry.model.sets.end() && !annulus->second.empty();
+  add(file, detail::strain_doubts(scene, model, is_valve));
+  if (!is_valve) return doubts;
   const Numbering numbering = file_numbering(scene.mesh->file);
   Valve valve;
   valve.leaflets = geometry.model.mesh;
@@ -95,10 +101,6 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
     if (membrane.thickness > 0 && (valve.thickness == 0 || membrane.thickness < valve.thickness))
       valve.thickness = membrane.thickness;
   }
-  std::vector<std::string> doubts;
-  const auto add = [&](const std::string& place, const std::vector<std::string>& list) {
-    for (const std::string& doubt : list) doubts.push_back(place + ": " + doubt);
-  };
   // Cut and shortened chords hang loose or are overstretched by intention.
   if (scene.interventions.empty()) {
     add(file, chord_doubts(valve, detail::chord_limits(scene), names_repeated, numbering));

@@ -9,13 +9,13 @@
 
 namespace coapt {
 
-// Chords, sizes and the side of the pressure. valve: mm, MPa.
-std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file,
+// Chords, sizes and the side of the pressure. valve: mm, MPa. numbering: of its leaflets.
+std::vector<std::string> valve_doubts(const Valve& valve, const std::string& file, Numbering numbering,
                                       const ChordLimits& limits = {});
 
-// Of a scene that has a set `annulus`, and so is a valve; nothing of others, and of
-// chords nothing where interventions edit them. names_repeated: see chord_doubts(). Pre: model is built of
-// it.
+// Of a scene that has a set `annulus`, and so is a valve; of others what their pressure does to the membranes
+// alone, and of chords nothing where interventions edit them. names_repeated: see chord_doubts(). Pre: model
+// is built of it.
 std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& geometry, const Model& model,
                                       bool names_repeated = true);
 

@@ -14,6 +14,18 @@
 namespace coapt {
 namespace {
 
+using Reader = MeshFile (*)(std::string_view, const std::string&);
+
+// Null for what is no mesh by its extension.
+Reader reader_of(const std::filesystem::path& path) {
+  const std::string format = formats::lower_extension(path);
+  if (format == ".obj") return formats::read_obj;
+  if (format == ".ply") return formats::read_ply;
+  if (format == ".stl") return formats::read_stl;
+  if (format == ".off") return formats::read_off;
+  return format == ".vtp" ? formats::read_vtp : nullptr;
+}
+
 [[noreturn]] void refuse_extension(const std::filesystem::path& path) {
   throw InputError(path.string() + ": the extension '" + formats::lower_extension(path) +
                    "' is not a mesh format; use .obj, .ply, .stl, .off or .vtp");
@@ -51,14 +63,10 @@ Numbering file_numbering(const std::filesystem::path& file) {
   return {formats::lower_extension(file) == ".obj" ? 1 : 0};
 }
 
+bool is_mesh_file(const std::filesystem::path& path) { return reader_of(path) != nullptr; }
+
 MeshFile read_mesh(const std::filesystem::path& path) {
-  const std::string format = formats::lower_extension(path);
-  MeshFile (*read)(std::string_view, const std::string&) = format == ".obj"   ? formats::read_obj
-                                                           : format == ".ply" ? formats::read_ply
-                                                           : format == ".stl" ? formats::read_stl
-                                                           : format == ".off" ? formats::read_off
-                                                           : format == ".vtp" ? formats::read_vtp
-                                                                              : nullptr;
+  const Reader read = reader_of(path);
   formats::refuse_what_is_no_file(path);
   if (!read) refuse_extension(path);
   const std::string bytes = formats::read_whole(path);

@@ -16,6 +16,9 @@ struct MeshFile {
   std::string space = {};             // "LPS" where the file states its frame, as 3D Slicer does; else empty
 };
 
+// Whether the extension is one of those.
+bool is_mesh_file(const std::filesystem::path& path);
+
 // Reads a surface. Polygons are cut into a fan of triangles from their first corner and counted in a
 // warning. Regions come from OBJ groups (else objects, else materials), STL solids, and the integer face
 // array `region` of PLY and VTP; names that are not UTF-8 are taken as Latin-1. Coordinates are taken as they

@@ -27,7 +27,7 @@ struct ClosedShape {
   const TopView& view = seen.view;
   const ClosedView& closed = seen.closed;
   SpanningSurface spanned;
-  ContactLimit limit;
+  const ContactMeasure& contact;
 
   int region(int triangle) const {
     return model.mesh.regions.empty() ? 0 : model.mesh.regions[static_cast<size_t>(triangle)];
@@ -62,7 +62,7 @@ ViewFrame along_its_width(ViewFrame frame, const Points& loop) {
   return frame;
 }
 
-ClosedShape closed_shape(const Model& model, const Fields& fields) {
+ClosedShape closed_shape(const Model& model, const Fields& fields, const ContactMeasure& contact) {
   const std::vector<int>& loop = *annulus_of(model);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
   const ViewFrame frame = along_its_width(annulus_frame(model, fields, loop), annulus);
@@ -72,7 +72,7 @@ ClosedShape closed_shape(const Model& model, const Fields& fields) {
           .annulus = annulus,
           .seen = seen_surface(surface, model.mesh.triangles, annulus, frame, fields.contact_distance),
           .spanned = SpanningSurface(in_frame(annulus, frame)),
-          .limit = contact_limit(model, fields)};
+          .contact = contact};
 }
 
 // Open nodes that hang together with the given one, across the edges of cells.
@@ -223,10 +223,11 @@ std::vector<double> heights_of(const ClosedShape& shape, const std::vector<Stati
   const auto within = [&](double distance) {
     return heights_at(places, places_within(distance, region, shape.model, shape.fields), spacing);
   };
-  std::vector<double> heights = within(shape.limit.near);
-  const std::vector<double> further = within(shape.limit.far);
+  const ContactLimit& limit = shape.contact.limit;
+  std::vector<double> heights = within(limit.near);
+  const std::vector<double> further = within(limit.far);
   for (size_t s = 0; s < heights.size(); ++s)
-    if (!std::isnan(heights[s])) heights[s] = std::max(0.0, shape.limit.at_rest(heights[s], further[s]));
+    if (!std::isnan(heights[s])) heights[s] = std::max(0.0, limit.at_rest(heights[s], further[s]));
   return heights;
 }
 
@@ -256,14 +257,13 @@ void measure_line(const ClosedShape& shape, Closure& closure) {
 
 void measure_areas(const ClosedShape& shape, Closure& closure) {
   const TriangleMesh& mesh = shape.model.mesh;
-  const Vector contact = contact_areas(shape.limit, shape.model, shape.fields);
   std::vector<std::vector<char>> touching(closure.leaflets.size(),
                                           std::vector<char>(shape.fields.is_contact.size(), 0));
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(shape.region(t))];
     leaflet.area_open_mm2 += area_vector(shape.model.X, mesh.triangles.col(t)).norm();
     leaflet.area_closed_mm2 += area_vector(shape.surface, mesh.triangles.col(t)).norm();
-    leaflet.contact_area_mm2 += contact[t];
+    leaflet.contact_area_mm2 += shape.contact.areas[t];
     leaflet.contact_facets += shape.fields.is_contact_facet[static_cast<size_t>(t)];
     for (const int v : mesh.triangles.col(t)) {
       char& is_counted = touching[static_cast<size_t>(shape.region(t))][static_cast<size_t>(v)];
@@ -285,8 +285,8 @@ ViewFrame annulus_frame(const Model& model, const Fields& fields, const std::vec
   return view_frame(plane.centre, hang.dot(plane.normal) > 0 ? Vec3(-plane.normal) : plane.normal);
 }
 
-Closure closure_of(const Model& model, const Fields& fields) {
-  const ClosedShape shape = closed_shape(model, fields);
+Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact) {
+  const ClosedShape shape = closed_shape(model, fields, contact);
   Closure closure;
   closure.cell = shape.view.cell;
   closure.leaflets.resize(shape.region_count());

@@ -12,6 +12,8 @@
 
 namespace coapt {
 
+struct ContactMeasure;  // results/detail/contact_limit.hpp
+
 // A region of the mesh.
 struct LeafletMetrics {
   std::string name;
@@ -51,8 +53,8 @@ struct Closure {
   std::vector<LeafletMetrics> leaflets;  // by region; empty for a mesh without regions
 };
 
-// Pre: the model has an annulus whose points are not on one line, and fields of contact.
-Closure closure_of(const Model& model, const Fields& fields);
+// contact: of the same fields. Pre: the model has an annulus whose points are not on one line.
+Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact);
 
 // Plane of the annulus in the state of the fields; up is the side on which the open leaflets do not hang.
 // Throws InputError when the annulus lies on one line.

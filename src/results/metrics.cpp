@@ -14,13 +14,14 @@
 namespace coapt {
 namespace {
 
-void measure_annulus(const Model& model, const Fields& fields, Metrics& metrics) {
+void measure_annulus(const Model& model, const Fields& fields, const ContactMeasure& contact,
+                     Metrics& metrics) {
   const std::optional<OrificeArea> area = orifice_area(model, fields.x);
   if (!area) return;  // an annulus on one line encloses nothing: its metrics stay undefined
   metrics.orifice_area_mm2 = area->open;
   metrics.annulus_area_mm2 = area->annulus;
   metrics.orifice_area_percent = 100 * area->open / area->annulus;
-  Closure closure = closure_of(model, fields);
+  Closure closure = closure_of(model, fields, contact);
   metrics.regurgitant_area_mm2 = std::min(closure.regurgitant_area_mm2, area->open);
   metrics.orifice_film_area_mm2 = closure.orifice_film_area_mm2;
   metrics.coaptation_length_mm = closure.coaptation_length_mm;
@@ -164,15 +165,15 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
   measure_yield(fields.yield_ratio, metrics.max_yield_ratio, metrics.yielded_facets);
   measure_yield(fields.line_yield_ratio, metrics.max_chord_yield_ratio, metrics.yielded_chords);
 
-  if (is_finite) try {
-      measure_annulus(model, fields, metrics);
-    } catch (const InputError&) {  // of what cannot be measured of it, nothing is said
-    }
   if (looks_for_contact(model)) {
+    const ContactMeasure contact = measure_contact(model, fields);
+    if (is_finite) try {
+        measure_annulus(model, fields, contact, metrics);
+      } catch (const InputError&) {  // of what cannot be measured of it, nothing is said
+      }
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);
     metrics.contact_facets = std::count(fields.is_contact_facet.begin(), fields.is_contact_facet.end(), 1);
-    metrics.coaptation_area_mm2 =
-        std::max(0.0, contact_areas(contact_limit(model, fields), model, fields).sum() / 2);
+    metrics.coaptation_area_mm2 = std::max(0.0, contact.areas.sum() / 2);
   }
   const double gap = fields.gap.size() == 0 ? kNaN : fields.gap.minCoeff<Eigen::PropagateNumbers>();
   if (std::isfinite(gap)) metrics.smallest_gap_mm = gap;

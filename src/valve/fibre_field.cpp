@@ -42,7 +42,7 @@ struct Known {
 
 // Number of the last vector guide of each vertex, -1 without one. Defects are added.
 std::vector<int> guides_of_vertices(const TriangleMesh& mesh, const EdgeSpace& space,
-                                    const std::vector<FibreGuide>& guides,
+                                    const std::vector<FibreGuide>& guides, Numbering numbering,
                                     std::vector<std::string>& defects) {
   std::vector<double> in_surface(static_cast<size_t>(mesh.vertex_count()), -1);  // -1: on no triangle
   std::vector<int> last(static_cast<size_t>(mesh.vertex_count()), -1);
@@ -61,7 +61,7 @@ std::vector<int> guides_of_vertices(const TriangleMesh& mesh, const EdgeSpace& s
     }
   for (const FibreGuide& guide : guides) {
     if (guide.kind != FibreGuide::Kind::AtVertex) continue;
-    const std::string name = "fibre direction at vertex " + std::to_string(guide.a);
+    const std::string name = "fibre direction at vertex " + numbering.of(guide.a) + numbering.note();
     const double length = guide.direction.norm();
     if (guide.a < 0 || guide.a >= mesh.vertex_count() || in_surface[static_cast<size_t>(guide.a)] < 0)
       defects.push_back(name + ": the vertex is on no triangle");
@@ -75,7 +75,7 @@ std::vector<int> guides_of_vertices(const TriangleMesh& mesh, const EdgeSpace& s
 }
 
 Known known_values(const TriangleMesh& mesh, const EdgeSpace& space, const std::vector<FibreGuide>& guides,
-                   std::vector<std::string>& defects) {
+                   Numbering numbering, std::vector<std::string>& defects) {
   const auto count = static_cast<size_t>(space.count());
   Known known{std::vector<int>(count, -1), std::vector<Complex>(count)};
   for (size_t g = 0; g < guides.size(); ++g) {
@@ -83,12 +83,12 @@ Known known_values(const TriangleMesh& mesh, const EdgeSpace& space, const std::
     if (guide.kind == FibreGuide::Kind::AtVertex) continue;
     const auto [first, last] = space.between(guide.a, guide.b);
     if (first == last)
-      defects.push_back("fibre direction between vertices " + std::to_string(guide.a) + " and " +
-                        std::to_string(guide.b) + ": no edge joins them");
+      defects.push_back("fibre direction between vertices " + numbering.of(guide.a) + " and " +
+                        numbering.of(guide.b) + numbering.note() + ": no edge joins them");
     for (int e = first; e < last; ++e)
       known.set(e, static_cast<int>(g), guide.kind == FibreGuide::Kind::Along ? 1.0 : -1.0);
   }
-  const std::vector<int> of_vertex = guides_of_vertices(mesh, space, guides, defects);
+  const std::vector<int> of_vertex = guides_of_vertices(mesh, space, guides, numbering, defects);
   if (!defects.empty()) return known;
   const auto guide_at = [&](int v) { return of_vertex[static_cast<size_t>(v)]; };
   const auto seen = [&](int e, int g) { return at_edge(space, e, guides[static_cast<size_t>(g)].direction); };
@@ -107,7 +107,7 @@ Known known_values(const TriangleMesh& mesh, const EdgeSpace& space, const std::
 }
 
 // Parts that no guide reaches.
-void check_parts(const TriangleMesh& mesh, const EdgeSpace& space, const Known& known,
+void check_parts(const TriangleMesh& mesh, const EdgeSpace& space, const Known& known, Numbering numbering,
                  std::vector<std::string>& defects) {
   std::vector<int> root(space.sides.size());
   std::iota(root.begin(), root.end(), 0);
@@ -132,12 +132,14 @@ void check_parts(const TriangleMesh& mesh, const EdgeSpace& space, const Known& 
             ? ""
             : " of region \"" + mesh.region_names[static_cast<size_t>(mesh.regions[t])] + "\"";
     defects.push_back("no fibre direction is known on the part" + region + " with triangle " +
-                      std::to_string(t) + "; give one at some of its nodes, or join the regions");
+                      numbering.of(static_cast<int>(t)) + numbering.note() +
+                      "; give one at some of its nodes, or join the regions");
   }
 }
 
 // Cotangents at the three corners. Defects are added for triangles without area.
-std::vector<Vec3> corner_cotangents(const TriangleMesh& mesh, std::vector<std::string>& defects) {
+std::vector<Vec3> corner_cotangents(const TriangleMesh& mesh, Numbering numbering,
+                                    std::vector<std::string>& defects) {
   std::vector<Vec3> all;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     const Eigen::Vector3i c = mesh.triangles.col(t);
@@ -149,7 +151,7 @@ std::vector<Vec3> corner_cotangents(const TriangleMesh& mesh, std::vector<std::s
           (mesh.vertices.col(c[(k + 1) % 3]) - x).dot(mesh.vertices.col(c[(k + 2) % 3]) - x) / double_area;
     }
     if (!cotangent.allFinite() && defects.size() < kMostNamed)
-      defects.push_back("triangle " + std::to_string(t) +
+      defects.push_back("triangle " + numbering.of(static_cast<int>(t)) + numbering.note() +
                         " has no area: no fibre direction can be found there");
     all.push_back(cotangent);
   }
@@ -215,11 +217,11 @@ FibreField sized_for(const TriangleMesh& mesh) {
 FibreField fibre_field(const TriangleMesh& mesh, const std::vector<FibreGuide>& guides,
                        const FibreOptions& options) {
   std::vector<std::string> defects;
-  const std::vector<Vec3> cotangents = corner_cotangents(mesh, defects);
+  const std::vector<Vec3> cotangents = corner_cotangents(mesh, options.numbering, defects);
   if (!defects.empty()) throw InputError(defects);
   const EdgeSpace space = edge_space(mesh, options.joins_regions);
-  Known known = known_values(mesh, space, guides, defects);
-  if (defects.empty()) check_parts(mesh, space, known, defects);
+  Known known = known_values(mesh, space, guides, options.numbering, defects);
+  if (defects.empty()) check_parts(mesh, space, known, options.numbering, defects);
   if (!defects.empty()) throw InputError(defects);
   solve(space, cotangents, known);
   FibreField field = sized_for(mesh);
@@ -264,7 +266,8 @@ FibreField coarsened(const FibreField& fine, const TriangleMesh& fine_mesh, cons
   return field;
 }
 
-FibreField in_surface(const Points& directions, const TriangleMesh& mesh, const std::string& where) {
+FibreField in_surface(const Points& directions, const TriangleMesh& mesh, const std::string& where,
+                      Numbering numbering) {
   if (directions.cols() != mesh.triangle_count())
     throw InputError(where + ": holds " + std::to_string(directions.cols()) + " directions; the mesh has " +
                      std::to_string(mesh.triangle_count()) + " triangles, and each needs one");
@@ -275,8 +278,9 @@ FibreField in_surface(const Points& directions, const TriangleMesh& mesh, const 
     const Frame frame(mesh.vertices, mesh.triangles.col(t));
     const Complex z = frame.doubled(d);
     if (!(std::sqrt(std::abs(z)) > kInSurface * d.norm()) && defects.size() < kMostNamed)
-      defects.push_back(where + ": the direction of triangle " + std::to_string(t) +
-                        (d.norm() > 0 ? " is normal to it" : " is zero") + "; give one in its plane");
+      defects.push_back(where + ": the direction of triangle " + numbering.of(static_cast<int>(t)) +
+                        numbering.note() + (d.norm() > 0 ? " is normal to it" : " is zero") +
+                        "; give one in its plane");
     set_triangle(field, t, frame, unit(z));
   }
   if (!defects.empty()) throw InputError(defects);

@@ -1,6 +1,7 @@
 // Fibre directions on a surface, from what is known of them along some edges and at some vertices.
 #pragma once
 
+#include "mesh/numbering.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #include <vector>
@@ -25,6 +26,7 @@ struct FibreField {
 
 struct FibreOptions {
   bool joins_regions = false;  // false: each region on its own, as if cut out
+  Numbering numbering = {};    // of vertices and triangles in messages
 };
 
 // Laplace's equation for M = d (x) d on the surface, natural conditions where nothing is known, and the first
@@ -52,9 +54,10 @@ FibreField coarsened(const FibreField& fine, const TriangleMesh& fine_mesh, cons
                      const std::vector<int>& kept);
 
 // Directions in space, one per triangle, of any length, turned into a field: their part in each triangle's
-// plane; anisotropy 1. Throws InputError naming `where` and the triangles (from 0) whose direction is zero or
-// normal to them, or when the number of directions is not that of the triangles.
-FibreField in_surface(const Points& directions, const TriangleMesh& mesh, const std::string& where);
+// plane; anisotropy 1. Throws InputError naming `where` and the triangles whose direction is zero or normal
+// to them, or when the number of directions is not that of the triangles.
+FibreField in_surface(const Points& directions, const TriangleMesh& mesh, const std::string& where,
+                      Numbering numbering = {});
 
 // Where unit directions in the triangles at X point when the nodes are at x: F d, normalised. A triangle that
 // has collapsed along d keeps d.

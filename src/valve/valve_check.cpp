@@ -13,12 +13,13 @@ namespace coapt {
 namespace {
 
 // Generous: from the valves of mice to those of whales, and what a heart can do to them.
-constexpr std::array<double, 2> kLeafletSize = {0.5, 500};   // largest extent [mm]
-constexpr std::array<double, 2> kThickness = {0.001, 20};    // [mm]
-constexpr double kThickest = 0.25;                           // thickness over the largest extent
-constexpr std::array<double, 2> kChordArea = {1e-6, 300};    // [mm2]
-constexpr std::array<double, 2> kPressure = {1.3e-6, 0.13};  // 0.01 to 1000 mmHg [MPa]
-constexpr double kMpaPerMmhg = 133.322387415e-6;             // conventional mmHg, BIPM SI brochure
+constexpr std::array<double, 2> kLeafletSize = {0.5, 500};  // largest extent [mm]
+constexpr std::array<double, 2> kThickness = {0.001, 20};   // [mm]
+constexpr double kThickest = 0.25;                          // thickness over the largest extent
+constexpr std::array<double, 2> kChordArea = {1e-6, 300};   // [mm2]
+constexpr std::array<double, 2> kPressure = {
+    1.3e-6, 0.067};  // 0.01 to 500 mmHg [MPa]: 480 under weights (MacDougall 1985)
+constexpr double kMpaPerMmhg = 133.322387415e-6;  // conventional mmHg, BIPM SI brochure
 
 // Between the normals of two neighbours. Small triangles of uneven meshes are folded that far by right: rough
 // valves have some, up to 0.57 of the mean edge high, and a solve unfolds them.
@@ -103,7 +104,7 @@ std::vector<std::string> size_doubts(const Valve& valve) {
                      "Check the units of mesh and thickness.");
   if (valve.pressure > 0 && !is_within(valve.pressure, kPressure))
     doubts.push_back("the pressure is " + number_text(valve.pressure / kMpaPerMmhg) + " mmHg; hearts have " +
-                     range_text({0.01, 1000}) + " mmHg. Check the unit of the pressure.");
+                     range_text({0.01, 500}) + " mmHg. Check the unit of the pressure (1 kPa is 7.5 mmHg).");
   std::vector<int> odd;
   for (size_t k = 0; k < valve.chords.chords.size(); ++k)
     if (const double area = valve.chords.chords[k].area; area > 0 && !is_within(area, kChordArea))

@@ -12,6 +12,10 @@ class Arguments(CommandCase):
     def test_an_unknown_command_names_the_nearest_and_all(self):
         self.assert_bad_input(coapt("slove", "x.json"), 'there is no "slove"', 'did you mean "solve"', "register", "coapt help")
 
+    def test_a_command_of_the_python_module_is_said_to_be_there(self):
+        for words in (["kernel"], ["kernel", "Spring", "k", "--nodes", 2]):
+            self.assert_bad_input(coapt(*words), "Python module", "python3 -m coapt kernel --help")
+
     def test_no_command_lists_them(self):
         run = coapt()
         self.assert_bad_input(run, "which?", "solve", "generate")

@@ -90,6 +90,46 @@ TEST_F(ImportDoubts, NameLoadsOfAnotherUnit) {
   EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"1e6 MPa\""), "Check the unit of the pressure"));
 }
 
+TEST_F(ImportDoubts, NameAPressureInKilopascalsThatWasMeantInMmhg) {
+  EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"120 kPa\""), "the pressure is 900 mmHg"));
+  EXPECT_FALSE(tells(checked("\"120 mmHg\"", "\"16 kPa\""), "the pressure is"));
+}
+
+TEST_F(ImportDoubts, NameAStiffnessThatThePressureOverwhelms) {
+  EXPECT_TRUE(tells(checked("\"1 MPa\"", "\"1 kPa\""), "stretches the membrane by more than 50 %"));
+  EXPECT_TRUE(tells(checked("\"0.8 mm\"", "\"0.8 um\""), "stretches the membrane by more than 50 %"));
+  for (const char* young : {"\"0.3 MPa\"", "\"1 MPa\"", "\"50 MPa\""})
+    EXPECT_FALSE(tells(checked("\"1 MPa\"", young), "stretches the membrane")) << young;
+}
+
+TEST_F(ImportDoubts, NameAPressureThatHardlyStretches) {
+  EXPECT_TRUE(tells(checked("\"120 mmHg\"", "\"2 Pa\""), "stretches the membrane by less than"));
+}
+
+// As others leave them: leaflets between two rims.
+TEST_F(ImportDoubts, OfferChordsToLeafletsWithoutThem) {
+  const Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
+  std::filesystem::create_directories(folder_.path() / "a");
+  const std::filesystem::path leaflets = folder_.path() / "a" / "leaflets.obj";
+  write_mesh(leaflets, valve.leaflets);
+  const auto warnings = import_valve(leaflets, folder_.path() / "b");
+  EXPECT_TRUE(tells(warnings, "brings no chords"));
+  EXPECT_TRUE(tells(warnings, "`coapt chords " + leaflets.string() + " -o FOLDER/valve.json --tip X Y Z"));
+  Valve bare = valve;
+  bare.chords = {};
+  EXPECT_TRUE(tells(imported(bare), "brings no chords"));
+  EXPECT_FALSE(tells(imported(valve), "brings no chords"));
+}
+
+// The message names the triangle as leaflets.obj counts it.
+TEST_F(ImportDoubts, CountTheLeafletsOfAValveAsTheirFileDoes) {
+  Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
+  const int t = 17;
+  std::swap(valve.leaflets.triangles(0, t), valve.leaflets.triangles(1, t));
+  const auto warnings = imported(valve);
+  EXPECT_TRUE(tells(warnings, "counted from 1"));
+}
+
 TEST_F(ImportDoubts, NameModuliOfAnotherUnit) {
   for (const char* young : {"\"1 Pa\"", "\"1e6 MPa\""})
     EXPECT_TRUE(tells(checked("\"1 MPa\"", young), "\"leaflets\": a membrane that, stretched by 10 % both"))

@@ -230,6 +230,38 @@ TEST(SceneFile, RefusesDeepNestingAndHugeFiles) {
   EXPECT_THROW(load_scene(folder.path() / "missing.json"), InputError);
 }
 
+// The one sentence with which the file is refused.
+std::string refusal(const std::filesystem::path& file) {
+  try {
+    load_scene(file);
+  } catch (const InputError& error) {
+    return error.defects().size() == 1 ? error.defects()[0] : "several defects";
+  }
+  return "accepted";
+}
+
+TEST(SceneFile, NamesFilesOfOtherKindsAndWhatMakesASceneOfThem) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& name, const std::string& text, const std::string& what,
+                          const std::string& remedy) {
+    const std::string file = folder.write(name, text).string(), told = refusal(file);
+    EXPECT_EQ(told.find(file + ": is " + what + " and no scene; "), 0u) << told;
+    EXPECT_NE(told.find(remedy), std::string::npos) << told;
+  };
+  for (const char* name : {"a.obj", "a.ply", "a.STL", "a.off", "a.vtp"})
+    expect(name, kMesh, "a mesh", "`coapt import " + (folder.path() / name).string() + " -o FOLDER`");
+  for (const char* name : {"a.inp", "a.feb"}) expect(name, "x", "a finite-element model", "`coapt import ");
+  expect("a.json", R"({"leaflets": "a.obj", "annulus": [0, 1]})", "a valve JSON", "`coapt import ");
+  expect("result.json", R"({"status": "converged", "residual": 1e-9, "terms": []})", "the result of a solve",
+         "`scene`");
+  expect("a.mrk.json", R"({"markups": []})", "a markups file of 3D Slicer", "--papillary");
+  EXPECT_EQ(refusal(folder.path() / "a.obj").find("scene.json"), std::string::npos);
+  folder.write("scene.json", "{}");
+  EXPECT_NE(refusal(folder.path() / "a.obj").find("scene.json is a scene that lies beside it"),
+            std::string::npos);
+  EXPECT_EQ(refusal(folder.path() / "missing.obj").find("is a mesh"), std::string::npos);
+}
+
 TEST(SceneFile, ReadsNumbersIntoInternalUnitsWithDefaults) {
   const TemporaryFolder folder;
   const Scene scene = read(folder, R"({ // a comment

@@ -296,6 +296,15 @@ TEST(FibreFieldTest, NamesEveryDefect) {
                            {Kind::AtVertex, 999, 999, Vec3(1, 0, 0)},
                            {Kind::Along, 0, 44, Vec3::Zero()}});
   ASSERT_EQ(several.size(), 4u);
+  EXPECT_EQ(several[1].find("fibre direction at vertex 4:"), 0u) << several[1];
+  const auto from_one = defects([&] {
+    fibre_field(mesh, {{Kind::AtVertex, 4, 4, Vec3::Zero()}, {Kind::Along, 0, 44, Vec3::Zero()}},
+                {.numbering = {1}});
+  });
+  ASSERT_EQ(from_one.size(), 2u);
+  EXPECT_EQ(from_one[0].find("fibre direction between vertices 1 and 45, counted from 1:"), 0u)
+      << from_one[0];
+  EXPECT_EQ(from_one[1].find("fibre direction at vertex 5, counted from 1:"), 0u) << from_one[1];
   const auto unreached = of({{Kind::AtVertex, 0, 0, Vec3(1, 0, 0)}});
   ASSERT_EQ(unreached.size(), 1u);
   EXPECT_NE(unreached[0].find("region \"right\""), std::string::npos);

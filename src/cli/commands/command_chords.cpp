@@ -61,9 +61,11 @@ std::vector<int> numbers_of(const std::string& text) {
 // The valve without its chords: from a valve JSON, or a mesh alone. mm.
 Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& warnings) {
   Valve valve;
+  Numbering numbering = file_numbering(arguments.input);
   if (formats::lower_extension(arguments.input) == ".json") {
     ValveFile file = read_valve(arguments.input);
     valve = std::move(file.valve);
+    numbering = file.numbering;
     warnings = std::move(file.warnings);
   } else {
     MeshFile file = read_mesh(arguments.input);
@@ -75,8 +77,8 @@ Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& war
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(arguments.input + ": leaflets: missing; chords need a mesh to end on");
   std::vector<std::string> defects;
-  for (const MeshDefect& defect : check_mesh(
-           valve.leaflets, {.orientation_matters = false, .numbering = file_numbering(arguments.input)}))
+  for (const MeshDefect& defect :
+       check_mesh(valve.leaflets, {.orientation_matters = false, .numbering = numbering}))
     if (defect.severity == Severity::Error) defects.push_back(arguments.input + ": " + defect.message);
   if (!defects.empty()) throw InputError(defects);
   ChordNetwork tips;

@@ -5,7 +5,6 @@
 #include "exchange/detail/law_terms.hpp"
 #include "exchange/detail/start_contact.hpp"
 #include "formats/csv_table.hpp"
-#include "formats/file_numbering.hpp"
 #include "formats/whole_file.hpp"
 #include "mesh/mesh_check.hpp"
 #include "valve/repair_valve.hpp"
@@ -84,10 +83,9 @@ bool is_measurable(const std::vector<MeshDefect>& defects) {
 
 }  // namespace
 
-MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Valve& valve,
-                          std::vector<std::string>& warnings) {
+MeshRepair judge_leaflets(const ImportOptions& options, const std::string& file, Numbering numbering,
+                          Valve& valve, std::vector<std::string>& warnings) {
   const std::string place = file + ": leaflets: ";
-  const Numbering numbering = file_numbering(file);
   const std::vector<MeshDefect> before = check_mesh(valve.leaflets, {.numbering = numbering});
   for (const std::string& doubt : fold_doubts(valve.leaflets, numbering)) warnings.push_back(place + doubt);
   if (!options.repairs) {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "formats/valve.hpp"
+#include "mesh/numbering.hpp"
 
 #include <filesystem>
 #include <map>
@@ -25,6 +26,7 @@ struct ValveFile {
       sets;                              // all named vertices of the leaflets, 0-based, in the file's order
   std::map<std::string, Points> points;  // [mm]
   std::vector<std::string> warnings;     // whole sentences
+  Numbering numbering;                   // how the file of the leaflets counts them, for messages
 };
 
 enum class ValveMeshes { Read, Skip };

@@ -62,9 +62,10 @@ Vector areas_within(double distance, const Model& model, const Fields& fields) {
   return areas;
 }
 
-Vector contact_areas(const ContactLimit& limit, const Model& model, const Fields& fields) {
+ContactMeasure measure_contact(const Model& model, const Fields& fields) {
+  const ContactLimit limit = contact_limit(model, fields);
   const Vector near = areas_within(limit.near, model, fields), far = areas_within(limit.far, model, fields);
-  return near - limit.weight * (far - near);
+  return {limit, near - limit.weight * (far - near)};
 }
 
 std::vector<Vec3> places_within(double distance, int region, const Model& model, const Fields& fields) {

@@ -26,9 +26,14 @@ ContactLimit contact_limit(const Model& model, const Fields& fields);
 // corners without a gap count as those at the end of the reach. [mm2]
 Vector areas_within(double distance, const Model& model, const Fields& fields);
 
-// Of each closed triangle its area in contact, followed back to contact itself: the sum of many means
-// something, that of one may be negative. [mm2]
-Vector contact_areas(const ContactLimit& limit, const Model& model, const Fields& fields);
+struct ContactMeasure {
+  ContactLimit limit;
+  Vector areas;  // in contact, followed back to contact itself, of each closed triangle: the sum of many
+                 // means something, that of one may be negative [mm2]
+};
+
+// Pre: fields of contact.
+ContactMeasure measure_contact(const Model& model, const Fields& fields);
 
 // The vertices of a region, or of all (-1), whose gap is at most `distance`, each once, and the places on its
 // edges where the gap, linear along them, is just that.

@@ -1,6 +1,7 @@
 #include "scene/build/fibres.hpp"
 
 #include "core/error.hpp"
+#include "formats/file_numbering.hpp"
 #include "formats/json/read_points.hpp"
 #include "scene/build/node_selection.hpp"
 #include "valve/fibre_guides.hpp"
@@ -83,9 +84,10 @@ void add_entry(const FibreEntry& entry, const Model& model, std::vector<FibreGui
   guides.insert(guides.end(), more.begin(), more.end());
 }
 
-FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& geometry) {
+FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& geometry, Numbering numbering) {
   const Model& model = geometry.model;
-  if (fibres.file) return in_surface(read_csv(fibres.file->string()), model.mesh, fibres.file->string());
+  if (fibres.file)
+    return in_surface(read_csv(fibres.file->string()), model.mesh, fibres.file->string(), numbering);
   std::vector<FibreGuide> guides = default_guides(fibres, geometry);
   std::vector<std::string> defects;
   for (const FibreEntry& entry : fibres.entries) try {
@@ -95,7 +97,7 @@ FibreField field_of_scene(const SceneFibres& fibres, const SceneGeometry& geomet
     }
   if (!defects.empty()) throw InputError(defects);
   try {
-    return fibre_field(model.mesh, guides, {fibres.joins_regions});
+    return fibre_field(model.mesh, guides, {fibres.joins_regions, numbering});
   } catch (const InputError& error) {
     throw error.within(fibres.where);
   }
@@ -113,16 +115,16 @@ FibreField refined_uniformly(const FibreField& coarse) {
 
 // Solved for on the scene's own mesh alone, so that all meshes are of one material; kept where it was asked
 // for.
-const FibreField& field_here(const SceneFibres& fibres, const SceneGeometry& geometry) {
+const FibreField& field_here(const SceneFibres& fibres, const SceneGeometry& geometry, Numbering numbering) {
   std::optional<FibreField>& here = *geometry.fibres;
   if (here) return *here;
   if (geometry.finest == nullptr)
-    here = field_of_scene(fibres, geometry);
+    here = field_of_scene(fibres, geometry, numbering);
   else if (geometry.is_refined)
-    here = refined_uniformly(field_here(fibres, *geometry.coarser));
+    here = refined_uniformly(field_here(fibres, *geometry.coarser, numbering));
   else
-    here = coarsened(field_here(fibres, *geometry.finest), geometry.finest->model.mesh, geometry.model.mesh,
-                     kept_vertices(geometry));
+    here = coarsened(field_here(fibres, *geometry.finest, numbering), geometry.finest->model.mesh,
+                     geometry.model.mesh, kept_vertices(geometry));
   return *here;
 }
 
@@ -142,7 +144,8 @@ void find_fibres(const Scene& scene, const SceneGeometry& geometry, Model& model
   if (model.fibres.cols() > 0) return;
   SceneFibres fibres = scene.fibres.value_or(SceneFibres());
   if (!scene.fibres) fibres.where = scene.file.string() + ": fibres";
-  const FibreField& field = field_here(fibres, geometry);
+  const FibreField& field =
+      field_here(fibres, geometry, scene.mesh ? file_numbering(scene.mesh->file) : Numbering());
   model.fibres = field.directions;
   model.fibre_anisotropy = field.anisotropy;
   warn_of_isotropic(field, fibres, model);

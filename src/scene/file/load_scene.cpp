@@ -2,8 +2,10 @@
 #include "formats/json/read_json.hpp"
 #include "formats/json/units.hpp"
 #include "scene/build/in_memory.hpp"
+#include "scene/file/detail/other_files.hpp"
 #include "scene/file/detail/read_parameters.hpp"
 #include "scene/file/scene.hpp"
+#include "scene/file/scene_text.hpp"
 #include "scene/interventions/intervention.hpp"
 #include "xpbd/paper_numbers.hpp"
 
@@ -322,6 +324,7 @@ void read_reference(const Parameters& values, double mesh_scale, Scene& scene, R
 Scene parsed(const std::string& text, const std::filesystem::path& path, bool has_mesh_in_memory) {
   const std::string file = path.string();
   const Json json = parse_json(text, file);
+  refuse_other_json(json, path);
   Reading reading{path.parent_path(), {}};
   const Parameters values = read_object(json, scene_spec(), file, reading);
   Scene scene;
@@ -371,7 +374,7 @@ Scene parse_scene_around_mesh(const std::string& text, const std::filesystem::pa
   return parsed(text, path, true);
 }
 
-Scene load_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }
+Scene load_scene(const std::filesystem::path& path) { return parse_scene(scene_text(path), path); }
 
 std::string scene_title(const Scene& scene) {
   const std::string file = scene.file.filename().string();

@@ -5,6 +5,7 @@
 #include "formats/json/read_json.hpp"
 #include "formats/json/suggestion.hpp"
 #include "formats/text.hpp"
+#include "scene/file/detail/other_files.hpp"
 
 #include <cctype>
 #include <charconv>
@@ -103,7 +104,10 @@ Json value_of(const std::string& value, const Json& before) {
 
 }  // namespace
 
-std::string scene_text(const std::filesystem::path& file) { return read_text(file); }
+std::string scene_text(const std::filesystem::path& file) {
+  refuse_other_file(file);
+  return read_text(file);
+}
 
 std::string without_interventions(const std::string& scene, const std::string& file) {
   Json json = parse_json(scene, file);

@@ -1,0 +1,15 @@
+// Files of other kinds that are taken for a scene. Private to this room.
+#pragma once
+
+#include "formats/json/read_json.hpp"
+
+#include <filesystem>
+
+namespace coapt {
+
+// Both throw InputError with what the file is and what makes a scene of it: a mesh and a finite-element model
+// by the name of a file that is there, a valve JSON, markups and a result by their keys.
+void refuse_other_file(const std::filesystem::path& path);
+void refuse_other_json(const Json& json, const std::filesystem::path& path);
+
+}  // namespace coapt
