@@ -2,11 +2,11 @@
 #include "formats/json/read_json.hpp"
 #include "formats/json/units.hpp"
 #include "scene/build/in_memory.hpp"
-#include "scene/file/detail/other_files.hpp"
 #include "scene/file/detail/read_parameters.hpp"
 #include "scene/file/scene.hpp"
 #include "scene/file/scene_text.hpp"
 #include "scene/interventions/intervention.hpp"
+#include "valve/other_files.hpp"
 #include "xpbd/paper_numbers.hpp"
 
 #include <algorithm>

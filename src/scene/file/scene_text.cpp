@@ -5,7 +5,7 @@
 #include "formats/json/read_json.hpp"
 #include "formats/json/suggestion.hpp"
 #include "formats/text.hpp"
-#include "scene/file/detail/other_files.hpp"
+#include "valve/other_files.hpp"
 
 #include <cctype>
 #include <charconv>

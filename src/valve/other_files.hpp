@@ -1,4 +1,4 @@
-// Files of other kinds that are taken for a scene. Private to this room.
+// Files of other kinds that are taken for a scene.
 #pragma once
 
 #include "formats/json/read_json.hpp"

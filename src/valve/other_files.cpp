@@ -1,4 +1,4 @@
-#include "scene/file/detail/other_files.hpp"
+#include "valve/other_files.hpp"
 
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
