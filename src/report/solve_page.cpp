@@ -324,7 +324,6 @@ std::vector<PageSection> solve_account(const Model& model, const Report& report)
 }
 
 std::string solve_page_with(const Model& model, const Report& report, const std::vector<PageSection>& more) {
-  const Result& result = report.result;
   Page page;
   page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
   page.lead = headline(report).text;
