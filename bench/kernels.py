@@ -17,6 +17,8 @@ import coapt
 from runs import parsed_arguments, print_header
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Knows the alignment that the headers ask for: beside the module in a build tree, else where it is installed.
+CORE = pathlib.Path(coapt._core.__file__).resolve().parents[2] / "src/core/libcoapt_core.a"
 CORD = "t * max((norm(x1 - x0) - r) / rho, 0)**3"
 RUBBER = """G = gram(X1 - X0, X2 - X0)
             g = gram(x1 - x0, x2 - x0)
@@ -40,7 +42,8 @@ def in_cpp(runs: int) -> dict[str, np.ndarray]:
         for file, (term, (_, kernel)) in zip(("cord.hpp", "rubber.hpp"), PAIRS.items()):
             (folder / file).write_text(small[term].kernel(kernel))
         subprocess.run(["g++", "-std=c++20", "-O3", "-DNDEBUG", f"-I{folder}", f"-I{ROOT / 'src'}", "-isystem",
-                        "/usr/include/eigen3", ROOT / "bench/generated_kernels.cpp", "-o", folder / "program"], check=True)
+                        "/usr/include/eigen3", ROOT / "bench/generated_kernels.cpp",
+                        CORE if CORE.exists() else "-lcoapt_core", "-o", folder / "program"], check=True)
         lines = [line.split() for _ in range(runs) for line in subprocess.run(
             [folder / "program", "time"], check=True, capture_output=True, text=True).stdout.splitlines()]
     names = {line[0] for line in lines}

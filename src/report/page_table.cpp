@@ -31,4 +31,21 @@ PageTable change_page_table(const std::vector<ChangedFigure>& figures) {
   return page;
 }
 
+Tone tone_of(const Standing& of) {
+  return of.is_plain() ? Tone::Good : of.has_converged() ? Tone::Caution : Tone::Bad;
+}
+
+PageCell status_cell(const Standing& of) {
+  return {spaced(shown_status(of)), tone_of(of), of.has_converged() ? joined_doubts(of.doubts) : of.message};
+}
+
+PageText message_line(const Standing& of) { return {of.name + ": " + of.message, tone_of(of)}; }
+
+void lead_with(Page& page, const std::string& text, std::span<const Standing> all, bool has_converged,
+               Tone bad) {
+  const std::string doubted = doubts_in_words(all);
+  page.lead = text + (doubted.empty() ? "" : "; " + doubted);
+  page.tone = !has_converged ? bad : doubted.empty() ? Tone::Good : Tone::Caution;
+}
+
 }  // namespace coapt

@@ -41,10 +41,13 @@ std::string html(const PageList& list) {
   return html + "</ul>\n";
 }
 
-std::string cell_html(const PageCell& cell, bool is_name, bool is_text) {
+std::string cell_html(const PageCell& cell, size_t column, bool is_text) {
+  // Long texts to which a narrow screen scrolls must not make what is seen of the row high.
+  constexpr size_t kSeen = 4, kLong = 40;
+  const bool is_name = column == 0, is_beyond = is_text && column >= kSeen && cell.text.size() > kLong;
   const std::string name = is_name ? "th scope=\"row\"" : "td";
   std::string html = "<" + name + " class=\"" + std::string(tone_class(cell.tone)) +
-                     (is_text ? " text" : "") + "\">" + xml_escaped(cell.text);
+                     (is_text ? " text" : "") + (is_beyond ? " beyond" : "") + "\">" + xml_escaped(cell.text);
   if (!cell.remark.empty()) html += "<small>" + xml_escaped(cell.remark) + "</small>";
   return html + (is_name ? "</th>" : "</td>");
 }
@@ -70,7 +73,7 @@ std::string html(const PageTable& table) {
   for (const std::vector<PageCell>& row : table.rows) {
     html += "<tr>";
     for (size_t c = 0; c < table.columns.size(); ++c)
-      html += cell_html(c < row.size() ? row[c] : PageCell{}, c == 0, table.columns[c].is_text);
+      html += cell_html(c < row.size() ? row[c] : PageCell{}, c, table.columns[c].is_text);
     html += "</tr>\n";
   }
   html += "</tbody>\n</table>\n</div>\n";

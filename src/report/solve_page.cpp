@@ -324,12 +324,10 @@ std::vector<PageSection> solve_account(const Model& model, const Report& report)
 }
 
 std::string solve_page_with(const Model& model, const Report& report, const std::vector<PageSection>& more) {
-  const Result& result = report.result;
   Page page;
   page.title = "Result of " + (report.scene_title.empty() ? "a scene" : report.scene_title);
-  const Headline line = headline(report);
-  page.lead = line.text;
-  page.tone = result.status != Status::Converged ? Tone::Bad : line.is_in_doubt ? Tone::Caution : Tone::Good;
+  page.lead = headline(report).text;
+  page.tone = tone_of(standing("", report));
   if (PageList warnings = warning_list(report); !warnings.items.empty())
     page.sections.push_back({"Warnings", {std::move(warnings)}});
   page.sections.push_back({"Shape", {tiles(report), shape_view_html(solved_view(model, report))}});
@@ -343,13 +341,16 @@ std::string solve_page(const Model& model, const Report& report) {
 }
 
 ShownSolve shown_solve(const std::string& what, const Model& model, const Report& report) {
-  ShownSolve shown{what, warning_list(report), solved_view(model, report), solve_account(model, report)};
+  ShownSolve shown{what, standing("the valve as solved", report), warning_list(report),
+                   solved_view(model, report), solve_account(model, report)};
   for (PageSection& section : shown.account) section.title += " of the shape above";
   return shown;
 }
 
 PageSection shape_section(const std::string& title, const ShownSolve& shown) {
   PageSection section{title, {PageText{shown.what}}};
+  if (!shown.standing.doubts.empty())
+    section.blocks.emplace_back(PageText{"In doubt: " + joined_doubts(shown.standing.doubts), Tone::Caution});
   if (!shown.warnings.items.empty()) section.blocks.emplace_back(shown.warnings);
   section.blocks.emplace_back(shape_view_html(shown.view));
   return section;

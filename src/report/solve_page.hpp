@@ -3,7 +3,7 @@
 
 #include "report/report_page.hpp"
 #include "report/shape_view.hpp"
-#include "results/results.hpp"
+#include "results/standing.hpp"
 
 #include <string>
 #include <vector>
@@ -33,6 +33,7 @@ std::string solve_page(const Model& model, const Report& report);
 // One solve on the page of another command.
 struct ShownSolve {
   std::string what;  // "newton to a residual of 1e-06"
+  Standing standing;
   PageList warnings;
   ShapeView view;                    // from the start by iterates to the result
   std::vector<PageSection> account;  // see solve_account()

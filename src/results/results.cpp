@@ -310,6 +310,7 @@ std::string result_json(const Model& model, const Report& report) {
                     {"route", report.pressure_route}};
   if (!report.levels.empty()) json["levels"] = levels_json(report.levels);
   json["files"] = result_files(model, report);
+  json["headline"] = headline(report).text;
   json["doubts"] = doubts(report);
   json["warnings"] = report.warnings;
   json["neighbours"] = {{"judged", report.neighbours.is_made},

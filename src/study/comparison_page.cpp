@@ -31,10 +31,8 @@ PageTable distance_table(const Comparison& comparison) {
     columns.insert(columns.end(), {"mean_to_closed_mm", "p95_to_closed_mm", "max_to_closed_mm"});
   PageTable table = page_table(chosen(comparison_table(comparison.methods), columns),
                                "Distance of the closed surfaces to that of " + comparison.reference().name);
-  for (size_t k = 0; k < table.rows.size(); ++k) {
-    PageCell& status = table.rows[k][1];
-    status = {spaced(status.text), has_converged(comparison.methods[k]) ? Tone::Good : Tone::Bad};
-  }
+  for (size_t k = 0; k < table.rows.size(); ++k)
+    table.rows[k][1] = status_cell(standing(comparison.methods[k]));
   table.note =
       "In both directions: mean of the means, greater 95th percentile, greater maximum. Same vertex: of each "
       "vertex from itself. Shared with newton: the energy (or the loads alone), the contact, steps by "
@@ -46,11 +44,15 @@ PageTable distance_table(const Comparison& comparison) {
   return table;
 }
 
+// Its verdict; the doubts that every method shares stand in the lead and in the table.
+PageText message_of(const ComparedMethod& method) {
+  const Tone tone = tone_of(standing(method));
+  return {method.name + ": " + method.message, tone == Tone::Good ? Tone::Plain : tone};
+}
+
 PageList messages(const Comparison& comparison) {
   PageList list;
-  for (const ComparedMethod& method : comparison.methods)
-    list.items.push_back(
-        {method.name + ": " + method.message, has_converged(method) ? Tone::Plain : Tone::Bad});
+  for (const ComparedMethod& method : comparison.methods) list.items.push_back(message_of(method));
   return list;
 }
 
@@ -113,9 +115,7 @@ std::optional<ShapeView> shapes(const Comparison& comparison) {
   const Model& base = *all.back().model;
   std::optional<ShapeView> view =
       compared_view(all, all.size() - 1, "comparison", annulus_of(base) ? "Open ↔ closed" : "Start ↔ result");
-  const auto is_distance = [](const ViewField& field) { return field.title.starts_with("Distance"); };
-  std::stable_partition(view->fields.begin(), view->fields.end(), is_distance);
-  for (ViewField& field : view->fields)  // its distance to itself, so that the view does not open in grey
+  for (ViewField& field : view->fields)  // its distance to itself, so that it is not grey
     if (reference && field.title == kMethodDistance) field.values.back().setZero(base.mesh.vertex_count());
   return view;
 }
@@ -145,13 +145,15 @@ void add_accounts(const Comparison& comparison, Page& page) {
 
 std::string comparison_page(const Comparison& comparison) {
   Page page{.title = "Comparison of methods on " + comparison.scene_title};
-  page.lead = comparison.has_converged() ? "every method converged" : "not every method converged";
-  page.tone = comparison.has_converged() ? Tone::Good : Tone::Bad;
+  std::vector<Standing> states;
+  for (const ComparedMethod& method : comparison.methods) states.push_back(standing(method));
+  lead_with(page, comparison.has_converged() ? "every method converged" : "not every method converged",
+            states, comparison.has_converged());
   if (PageList said = warnings(comparison); !said.items.empty())
     page.sections.push_back({"Warnings", {std::move(said)}});
-  page.sections.push_back({"Distances", {messages(comparison), distance_table(comparison)}});
   if (const std::optional<ShapeView> view = shapes(comparison))
     page.sections.push_back({"Closed shapes", {shape_view_html(*view)}});
+  page.sections.push_back({"Distances", {messages(comparison), distance_table(comparison)}});
   page.sections.push_back({"Figures", {figure_table(comparison)}});
   page.sections.push_back({"Error and run time", {work_plot(comparison)}});
   add_accounts(comparison, page);

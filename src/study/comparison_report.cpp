@@ -4,6 +4,7 @@
 #include "formats/json/json_text.hpp"
 #include "formats/whole_file.hpp"
 #include "results/branches_json.hpp"
+#include "results/result_warnings.hpp"
 #include "results/study_files.hpp"
 #include "study/detail/comparison_json.hpp"
 
@@ -43,6 +44,7 @@ void add_result(const RunReport& run, OrderedJson& json) {
   json["status"] = std::string(status_name(result.status));
   json["converged"] = result.status == Status::Converged;
   json["status_message"] = result.message;
+  json["doubts"] = doubts(report);
   json["residual"] = number_json(result.residual);
   json["energy_mj"] = number_json(result.energy);
   json["stability"] = std::string(stability_name(result.certificate.stability.verdict));
@@ -84,6 +86,11 @@ std::optional<double> area_change(const Metrics& metrics) {
 DistanceFigures distance_of(const ReferenceDistance& distance) { return both_directions(distance); }
 
 }  // namespace
+
+Standing standing(const ComparedMethod& method) {
+  if (method.run) return standing(method.name, method.run->report);
+  return {method.name, "failed", method.message, {}};
+}
 
 OrderedJson gap_json(const MethodGap& gap) {
   OrderedJson json = gap.surfaces ? reference_json(*gap.surfaces) : OrderedJson::object();
@@ -136,6 +143,8 @@ Table comparison_table(std::span<const ComparedMethod> methods) {
                 {text_column("verdict"), along(&ComparedMethod::verdict, verdict_name)},
                 {text_column("shares_with_newton", "shares with newton"), &ComparedMethod::shares},
                 {text_column("status", "", 16), result(&Result::status, status_name)},
+                {text_column("doubts"),
+                 [](const ComparedMethod& method) { return joined_doubts(standing(method).doubts); }},
                 {{"residual", "", "", 3}, result(&Result::residual)},
                 {{"energy_mj", "energy", "mJ", 8, -1, 12}, result(&Result::energy)},
                 {{"iterations", "iterates"}, result(&Result::iterations)},

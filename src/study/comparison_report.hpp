@@ -2,12 +2,15 @@
 #pragma once
 
 #include "formats/table.hpp"
+#include "results/standing.hpp"
 #include "study/comparison.hpp"
 
 #include <span>
 #include <string>
 
 namespace coapt {
+
+Standing standing(const ComparedMethod& method);
 
 // The text of compare.json. Numbers that are not finite are null.
 std::string comparison_json(const Comparison& comparison);

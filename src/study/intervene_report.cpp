@@ -18,6 +18,7 @@ OrderedJson state_json(const std::optional<RunReport>& run) {
   return {{"status", std::string(status_name(result.status))},
           {"converged", result.status == Status::Converged},
           {"message", result.message},
+          {"doubts", doubts(run->report)},
           {"residual", number_json(result.residual)},
           {"iterations", result.iterations},
           {"wall_s", number_json(result.wall_s)},
@@ -48,9 +49,7 @@ PageList messages(const BeforeAfter& found) {
   PageList list;
   const auto add = [&](const char* name, const std::optional<RunReport>& run) {
     if (!run) return list.items.push_back({std::string(name) + ": not solved; it was cancelled", Tone::Bad});
-    const Result& result = run->report.result;
-    list.items.push_back({std::string(name) + ": " + result.message,
-                          result.status == Status::Converged ? Tone::Good : Tone::Bad});
+    list.items.push_back(message_line(standing(name, run->report)));
     for (const std::string& warning : result_warnings(run->report))
       list.items.push_back({std::string(name) + ": " + warning, Tone::Caution});
   };
@@ -81,8 +80,11 @@ std::string intervene_json(const BeforeAfter& found) {
 
 std::string intervene_page(const BeforeAfter& found) {
   Page page{.title = "Before and after: " + found.scene_title};
-  page.lead = found.has_converged() ? "both states converged" : "not both states converged";
-  page.tone = found.has_converged() ? Tone::Good : Tone::Bad;
+  std::vector<Standing> states;
+  if (found.before) states.push_back(standing("before", found.before->report));
+  if (found.after) states.push_back(standing("after", found.after->report));
+  lead_with(page, found.has_converged() ? "both states converged" : "not both states converged", states,
+            found.has_converged());
   page.sections.push_back({"Interventions", {what_was_done(found), messages(found)}});
   std::vector<ComparedShape> shapes;
   if (found.before) shapes.push_back({"before", &found.before->model, &found.before->report});

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "formats/mesh_io.hpp"
 #include "results/reference/registered_reference.hpp"
+#include "results/standing.hpp"
 #include "results/study_files.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/refine_scene.hpp"
@@ -23,6 +24,7 @@ MeshLevel solved_level(const Scene& scene, const SceneGeometry& geometry, const 
   const Fields fields = compute_fields(model, model.objective->positions(result.q));
   const Metrics metrics = measure(model, result.q, fields, checker);
   MeshLevel level;
+  level.doubts = doubts(model, result, fields, metrics);
   level.triangles = model.mesh.triangle_count();
   level.vertices = model.mesh.vertex_count();
   level.status = result.status;
@@ -89,6 +91,7 @@ Table level_table(std::span<const MeshLevel> levels) {
       levels, {{{"triangles"}, &MeshLevel::triangles},
                {{"vertices"}, &MeshLevel::vertices},
                {text_column("status", "", 9), along(&MeshLevel::status, status_name)},
+               {text_column("doubts"), along(&MeshLevel::doubts, joined_doubts)},
                {{"residual", "", "", 2}, &MeshLevel::residual},
                {{"iterations"}, &MeshLevel::iterations},
                {{"wall_s", "wall", "s", 4, 2}, &MeshLevel::wall_s},
@@ -114,6 +117,7 @@ void write_mesh_study(const std::filesystem::path& folder, const MeshStudy& stud
     json["levels"].push_back({{"triangles", level.triangles},
                               {"vertices", level.vertices},
                               {"status", std::string(status_name(level.status))},
+                              {"doubts", level.doubts},
                               {"residual", number_json(level.residual)},
                               {"iterations", level.iterations},
                               {"wall_s", level.wall_s},

@@ -18,7 +18,8 @@ namespace coapt {
 struct MeshLevel {
   int triangles = 0, vertices = 0;
   Status status = Status::Stalled;
-  double residual = 0;  // relative
+  std::vector<std::string> doubts = {};  // see doubts() in result_warnings.hpp
+  double residual = 0;                   // relative
   int iterations = 0;
   double wall_s = 0, cpu_s = 0;  // of the solve, from the scene's own start
   long intersections = 0;

@@ -162,9 +162,15 @@ PointResult point_result(const StudyPoint& point, const RunReport& run) {
                    result.residual,
                    result.iterations,
                    result.wall_s,
+                   {},
                    {}};
   for (const MetricRow& row : metric_rows(run.report.metrics)) kept.metrics.emplace_back(row.name, row.value);
+  kept.doubts = doubts(run.report);
   return kept;
+}
+
+Standing standing(const PointResult& result) {
+  return {"point " + std::to_string(result.number), result.status, result.message, result.doubts};
 }
 
 PointResult refused_point(const StudyPoint& point, const std::string& message) {
@@ -190,6 +196,7 @@ void write_point(const std::filesystem::path& folder, const PointResult& result)
                       {"key", result.key},
                       {"status", result.status},
                       {"message", result.message},
+                      {"doubts", result.doubts},
                       {"residual", number_json(result.residual)},
                       {"iterations", result.iterations},
                       {"wall_s", number_json(result.wall_s)},
@@ -214,7 +221,8 @@ std::optional<PointResult> read_point(const std::filesystem::path& folder, const
                        number(json.at("residual")),
                        count_of(json.at("iterations").get<double>()),
                        number(json.at("wall_s")),
-                       {}};
+                       {},
+                       json.at("doubts").get<std::vector<std::string>>()};
     for (const auto& [name, value] : json.at("metrics").items())
       result.metrics.emplace_back(name, value.is_null() ? std::nullopt : std::optional(value.get<double>()));
     return result;

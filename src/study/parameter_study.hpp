@@ -6,6 +6,7 @@
 
 #include "formats/table.hpp"
 #include "report/shape_view.hpp"
+#include "results/standing.hpp"
 #include "run/run.hpp"
 
 #include <filesystem>
@@ -50,10 +51,14 @@ struct PointResult {
   int iterations = 0;
   double wall_s = 0;
   std::vector<std::pair<std::string, std::optional<double>>> metrics;  // by name, in the order of metric_rows
+  std::vector<std::string> doubts = {};                                // see doubts() in result_warnings.hpp
 
   bool has_converged() const { return status == status_name(Status::Converged); }
   std::optional<double> metric(const std::string& name) const;
 };
+
+// Under the name "point 7".
+Standing standing(const PointResult& result);
 
 PointResult point_result(const StudyPoint& point, const RunReport& run);
 PointResult refused_point(const StudyPoint& point, const std::string& message);

@@ -39,6 +39,7 @@ OrderedJson as_json(const ParameterStudy& study) {
                          {"values", OrderedJson::object()},
                          {"status", result.status},
                          {"message", result.message},
+                         {"doubts", result.doubts},
                          {"residual", number_json(result.residual)},
                          {"iterations", result.iterations},
                          {"wall_s", number_json(result.wall_s)},
@@ -48,6 +49,12 @@ OrderedJson as_json(const ParameterStudy& study) {
     json["points"].push_back(std::move(point));
   }
   return json;
+}
+
+std::vector<Standing> standings(const ParameterStudy& study) {
+  std::vector<Standing> all;
+  for (const PointResult& result : study.results) all.push_back(standing(result));
+  return all;
 }
 
 std::vector<std::string> shown_metrics(const ParameterStudy& study) {
@@ -77,12 +84,8 @@ PageTable page_points(const ParameterStudy& study) {
   for (size_t k = 0; k < metrics.size(); ++k)
     table.columns[columns.size() - metrics.size() + k].title = metric_title(row_of(metrics[k]));
   const std::vector<size_t> order = ranked(study);
-  for (size_t k = 0; k < order.size(); ++k) {
-    const PointResult& result = study.results[order[k]];
-    PageCell& status = table.rows[k][1 + study.sweeps.size()];
-    status.tone = result.has_converged() ? Tone::Good : Tone::Bad;
-    if (!result.has_converged()) status.remark = result.message;
-  }
+  for (size_t k = 0; k < order.size(); ++k)
+    table.rows[k][1 + study.sweeps.size()] = status_cell(standing(study.results[order[k]]));
   return table;
 }
 
@@ -151,6 +154,8 @@ Table point_table(const ParameterStudy& study) {
     columns.push_back({text_column(study.sweeps[k].path),
                        of_result([k](const PointResult& result) { return result.values[k]; })});
   columns.push_back({text_column("status"), of_result(&PointResult::status)});
+  columns.push_back({text_column("doubts"),
+                     of_result([](const PointResult& result) { return joined_doubts(result.doubts); })});
   columns.push_back({{"residual"}, of_result(&PointResult::residual)});
   columns.push_back({{"iterations"}, of_result(&PointResult::iterations)});
   columns.push_back({{"wall_s"}, of_result(&PointResult::wall_s)});
@@ -165,9 +170,10 @@ std::string parameter_study_json(const ParameterStudy& study) { return json_text
 
 std::string parameter_study_page(const ParameterStudy& study) {
   Page page{.title = "Study of " + study.scene_title};
-  page.lead = std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
-              (study.has_converged() ? ", all converged" : "; not every point converged");
-  page.tone = study.has_converged() ? Tone::Good : Tone::Bad;
+  lead_with(page,
+            std::to_string(study.results.size()) + " of " + std::to_string(study.point_count) + " points" +
+                (study.has_converged() ? ", all converged" : "; not every point converged"),
+            standings(study), study.has_converged());
   if (study.shapes) page.sections.push_back({"Shapes", {shape_view_html(*study.shapes)}});
   page.sections.push_back({"Points", {page_points(study)}});
   PageSection plots{"Figures", {}};

@@ -96,9 +96,13 @@ OrderedJson metrics_json(const ChordTuning& found) {
 
 OrderedJson state_json(const RunReport& run) {
   const Result& result = run.report.result;
-  return {{"status", std::string(status_name(result.status))}, {"message", result.message},
-          {"residual", number_json(result.residual)},          {"iterations", result.iterations},
-          {"folder", run.folder.filename().string()},          {"warnings", run.report.warnings}};
+  return {{"status", std::string(status_name(result.status))},
+          {"message", result.message},
+          {"doubts", doubts(run.report)},
+          {"residual", number_json(result.residual)},
+          {"iterations", result.iterations},
+          {"folder", run.folder.filename().string()},
+          {"warnings", run.report.warnings}};
 }
 
 PageTable figure_table(const ChordTuning& found) {
@@ -228,9 +232,16 @@ PageTable spectrum_table(const ChordTuning& found) {
   return page;
 }
 
+// Of what was found: the untuned state where there is no other.
+std::vector<Standing> standings(const ChordTuning& found) {
+  if (found.after) return {standing("after", found.after->report)};
+  return {standing("before", found.before.report)};
+}
+
 PageList messages(const ChordTuning& found) {
   PageList list;
-  list.items.push_back({found.tuning.message, found.has_converged() ? Tone::Good : Tone::Caution});
+  const bool is_plain = found.has_converged() && doubts_in_words(standings(found)).empty();
+  list.items.push_back({found.tuning.message, is_plain ? Tone::Good : Tone::Caution});
   list.items.push_back({std::to_string(found.solves) + " solves by " + found.method + " in " +
                         page_number(found.seconds) + " s, " + std::to_string(found.tuning.failed) +
                         " of them rejected because they did not converge"});
@@ -248,9 +259,9 @@ PageList messages(const ChordTuning& found) {
                               "another; no length counts as determined",
                           Tone::Caution});
   const auto add = [&](const char* name, const RunReport& run) {
-    const Result& result = run.report.result;
-    list.items.push_back({std::string(name) + ": " + result.message,
-                          result.status == Status::Converged ? Tone::Plain : Tone::Bad});
+    PageText line = message_line(standing(name, run.report));
+    if (line.tone == Tone::Good) line.tone = Tone::Plain;
+    list.items.push_back(std::move(line));
     for (const std::string& warning : result_warnings(run.report))
       list.items.push_back({std::string(name) + ": " + warning, Tone::Caution});
   };
@@ -345,10 +356,11 @@ std::string chord_tuning_json(const ChordTuning& found) {
 
 std::string chord_tuning_page(const ChordTuning& found) {
   Page page{.title = "Chord lengths of " + found.scene_title};
-  page.lead = spaced(tuning_status_name(found.tuning.status)) + ": cost " +
-              page_number(found.tuning.cost_before) + " before, " + page_number(found.tuning.cost_after) +
-              " after";
-  page.tone = found.has_converged() ? Tone::Good : Tone::Caution;
+  lead_with(page,
+            spaced(tuning_status_name(found.tuning.status)) + ": cost " +
+                page_number(found.tuning.cost_before) + " before, " + page_number(found.tuning.cost_after) +
+                " after",
+            standings(found), found.has_converged(), Tone::Caution);
   page.sections.push_back({"Tuning", {messages(found)}});
   std::vector<ComparedShape> shapes = {{"before", &found.before.model, &found.before.report}};
   if (found.after) shapes.push_back({"after", &found.after->model, &found.after->report});

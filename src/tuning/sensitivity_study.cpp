@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "results/reference/registered_reference.hpp"
+#include "results/standing.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
@@ -70,7 +71,7 @@ class Study {
   Study(const SceneGeometry& geometry, const SolveSetup& setup, Model model)
       : geometry_(geometry), setup_(setup), model_(std::move(model)) {}
 
-  SensitivityRun solve_first(const Scene& scene) {
+  SensitivityRun solve_first(const Scene& scene, const IntersectionChecker& checker) {
     const double start = wall_seconds();
     Result result = solve_scene(scene, geometry_, model_, setup_).result;
     q_ = result.q;
@@ -78,8 +79,13 @@ class Study {
     surface_ = surface_at(model_, x_);
     SensitivityRun run = measured(1, result, model_, surface_);
     run.wall_s = wall_seconds() - start;
+    const Fields fields = compute_fields(model_, x_);
+    doubts_ = doubts(model_, result, fields, measure(model_, q_, fields, checker));
     return run;
   }
+
+  // Of the first solution.
+  const std::vector<std::string>& doubts_of_first() const { return doubts_; }
 
   SensitivityRun solve(const Scene& scene, double factor, bool starts_anew) const {
     const double start = wall_seconds();
@@ -147,6 +153,7 @@ class Study {
   Vector q_;  // of the first solution
   Points x_;
   TriangleMesh surface_;
+  std::vector<std::string> doubts_;
   std::unique_ptr<TrackedEquilibrium> equilibrium_;
 };
 
@@ -226,7 +233,8 @@ SensitivityStudy study_sensitivity(const Scene& scene, const SolverTable& solver
                  study.left_out);
 
   Study solution(geometry, setup, std::move(model));
-  study.base = solution.solve_first(scene);
+  study.base = solution.solve_first(scene, run.checker);
+  study.doubts = solution.doubts_of_first();
   study.is_cancelled = study.base.status == Status::Cancelled;
   std::string message;
   if (study.base.status == Status::Converged && !study.perturbation) try {

@@ -62,6 +62,7 @@ struct SensitivityStudy {
   std::optional<double> perturbation;  // of finite changes; empty: derivatives
   bool starts_anew = false;
   SensitivityRun base;
+  std::vector<std::string> doubts;               // of the first solve, see doubts() in result_warnings.hpp
   std::vector<ParameterSensitivity> parameters;  // fewer than wanted where the study was cancelled
   std::vector<std::string> left_out;  // parameters nobody named that cannot be varied so: why, by sentence
   bool is_cancelled = false;

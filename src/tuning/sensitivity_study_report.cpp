@@ -63,6 +63,7 @@ void write_sensitivity(const std::filesystem::path& folder, const SensitivityStu
                       {"start", study.starts_anew ? "own" : "first solution"},
                       {"converged", study.has_converged()},
                       {"cancelled", study.is_cancelled},
+                      {"doubts", study.doubts},
                       {"left_out", study.left_out},
                       {"wall_s", number_json(study.wall_s)},
                       {"first", run_json(study.base)},

@@ -1,6 +1,7 @@
 #include "tuning/tracked_scene.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "run/run_parts.hpp"
 #include "scene/build/build_parts.hpp"
@@ -149,6 +150,23 @@ std::unique_ptr<Parameter> of_term(const std::string& name, const std::string& w
   return stiffness(name, scene, model, term, what == "thickness");
 }
 
+// By the key of the scene file, which studies say: TERM.length_scale and TERM.value of a pressure. Null for
+// any other name.
+std::unique_ptr<Parameter> of_scene_key(const std::string& name, const std::string& what, const Scene& scene,
+                                        const Model& model, EnergyTerm& term) {
+  const auto spec = std::find_if(scene.terms.begin(), scene.terms.end(),
+                                 [&](const TermSpec& each) { return each.name == term.name(); });
+  if (spec == scene.terms.end()) return nullptr;
+  const std::vector<std::string> own = names_of(term);
+  if (what == "value" && contains(own, "pressure"))
+    return make_pressure_value(name, term, spec->parameters.text("side") == "back" ? 1 : -1);
+  if (what != "length_scale" || !contains(own, "length") || !spec->parameters.has(what)) return nullptr;
+  if (const double given = spec->parameters.number(what); given != 1)
+    throw InputError("parameter \"" + name + "\": the scene has " + number_text(given) + " there; name \"" +
+                     term.name() + ".length\", a factor on the lengths that follow from it");
+  return of_term(name, "length", scene, model, term);
+}
+
 std::unique_ptr<Parameter> of_set(const std::string& name, const std::string& what,
                                   const TrackedScene& tracked, const std::vector<int>& nodes) {
   const Objective& objective = *tracked.model.objective;
@@ -212,11 +230,13 @@ std::unique_ptr<Parameter> make_named_parameter(const std::string& name, const S
                                                 const TrackedScene& tracked) {
   const std::vector<std::string> known = parameter_names(tracked);
   const auto [object, what] = halves(name);
+  EnergyTerm* term = find_term(*tracked.model.objective, object);
+  if (term != nullptr && !contains(known, name))
+    if (auto parameter = of_scene_key(name, what, scene, tracked.model, *term)) return parameter;
   const bool is_rest = what == "rest" && tracked.model.sets.contains(object);  // why not, it says itself
   if (!contains(known, name) && !is_rest)
     throw InputError("parameter \"" + name + "\": is not known" + suggestion(name, known) +
                      "; this scene has: " + listed(known));
-  EnergyTerm* term = find_term(*tracked.model.objective, object);
   if (term != nullptr && contains(names_of(*term), what))
     return of_term(name, what, scene, tracked.model, *term);
   if (term != nullptr && contains(tracked.numbers->keys_of(*term, *tracked.model.objective), what))

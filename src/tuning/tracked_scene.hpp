@@ -54,11 +54,12 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
 //                    width [rad]; first 1, 1, 1, 0. Its axes are the principal ones of the nodes.
 //   SET.rest         coordinates of nodes in the rest shape [mm], for membranes of triangles and hinges; not
 //                    where there are springs
-// Positions are relative to the model's origin. Throws InputError for any other name, listing those there
-// are, and for a parameter that the term or the nodes do not have. Which of them go together is the
-// equilibrium's to say (TrackedEquilibrium::add): TERM.KEY makes the elements anew from the scene and does
-// not go with `stiffness` and `thickness` of the same cable, or of any membrane where it is no cable, nor
-// then with SET.rest.
+// Also by the keys of the scene file: TERM.length_scale is TERM.length (where the scene's is 1), TERM.value
+// of a pressure is the scene's, minus TERM.pressure where it acts on the front. Positions are relative to the
+// model's origin. Throws InputError for any other name, listing those there are, and for a parameter that the
+// term or the nodes do not have. Which of them go together is the equilibrium's to say
+// (TrackedEquilibrium::add): TERM.KEY makes the elements anew from the scene and does not go with `stiffness`
+// and `thickness` of the same cable, or of any membrane where it is no cable, nor then with SET.rest.
 std::unique_ptr<Parameter> make_named_parameter(const std::string& name, const Scene& scene,
                                                 const TrackedScene& tracked);
 

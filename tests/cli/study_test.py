@@ -136,6 +136,14 @@ class StudyTest(unittest.TestCase):
             self.assertAlmostEqual(run["distance_to_reference"]["mean_mm"], run["distance_to_base"]["mean_mm"], places=6)
         self.assertLess(abs(parameter["error_change_mm_per_100_percent"]), parameter["movement_mm_per_100_percent"])
 
+    def test_names_of_followed_equilibria_are_taken_too(self):
+        scene = self.valve()
+        _, found, _ = self.study("sensitivity", scene, "--parameters", "chords.length", "load_pressure.pressure")
+        _, keys, _ = self.study("sensitivity", scene, "--parameters", "chords.length_scale", "load_pressure.value")
+        for here, there in zip(found["parameters"], keys["parameters"], strict=True):
+            self.assertEqual(here["name"], there["name"])  # the key of the scene
+            self.assertEqual(here["movement_mm_per_100_percent"], there["movement_mm_per_100_percent"])
+
     def test_says_which_solves_did_not_converge(self):
         scene = self.valve()
         scene.write_text(scene.read_text().replace('"solver": {', '"solver": {"max_iterations": 17, '))

@@ -105,6 +105,22 @@ def test_a_state_without_energy_is_not_admissible():
     assert pushed.success and -1 < pushed.x[:, 2].min() < -0.5
 
 
+def test_energies_without_names_join_each_other():
+    V, F = disc(5)
+    E = edges(F)
+    unnamed = [coapt.energy(RUBBER, F, X=V, mu=0.33, h=0.1),
+               coapt.energy(CORD, E, t=0.002, r=0.9 * np.linalg.norm(V[E[:, 1]] - V[E[:, 0]], axis=1), rho=1)]
+    found = coapt.minimize(V, F, [*unnamed, PRESSURE], fixed="boundary", tol=1e-10)
+    assert found.success and list(found.energies)[-2:] == ["energy", "energy_2"] and min(found.energies["energy"], found.energies["energy_2"]) > 0
+    named = coapt.minimize(V, F, [rubber(V, F), cords(V, F), PRESSURE], fixed="boundary", tol=1e-10)
+    assert np.abs(found.x - named.x).max() < 1e-12
+    assert [term.name for term in unnamed] == ["energy", "energy"]  # they are the caller's
+    eq = coapt.Equilibrium.of(V, F, [*unnamed, PRESSURE], ["load_pressure.pressure"], fixed="boundary")
+    assert pickle.loads(pickle.dumps(eq)).solve().success
+    with pytest.raises(coapt.InputError, match='term "cords": another term has this name too'):
+        coapt.minimize(V, F, [rubber(V, F), cords(V, F), cords(V, F), PRESSURE], fixed="boundary")
+
+
 def test_energies_join_an_equilibrium_and_pickle():
     V, F = disc(3)
     eq = coapt.Equilibrium.of(V, F, [rubber(V, F), PRESSURE], ["load_pressure.pressure"], fixed="boundary")

@@ -64,6 +64,23 @@ def test_parameters_have_their_shapes_and_come_back_to_the_bit(eq):
     eq.value_and_grad(MeanSquare())  # still solved: nothing has changed
 
 
+def test_keys_of_the_scene_are_names_too():
+    eq = followed(["chords.length_scale", "load_pressure.value"], tol=1e-9)
+    other = followed(["chords.length", "load_pressure.pressure"], tol=1e-9)
+    assert eq["chords.length_scale"] == pytest.approx(1)
+    assert eq["load_pressure.value"][0] == pytest.approx(120 * 133.322e-6, rel=1e-5)
+    assert other["load_pressure.pressure"][0] == pytest.approx(-eq["load_pressure.value"][0], rel=1e-12)
+    change = np.array([0.01, 1e-4])
+    assert np.abs(eq.response(change) - other.response(change * [1, -1])).max() < 1e-8 < np.abs(eq.response(change)).max()
+    for this, name, sign in ((eq, "load_pressure.value", 1), (other, "load_pressure.pressure", -1)):
+        this[name] = sign * 1.02 * abs(this[name])
+        assert this.solve().success
+    assert np.abs(eq.x - other.x).max() < 1e-6
+    with pytest.raises(coapt.InputError, match="keep its sign"):
+        eq["load_pressure.value"] = -0.01
+        eq.solve()
+
+
 def test_places_are_those_of_the_input():
     eq = coapt.Equilibrium(scene_file(), ["annulus.positions", "free_edge.rest", "chords.lengths"])
     annulus = eq.sets["annulus"]
@@ -107,6 +124,15 @@ def test_a_warm_solve_is_a_few_steps():
             travel.append((warm.travel, warm.predicted))
     assert np.min(np.max(travel, axis=0)) > 0.01
     assert np.median(steps) <= 5 and max(steps) < 15, steps  # more where a kink is on the way
+
+
+def test_a_warm_solve_counts_its_switches_where_it_is_shown(fresh):
+    eq, start = fresh
+    eq.value = start * 1.02
+    warm = eq.solve()
+    assert warm.switched and all(isinstance(each, coapt.Switch) for each in warm.switched)
+    assert f"switched=<{len(warm.switched)} of Switch>" in repr(warm)
+    assert "message=" in repr(warm) and "Switch(" not in repr(warm) and len(repr(warm)) < 800
 
 
 def test_derivatives_are_those_of_differences(fresh):

@@ -98,6 +98,24 @@ def test_warnings_come_first_and_texts_are_quoted(dome):
     assert "NOT converged" in html and html.index("a &lt; b &amp;") < html.index("<img")
 
 
+def test_a_valve_that_stands_open_is_not_shown_as_plainly_converged(tmp_path):
+    file = coapt.generate_mitral(tmp_path, triangles=200, preset="benchmark")
+    text = file.read_text()
+    file.write_text(text.replace('"side": "front"', '"side": "back"'))
+    assert file.read_text() != text
+    wide = coapt.solve(file)
+    assert wide.success and any("the valve stands open" in doubt for doubt in wide.doubts)
+    for shown in (repr(wide), wide._repr_html_(), wide.headline):
+        assert "the valve stands open" in shown
+    assert "color:#8a5200" in wide._repr_html_()
+    again = pickle.loads(pickle.dumps(wide))
+    assert again.doubts == wide.doubts and again.headline == wide.headline
+
+
+def test_a_plain_result_has_no_doubts(dome):
+    assert dome.doubts == [] and dome.headline == dome.message and "color" not in dome._repr_html_().split("<img")[0]
+
+
 def test_without_matplotlib_the_figures_are_there(dome, monkeypatch):
     for name in [name for name in sys.modules if name.split(".")[0] == "matplotlib"]:
         monkeypatch.setitem(sys.modules, name, None)

@@ -310,6 +310,21 @@ await run("axes are logarithmic where values span decades, and no point is lost"
   assert.ok(await page.getByText("1 point is zero: it stands as an open triangle").isVisible());
   await closed();
 });
+await run("a decade far below the others has its number, not zero", async () => {
+  const { page, closed } = await opened(join(scratch, "sample"), {}, () => {
+    window.drawn = [];
+    const fill = CanvasRenderingContext2D.prototype.fillText;
+    CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+      window.drawn.push({ text, x, chart: this.canvas.closest?.(".chart")?.getAttribute("aria-label") ?? "" });
+      fill.call(this, text, x, y);
+    };
+  });
+  await assertChartsAreDrawn(page, 7);
+  const drawn = (await page.evaluate(() => window.drawn)).filter(({ chart }) => chart.startsWith("Zeros"));
+  const upright = drawn.find(({ text }) => /^10⁻/.test(text))?.x, texts = drawn.filter(({ x }) => x === upright).map(({ text }) => text);
+  assert.ok(texts.some(text => /^10⁻[⁶⁷⁸⁹]$/.test(text)) && !texts.includes("0"), texts.join(", "));
+  await closed();
+});
 await run("the pointer shows the values of a point, and the key what its marks mean", async () => {
   const { page, closed } = await opened(join(scratch, "sample"));
   const figure = page.locator("figure.plot").first(), tip = figure.locator(".tip");
@@ -350,6 +365,31 @@ await run("pages of compare, bench, study, tune and stress work as that of solve
     if (charts > 0) await assertChartsAreDrawn(page, charts);
     await closed();
   }
+});
+await run("pages open on stress with the slider in sight, and a change shows where zero is", async () => {
+  const edit = '{"type": "ring", "size": "28 mm", "stiffness": "flexible"}';
+  const before = written("intervene.html", join(scratch, "mitral", "scene.json"), "intervene", "--edit", edit);
+  for (const place of [folder, join(scratch, "compare", "compare.html"), join(scratch, "bench", "bench.html")])
+    for (const [width, height] of [[1200, 800], [390, 844]]) {
+      const { page, closed } = await opened(place, { viewport: { width, height } });
+      const box = await page.locator("#slider").boundingBox();
+      assert.ok(box.y + box.height <= height, `${place}, ${width} px: the slider ends at ${box.y + box.height}`);
+      assert.equal(await page.locator("#legends .title").first().textContent(), "Greater principal Cauchy stress [kPa]");
+      await closed();
+    }
+  const { page, closed } = await opened(before, { viewport: { width: 390, height: 844 } });
+  assert.match(await page.locator("#legends .title").first().textContent(), /^Change of greater principal Cauchy stress/);
+  const ends = (await page.locator("#legends .scale").first().locator("span").allTextContents()).map(Number);
+  assert.ok(ends.at(-1) > 0 && ends[0] === -ends.at(-1), "ends: " + ends);
+  const change = page.getByRole("table", { name: /^Every figure/ }).getByRole("columnheader").last(), { x, width } = await change.boundingBox();
+  assert.ok(x + width <= 390, "the change ends at " + (x + width));
+  await closed();
+});
+await run("what a telephone scrolls to makes no row high", async () => {
+  const { page, closed } = await opened(folder, { viewport: { width: 390, height: 844 } });
+  const heights = await page.getByRole("table", { name: /^A healthy closure/ }).getByRole("row").evaluateAll(rows => rows.map(row => row.offsetHeight));
+  assert.ok(heights.length > 2 && Math.max(...heights) < 110, heights.join(", "));
+  await closed();
 });
 await run("10,000 triangles take less than 5 MB", async () => {
   // The valve's with chords, contact and orifices, some iterates into its closure.

@@ -149,7 +149,9 @@ def split_terms(terms: Sequence[Any], defects: Defects) -> tuple[list[Mapping[st
             role = getattr(term, "role", "internal")
             if role not in ("internal", "load", "contact"):
                 defects.append(f"terms[{k}].role: is {role!r}; expected \"internal\", \"load\" or \"contact\"")
-            own.append(term)
+            # An energy without a name of its own gets one that differs from those before it.
+            named_among = getattr(term, "named_among", None)
+            own.append(term if named_among is None else named_among([getattr(other, "name", "") for other in own]))
         else:
             defects.append(f"terms[{k}]: is a {type(term).__name__}; expected a dict with the keys of docs/scene.md, or "
                            "an object with value(x) and gradient(x)")

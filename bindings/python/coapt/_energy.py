@@ -1,8 +1,10 @@
 """Energies from expressions: exact derivatives by SymPy, evaluated by NumPy for all elements at once."""
 from __future__ import annotations
 
+import copy
 import functools
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from ._terms import Term
 Array = npt.NDArray[np.float64]
 
 
-def energy(expression: Any, elements: npt.ArrayLike, *, name: str = "energy", role: str = "internal",
+def energy(expression: Any, elements: npt.ArrayLike, *, name: str | None = None, role: str = "internal",
            **data: npt.ArrayLike) -> Energy:
     """An energy of one's own from its formula for one element, with exact gradient and Hessian.
 
@@ -32,7 +34,7 @@ def energy(expression: Any, elements: npt.ArrayLike, *, name: str = "energy", ro
             Functions: sqrt, exp, log, sin, ..., min, max, abs, where(condition, a, b); of vectors and matrices norm,
             dot, cross, gram, columns, det, inverse, trace, transpose. Lines `NAME = ...` may stand before it.
         elements: node numbers of each element, whole numbers of shape (m, k).
-        name: unique among the terms.
+        name: unique among the terms; default: "energy", and of the further ones in a list of terms "energy_2", ...
         role: "internal", "load" or "contact", as of `Term`.
         data: by name a number, or numbers for each element: (m,), vectors (m, rows) or matrices (m, rows, columns).
             `X`, the reference positions of all nodes (n, 3) [mm], gives X0, X1, ... of each element.
@@ -51,9 +53,10 @@ def energy(expression: Any, elements: npt.ArrayLike, *, name: str = "energy", ro
 class Energy(Term):
     """What `coapt.energy` gives: a term with `value`, `gradient` and `hessian`. It pickles."""
 
-    def __init__(self, expression: Any, elements: npt.ArrayLike, *, name: str, role: str,
+    def __init__(self, expression: Any, elements: npt.ArrayLike, *, name: str | None, role: str,
                  data: Mapping[str, npt.ArrayLike]) -> None:
-        self.name, self.role = name, role
+        self.name, self.role = name or "energy", role
+        self._given_name = name
         self._nodes = _element_array(elements)
         self.elements = self._nodes
         self.data = {key: _data_array(key, value, len(self._nodes)) for key, value in data.items()}
@@ -68,7 +71,15 @@ class Energy(Term):
         self._fixed = self._compiled.constants([column for _, column in columns])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (self._written, self._nodes, self.name, self.role, self.data)
+        return _again, (self._written, self._nodes, self._given_name, self.role, self.data)
+
+    def named_among(self, taken: Container[str]) -> Energy:
+        """This term, or one that shares all with it, under a name that is not taken, where the caller gave it none."""
+        if self._given_name is not None or self.name not in taken:
+            return self
+        again = copy.copy(self)
+        again.name = next(name for k in itertools.count(2) if (name := f"{self.name}_{k}") not in taken)
+        return again
 
     def __repr__(self) -> str:
         return f"<coapt.Energy {self.name!r}: {len(self._nodes)} elements of {self._nodes.shape[1]} nodes>"
@@ -122,7 +133,7 @@ class Energy(Term):
         return columns
 
 
-def _again(expression: Any, elements: Any, name: str, role: str, data: Mapping[str, Any]) -> Energy:
+def _again(expression: Any, elements: Any, name: str | None, role: str, data: Mapping[str, Any]) -> Energy:
     return Energy(expression, elements, name=name, role=role, data=data)
 
 

@@ -42,6 +42,8 @@ class Equilibrium:
         SET.shift: one displacement of all of them, (3,) [mm].
         SET.ring: factors on the two widths and the height of the ring through them, and a tilt [rad], (4,).
         SET.rest: places of nodes in the rest shape, (n, 3) [mm].
+    Keys of the scene file that `coapt sensitivity` and `coapt study` take are names too: TERM.length_scale for
+    TERM.length, and TERM.value for a pressure as the scene has it, against the normals where it acts on the front.
     All numbers of all parameters stand in one vector too, parameter after parameter, coordinates node after node.
     Positions are in the coordinates of the input.
 

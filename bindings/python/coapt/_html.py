@@ -16,13 +16,13 @@ _UNITS = {"mm": "mm", "mm2": "mm²", "mm3": "mm³", "n": "N", "kpa": "kPa", "per
 
 
 def of_result(result: Result) -> str:
-    """HTML of a result: warnings first, the picture, and the figures that its scene defines."""
+    """HTML of a result: what is in doubt and warnings first, the picture, and the figures that its scene defines."""
     rows = [("energy", f"{_number(result.fun)} mJ"), ("residual", f"{result.residual:.2e}"), ("iterations", str(result.nit)),
             ("time", f"{result.seconds:.2f} s"), ("stability", str(result.certificate.get("stability", "")).replace("_", " ")),
             ("mesh", f"{result.x.shape[0]} nodes, {result.faces.shape[0]} triangles, {result.lines.shape[0]} lines")]
     figures = [_figure(name, value) for name, value in result.metrics.items() if isinstance(value, (int, float))]
-    return _page(result.message if result.success else f"NOT converged: {result.message}", result.warnings, rows, figures,
-                 picture(result))
+    title = result.headline if result.success else f"NOT converged: {result.message}"
+    return _page(title, result.warnings, rows, figures, picture(result), result.success and bool(result.doubts))
 
 
 def of_equilibrium(equilibrium: Equilibrium) -> str:
@@ -59,10 +59,11 @@ def _number(value: Any) -> str:
 
 
 def _page(title: str, warnings: Sequence[str], rows: Sequence[tuple[str, str]], figures: Sequence[tuple[str, str]],
-          image: str) -> str:
+          image: str, is_in_doubt: bool = False) -> str:
     told = "".join(f"<p><b>Warning:</b> {html.escape(warning)}</p>" for warning in warnings)
     more = f"<details><summary>{len(figures)} figures</summary>{_table(figures)}</details>" if figures else ""
-    return f"<div><p><b>{html.escape(title)}</b></p>{told}{image}{_table(rows)}{more}</div>"
+    colour = ' style="color:#8a5200"' if is_in_doubt else ""
+    return f"<div><p{colour}><b>{html.escape(title)}</b></p>{told}{image}{_table(rows)}{more}</div>"
 
 
 def _table(rows: Sequence[tuple[str, str]]) -> str:

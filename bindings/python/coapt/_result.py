@@ -63,6 +63,8 @@ class Result(dict[str, Any]):
     #: (energy, stability, metrics of each, this one first), `others` (range of each metric over the others), `spread`
     #: (n,) greatest distance of each node from its place in them [mm]; else None
     warnings: list[str]  #: whole sentences
+    doubts: list[str]  #: why a converged run is no plain result, clauses: the valve stands open, its stability is in doubt, ...
+    headline: str  #: the first line that the command prints: `message`, and the doubts that it does not tell
     seconds: float  #: wall time of the solver [s]
     library_seconds: float  #: wall time of reading, building, solving and measuring [s]
     document: dict[str, Any]  #: all of result.json (schema/result.schema.json)
@@ -77,7 +79,7 @@ class Result(dict[str, Any]):
         return [*super().__dir__(), *self]
 
     def __repr__(self) -> str:
-        return (f"<coapt.Result: {self.message}; energy {self.fun:.8g} mJ, {self.nit} iterations, "
+        return (f"<coapt.Result: {self.headline}; energy {self.fun:.8g} mJ, {self.nit} iterations, "
                 f"{self.x.shape[0]} nodes, {self.faces.shape[0]} triangles>")
 
     def _repr_html_(self) -> str:
@@ -122,5 +124,6 @@ def result_of(solution: _core.Solution) -> Result:
         metrics=document["metrics"], certificate=document["certificate"], residual=document["residual"],
         reactions=solution.reactions, energies={term["name"]: term["energy_mj"] for term in document["terms"]},
         vertex_count=document["mesh"]["vertices"], faces=solution.faces, lines=solution.lines, fields=solution.fields,
-        undetermined=solution.undetermined, branches=branches, warnings=document["warnings"], seconds=document["time"]["wall_s"],
+        undetermined=solution.undetermined, branches=branches, warnings=document["warnings"],
+        doubts=document["doubts"], headline=document["headline"], seconds=document["time"]["wall_s"],
         library_seconds=solution.seconds, document=document)

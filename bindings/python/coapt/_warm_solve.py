@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 from ._result import Status
@@ -66,6 +66,11 @@ class WarmSolve:
     anchor: AnchorCheck | None = None  #: where it was time for one: every 20 warm steps
     #: what has another state than in the shape solved before: on the way between the two derivatives may have kinks
     switched: Sequence[Switch] = ()
+
+    def __repr__(self) -> str:
+        """Switches are counted: there may be hundreds."""
+        parts = [f"{field.name}={getattr(self, field.name)!r}" for field in fields(self) if field.name != "switched"]
+        return f"WarmSolve({', '.join(parts)}, switched=<{len(self.switched)} of Switch>)"
 
 
 def warm_solve(found: dict[str, Any]) -> WarmSolve:

@@ -54,6 +54,8 @@ void print_summary(const Benchmark& bench) {
   std::printf("\n");
   for (const std::string& missing : missing_equilibria(bench))
     std::printf("  warning: %s\n", missing.c_str());
+  if (const std::string doubted = doubts_of_shown(bench); !doubted.empty())
+    std::printf("  %s\n", doubted.c_str());
   for (const std::string& other : other_equilibria(bench)) std::printf("  %s\n", other.c_str());
   for (const BenchMesh& mesh : bench.meshes)
     if (mesh.order) std::printf("  observed order at %s: %.2f\n", mesh_text(mesh).c_str(), *mesh.order);

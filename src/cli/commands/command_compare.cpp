@@ -40,6 +40,9 @@ void print_method(const ComparedMethod& method, bool has_closed, RowPrinter& pri
       wrapped((method.run ? "" : "failed: ") + method.message + "; shares with newton: " + method.shares, 6)
           .c_str(),
       stdout);
+  const Standing state = standing(method);
+  if (!state.doubts.empty())
+    std::fputs(wrapped("in doubt: " + joined_doubts(state.doubts), 6).c_str(), stdout);
   std::fflush(stdout);
 }
 

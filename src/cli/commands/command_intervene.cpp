@@ -6,6 +6,7 @@
 #include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "results/standing.hpp"
 #include "study/intervene.hpp"
 
 #include <cstdio>
@@ -21,9 +22,10 @@ struct InterveneArguments : StudyArguments {
 void print_state(const char* name, const std::optional<RunReport>& run) {
   if (!run) return;
   const Result& result = run->report.result;
-  std::printf("%-6s  %s, residual %.1e, %d iterations, %.2f s\n", name,
-              std::string(status_name(result.status)).c_str(), result.residual, result.iterations,
-              result.wall_s);
+  const Standing state = standing(name, run->report);
+  std::printf("%-6s  %s, residual %.1e, %d iterations, %.2f s\n", name, shown_status(state).c_str(),
+              result.residual, result.iterations, result.wall_s);
+  if (!state.doubts.empty()) std::printf("        in doubt: %s\n", joined_doubts(state.doubts).c_str());
   for (const std::string& warning : run->report.warnings) std::printf("        %s\n", warning.c_str());
 }
 

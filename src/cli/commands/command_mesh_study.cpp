@@ -7,6 +7,7 @@
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
 #include "formats/whole_file.hpp"
+#include "results/standing.hpp"
 #include "study/mesh_study.hpp"
 
 #include <cstdio>
@@ -32,6 +33,8 @@ void study(const MeshStudyArguments& arguments, Session& session) {
         print(chosen(level_table({&level, 1}), {"triangles", "status", "residual", "iterations", "wall_s",
                                                 "cpu_s", "mean_to_previous_mm", "p95_to_previous_mm", "order",
                                                 "orifice_area_mm2", "intersections"}));
+        if (!level.doubts.empty())
+          std::fputs(wrapped("in doubt: " + joined_doubts(level.doubts), 6).c_str(), stdout);
       });
   write_mesh_study(folder, found);
   session.document = formats::read_whole(folder / "mesh_study.json");

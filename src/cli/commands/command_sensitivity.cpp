@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "formats/json/units.hpp"
 #include "formats/whole_file.hpp"
+#include "results/standing.hpp"
 #include "tuning/sensitivity_study.hpp"
 
 #include <cstdio>
@@ -90,6 +91,8 @@ void study(const SensitivityArguments& arguments, Session& session) {
               std::string(status_name(base.status)).c_str(), base.residual, base.iterations, base.wall_s);
   if (base.to_reference) std::printf(", mean distance to the reference %.3f mm", base.to_reference->mean);
   std::printf("\n");
+  if (!found.doubts.empty())
+    std::fputs(wrapped("in doubt: " + joined_doubts(found.doubts), 2).c_str(), stdout);
   if (base.status != Status::Converged) std::printf("without it there is nothing to compare with\n");
   if (found.is_cancelled)
     std::printf("cancelled: only %zu parameters were studied to the end\n", found.parameters.size());

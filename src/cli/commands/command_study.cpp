@@ -66,7 +66,11 @@ std::string values_text(const PointResult& result, const ParameterStudy& study) 
 void print_point(const PointResult& result, const ParameterStudy& study, size_t finished) {
   std::printf("  %zu of %zu  %s", finished, study.point_count, values_text(result, study).c_str());
   if (const auto value = result.metric(study.metric)) std::printf("%s %.6g  ", study.metric.c_str(), *value);
-  std::printf("%s\n", result.has_converged() ? "" : (result.status + ": " + result.message).c_str());
+  if (!result.has_converged())
+    std::printf("%s: %s", result.status.c_str(), result.message.c_str());
+  else if (!result.doubts.empty())
+    std::printf("in doubt: %s", joined_doubts(result.doubts).c_str());
+  std::printf("\n");
   std::fflush(stdout);
 }
 
@@ -80,7 +84,11 @@ void print_ranking(const ParameterStudy& study) {
   std::vector<std::string> columns{"rank"};
   for (const Sweep& sweep : study.sweeps) columns.push_back(sweep.path);
   columns.insert(columns.end(), {study.metric, "status"});
-  print_table(chosen(point_table(study), columns));
+  Table table = chosen(point_table(study), columns);
+  const std::vector<size_t> order = ranked(study);
+  for (size_t k = 0; k < order.size(); ++k)
+    table.rows[k].back() = shown_status(standing(study.results[order[k]]));
+  print_table(table);
 }
 
 void print_study(const ParameterStudy& study, const std::filesystem::path& folder) {

@@ -11,6 +11,7 @@
 #include "core/timing.hpp"
 #include "formats/json/units.hpp"
 #include "formats/text.hpp"
+#include "results/standing.hpp"
 #include "tuning/chord_tuning.hpp"
 
 #include <cmath>
@@ -178,6 +179,12 @@ void print_found(const ChordTuning& found) {
     std::printf("\n  warning: the best shape %s", found.tuning.anchor->message.c_str());
   std::printf("\n  %d solves (%d rejected, %d on another branch of equilibria), %.2f s\n", found.solves,
               found.tuning.failed, found.tuning.lost_branches, found.seconds);
+  const auto print_doubts = [](const char* name, const RunReport& run) {
+    const Standing state = standing(name, run.report);
+    if (!state.doubts.empty()) std::printf("  %s in doubt: %s\n", name, joined_doubts(state.doubts).c_str());
+  };
+  print_doubts("before", found.before);
+  if (found.after) print_doubts("after", *found.after);
   std::printf("written to %s (tuning.json, tuning.csv, tuning.html%s and the folders untuned and tuned)\n",
               found.folder.string().c_str(), found.tuned_scene.empty() ? "" : ", tuned.json");
 }

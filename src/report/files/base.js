@@ -97,7 +97,8 @@ function makeColouring(field) {
   }
   const all = field.values.flatMap(values => values ? Array.from(values) : []);
   const low = quantile(all, 0.01), high = quantile(all, 0.99);
-  const isDiverging = low < -0.1 * high && high > -0.1 * low;
+  // Of a change zero is always seen, also where nearly all of it has one sign.
+  const isDiverging = field.isChange || (low < -0.1 * high && high > -0.1 * low);
   const map = maps[isDiverging ? "diverging" : field.map || "sequential"];
   const range = legendRange(all, isDiverging);
   const place = value => clamp((value - range[0]) / (range[1] - range[0]), 0, 1);

@@ -66,7 +66,8 @@ function ticksOf(axis, min, max, length, space) {
 // Very large and very small numbers have their power of ten with its exponent set high: 0.01, 10⁻⁶, 2.5·10⁻⁶.
 function tickText(axis, value, range) {
   if (axis.names) return axis.names[Math.round(value) - 1] ?? "";
-  if (Math.abs(value) < 1e-9 * range) return "0";
+  // A linear axis has a tick of 1e-17 where zero is meant; on a logarithmic one small decades are what they are.
+  if (!axis.logarithmic && Math.abs(value) < 1e-9 * range) return "0";
   const size = Math.abs(value), isPlain = axis.logarithmic ? size >= 1e-3 * (1 - 1e-9) && size < 5000 : size >= 1e-4 && size < 1e6;
   if (isPlain) return String(Number(value.toPrecision(6)));
   const [factor, exponent] = Number(value.toPrecision(6)).toExponential().split("e");

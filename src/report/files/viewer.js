@@ -29,7 +29,7 @@ function addChanges(data) {
   const changes = data.fields.flatMap(field => {
     const [from, to] = [valuesIn(data, field, 0), valuesIn(data, field, data.states.length - 1)];
     if (field.categories || !from || !to || from === to) return [];
-    return [{ title: "Change of " + field.title.charAt(0).toLowerCase() + field.title.slice(1), unit: field.unit, at: field.at,
+    return [{ title: "Change of " + field.title.charAt(0).toLowerCase() + field.title.slice(1), unit: field.unit, at: field.at, isChange: true,
               values: [to.map((value, k) => value - from[k])], none: "no value in one of both" }];
   });
   const count = before.nodes.length / 3;

@@ -33,6 +33,16 @@ std::vector<std::string> numbers_of(const TermSpec& term) {
   return names;
 }
 
+// `length` and `pressure`, as an equilibrium that is followed calls them, are the keys `length_scale` and
+// `value`.
+std::string key_of(const std::string& said, const std::vector<std::string>& known) {
+  for (const auto& [name, key] : {std::pair("length", "length_scale"), std::pair("pressure", "value")})
+    if (said == name && std::find(known.begin(), known.end(), said) == known.end() &&
+        std::find(known.begin(), known.end(), key) != known.end())
+      return key;
+  return said;
+}
+
 SceneParameter parameter_of(const Scene& scene, size_t index, const std::string& key) {
   const TermSpec& term = scene.terms[index];
   if (key == kDiameter && is_elastic_cable(term))
@@ -65,13 +75,14 @@ SceneParameter find_parameter(const Scene& scene, const std::string& name) {
   if (dot == std::string::npos)
     throw InputError("parameter \"" + name + "\": expected TERM.KEY, as in \"" + terms.at(0) +
                      ".young\"; the scene's terms: " + listed(terms));
-  const std::string term_name = name.substr(0, dot), key = name.substr(dot + 1);
+  const std::string term_name = name.substr(0, dot);
   const auto found = std::find(terms.begin(), terms.end(), term_name);
   if (found == terms.end())
     throw InputError("parameter \"" + name + "\": the scene has no term \"" + term_name +
                      "\"; its terms: " + listed(terms) + suggestion(term_name, terms));
   const auto index = static_cast<size_t>(found - terms.begin());
   const std::vector<std::string> known = numbers_of(scene.terms[index]);
+  const std::string key = key_of(name.substr(dot + 1), known);
   if (std::find(known.begin(), known.end(), key) == known.end() && key != kAreaScale)
     throw InputError("parameter \"" + name + "\": term \"" + term_name + "\" has no number \"" + key +
                      "\"; it has: " + listed(known) + suggestion(key, known));

@@ -24,8 +24,10 @@ struct SceneParameter {
 // Whether the term's lines have a cross-section that counts: cables of any law but a constant force.
 bool is_elastic_cable(const TermSpec& term);
 
-// Throws InputError for a name that is not TERM.KEY, an unknown term or key (listing those there are), a key
-// that is no number, and a number that is not given, or zero: a relative change means nothing there.
+// TERM.length and TERM.pressure, as an equilibrium that is followed calls them, are found as the keys
+// `length_scale` and `value`. Throws InputError for a name that is not TERM.KEY, an unknown term or key
+// (listing those there are), a key that is no number, and a number that is not given, or zero: a relative
+// change means nothing there.
 SceneParameter find_parameter(const Scene& scene, const std::string& name);
 
 // Every number that is not zero, and every list of numbers, of every term that is an internal energy (no

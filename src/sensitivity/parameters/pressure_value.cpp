@@ -10,31 +10,32 @@ namespace {
 
 class PressureValue final : public Parameter {
  public:
-  PressureValue(std::string name, EnergyTerm& term) : Parameter(std::move(name)), term_(term) {}
+  PressureValue(std::string name, EnergyTerm& term, double sign)
+      : Parameter(std::move(name)), term_(term), sign_(sign) {}
 
-  Vector value() const override { return Vector::Constant(1, pressure()); }
+  Vector value() const override { return Vector::Constant(1, sign_ * pressure()); }
 
   std::string defect(const Vector& value) const override {
-    if (std::isfinite(value[0]) && value[0] * pressure() > 0) return {};
+    if (std::isfinite(value[0]) && sign_ * value[0] * pressure() > 0) return {};
     return "parameter \"" + name() + "\": the pressure must be finite, not zero, and keep its sign";
   }
 
-  void set(const Vector& value) override { set_pressure(term_, value[0]); }
+  void set(const Vector& value) override { set_pressure(term_, sign_ * value[0]); }
 
   std::vector<WrittenDatum> written() const override { return {{WrittenDatum::Kind::Pressure, &term_, 0}}; }
 
   Vector pull_back(const Points& x, const Points& weights) const override {
-    return Vector::Constant(1, slope(x).cwiseProduct(weights).sum());
+    return Vector::Constant(1, sign_ * slope(x).cwiseProduct(weights).sum());
   }
 
   void push_forward(const Points& x, const Vector& change, Points& g) const override {
-    g += change[0] * slope(x);
+    g += sign_ * change[0] * slope(x);
   }
 
   Vector energy_derivative(const Points& x, const EnergyTerm& term) const override {
     if (&term != &term_) return none();
     Sink sink;
-    return Vector::Constant(1, term_.evaluate(x, sink) / pressure());
+    return Vector::Constant(1, sign_ * term_.evaluate(x, sink) / pressure());
   }
 
  private:
@@ -50,17 +51,18 @@ class PressureValue final : public Parameter {
   }
 
   EnergyTerm& term_;
+  double sign_;
 };
 
 }  // namespace
 
-std::unique_ptr<Parameter> make_pressure_value(std::string name, EnergyTerm& term) {
+std::unique_ptr<Parameter> make_pressure_value(std::string name, EnergyTerm& term, double sign) {
   const std::optional<double> p = pressure_of(term);
   if (!p)
     throw InputError("parameter \"" + name + "\": term \"" + term.name() + "\" (" + std::string(term.type()) +
                      ") is no pressure that follows the surface; name one of model follower or volume");
   if (*p == 0) throw InputError("parameter \"" + name + "\": the pressure is zero; give it a value first");
-  return std::make_unique<PressureValue>(std::move(name), term);
+  return std::make_unique<PressureValue>(std::move(name), term, sign);
 }
 
 }  // namespace coapt

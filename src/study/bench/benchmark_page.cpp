@@ -78,7 +78,8 @@ PageSection recommendation_section(const Benchmark& bench) {
   PageList list;
   for (const double mm : kTotalAccuracies) {
     const bool is_reached = fastest_run(bench, ErrorKind::Total, mm) != nullptr;
-    list.items.push_back({recommendation(bench, mm), is_reached ? Tone::Good : Tone::Caution});
+    const bool is_good = is_reached && doubts_of_shown(bench).empty();
+    list.items.push_back({recommendation(bench, mm), is_good ? Tone::Good : Tone::Caution});
   }
   for (const std::string& missing : missing_equilibria(bench))
     list.items.push_back({"Warning: " + missing, Tone::Caution});
@@ -159,7 +160,8 @@ PageTable ends_table(const Benchmark& bench) {
                  "Where each method ends, beside " + bench.methods.front().name);
   for (size_t k = 0; k < bench.ends.size(); ++k) {
     const BenchEnd& end = bench.ends[k];
-    const bool is_good = end.verdict == Verdict::Reference || end.verdict == Verdict::SameEquilibrium;
+    const bool is_good = (end.verdict == Verdict::Reference || end.verdict == Verdict::SameEquilibrium) &&
+                         doubts_of_shown(bench).empty();
     table.rows[k][2].tone = is_good ? Tone::Good : Tone::Caution;
     table.rows[k][2].remark = end.failure;
   }
@@ -222,10 +224,12 @@ std::string benchmark_page(const Benchmark& bench) {
   Page page{.title = "Benchmark of " + bench.scene_title};
   page.lead = recommendation(bench, kTotalAccuracies[1]);
   if (bench.is_cancelled) page.lead += " (cancelled before the end)";
-  page.tone = bench.is_cancelled ? Tone::Caution : Tone::Plain;
+  const std::string doubted = doubts_of_shown(bench);
+  if (!doubted.empty()) page.lead += "; " + doubted;
+  page.tone = bench.is_cancelled || !doubted.empty() ? Tone::Caution : Tone::Plain;
   page.sections.push_back(recommendation_section(bench));
-  page.sections.push_back(plots_section(bench));
   if (bench.shown) page.sections.push_back(shape_section("Shape", *bench.shown));
+  page.sections.push_back(plots_section(bench));
   page.sections.push_back({"Time to an accuracy", {page_times(bench)}});
   if (PageTable grown = growth_table(bench); !grown.rows.empty())
     page.sections.back().blocks.emplace_back(std::move(grown));

@@ -149,6 +149,7 @@ OrderedJson benchmark_as_json(const Benchmark& bench) {
   json["growth"] = growth_json(bench);
   json["other_equilibria"] = other_equilibria(bench);
   json["branches"] = bench.branches ? branches_json(*bench.branches) : OrderedJson(nullptr);
+  json["doubts"] = bench.shown ? bench.shown->standing.doubts : std::vector<std::string>();
   json["warnings"] = missing_equilibria(bench);
   json["recommendations"] = OrderedJson::array();
   for (const double mm : kTotalAccuracies) json["recommendations"].push_back(recommendation(bench, mm));

@@ -121,6 +121,10 @@ std::vector<std::string> missing_equilibria(const Benchmark& bench) {
   return all;
 }
 
+std::string doubts_of_shown(const Benchmark& bench) {
+  return bench.shown ? doubts_in_words(std::span(&bench.shown->standing, 1)) : "";
+}
+
 std::vector<std::string> other_equilibria(const Benchmark& bench) {
   std::vector<std::string> all;
   for (const BenchEnd& end : bench.ends)

@@ -58,6 +58,9 @@ std::vector<std::string> missing_equilibria(const Benchmark& bench);
 // "2,500 triangles", or nodes in a scene without a mesh.
 std::string mesh_text(const BenchMesh& mesh);
 
+// What is in doubt about the equilibrium that the page shows; empty where nothing is, or none is shown.
+std::string doubts_of_shown(const Benchmark& bench);
+
 // Methods that ended in another equilibrium than the reference method, and what a search around that one
 // found.
 std::vector<std::string> other_equilibria(const Benchmark& bench);

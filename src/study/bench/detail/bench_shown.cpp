@@ -50,8 +50,7 @@ std::optional<ShownSolve> bench_shown(const BenchCourse& course, const SceneGeom
                                      ", solved once more beside the clock to keep its iterates.",
                                  once.model, once.report);
   shown.view.name = "benchmark";
-  if (finer != nullptr)
-    shown.view.fields.insert(shown.view.fields.begin(), mesh_error(once.model, once.report.fields.x, *finer));
+  if (finer != nullptr) shown.view.fields.push_back(mesh_error(once.model, once.report.fields.x, *finer));
   return shown;
 }
 
