@@ -3,13 +3,13 @@
 #include "core/error.hpp"
 #include "exchange/febio_export.hpp"
 #include "formats/json/markups.hpp"
+#include "formats/json/named_files.hpp"
 #include "formats/json/read_json.hpp"
 #include "formats/json/suggestion.hpp"
 #include "formats/lower_extension.hpp"
 #include "formats/mesh_io.hpp"
 #include "formats/whole_file.hpp"
 #include "scene/build/scene_geometry.hpp"
-#include "scene/file/named_files.hpp"
 
 namespace coapt {
 namespace {

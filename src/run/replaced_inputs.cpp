@@ -1,7 +1,7 @@
 #include "run/replaced_inputs.hpp"
 
 #include "core/error.hpp"
-#include "scene/file/named_files.hpp"
+#include "formats/json/named_files.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -32,7 +32,8 @@ void refuse_replaced_inputs(const Scene& scene, const fs::path& folder, const st
   std::error_code error;
   std::vector<fs::path> inputs = std::move(others);
   if (fs::is_regular_file(scene.file, error)) {
-    for (const fs::path& file : named_files(scene)) inputs.push_back(file);
+    for (const fs::path& file : named_files(read_json(scene.file), scene.file.parent_path()))
+      inputs.push_back(file);
     inputs.push_back(scene.file);
   }
   std::vector<std::string> defects;

@@ -3,8 +3,8 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "formats/json/checksummed_cbor.hpp"
+#include "formats/json/named_files.hpp"
 #include "formats/whole_file.hpp"
-#include "scene/file/named_files.hpp"
 #include "solve/resumable_record.hpp"
 
 namespace coapt {

@@ -1,4 +1,4 @@
-#include "scene/file/named_files.hpp"
+#include "formats/json/named_files.hpp"
 
 #include <string>
 #include <system_error>
@@ -23,10 +23,6 @@ std::vector<std::filesystem::path> named_files(const Json& json, const std::file
   std::vector<std::filesystem::path> files;
   find_named_files(json, folder, files);
   return files;
-}
-
-std::vector<std::filesystem::path> named_files(const Scene& scene) {
-  return named_files(read_json(scene.file), scene.file.parent_path());
 }
 
 }  // namespace coapt
