@@ -44,15 +44,11 @@ PageTable distance_table(const Comparison& comparison) {
   return table;
 }
 
-// Its verdict; the doubts that every method shares stand in the lead and in the table.
-PageText message_of(const ComparedMethod& method) {
-  const Tone tone = tone_of(standing(method));
-  return {method.name + ": " + method.message, tone == Tone::Good ? Tone::Plain : tone};
-}
-
 PageList messages(const Comparison& comparison) {
   PageList list;
-  for (const ComparedMethod& method : comparison.methods) list.items.push_back(message_of(method));
+  for (const ComparedMethod& method : comparison.methods)  // their doubts stand above, in the lead
+    list.items.push_back(
+        {method.name + ": " + method.message, has_converged(method) ? Tone::Plain : Tone::Bad});
   return list;
 }
 

@@ -110,8 +110,8 @@ class Bombs(CommandCase):
 
     @unittest.skipUnless(READS_VOLUMES, "this build reads no volumes")
     def test_volumes_that_announce_more_than_they_hold(self):
-        zlibs = "ObjectType = Image\nNDims = 3\nDimSize = {}\nElementType = MET_UCHAR\nCompressedData = True\nElementDataFile = LOCAL\n"
-        gzips = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {}\nencoding: gzip\n\n"
+        zlibs = "ObjectType = Image\nNDims = 3\nDimSize = {}\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\nCompressedData = True\nElementDataFile = LOCAL\n"
+        gzips = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: {}\nspacings: 1 1 1\nencoding: gzip\n\n"
         for name, head, window in [("b.mha", zlibs, zlib.MAX_WBITS), ("b.nrrd", gzips, zlib.MAX_WBITS | 16)]:
             packed = of_zeros(2 << 20, window)
             for sizes, said in [("2048 2048 2048", "more than the 1.07e+09 that are read"), ("1000 1000 1000", "")]:

@@ -200,7 +200,7 @@ Valve valve_with_folded_fan() {
 TEST_F(ImportDoubts, RefuseWhatContactCannotStartFrom) {
   const Valve valve = valve_with_folded_fan();
   const auto pairs = intersecting_pairs(valve.leaflets.vertices, valve.leaflets.triangles);
-  const std::string first = std::to_string(pairs[0][0]) + "-" + std::to_string(pairs[0][1]);
+  const std::string first = std::to_string(pairs[0][0] + 1) + "-" + std::to_string(pairs[0][1] + 1);
   const auto defects = refusal(valve);
   EXPECT_TRUE(tells(defects, first)) << defects.front();
   EXPECT_TRUE(tells(defects, "--contact none")) << defects.front();

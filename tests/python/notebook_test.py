@@ -2,6 +2,7 @@
 import base64
 import contextlib
 import io
+import pickle
 import re
 import sys
 import types

@@ -140,7 +140,9 @@ def split_terms(terms: Sequence[Any], defects: Defects) -> tuple[list[Mapping[st
     if isinstance(terms, (Mapping, str)) or not isinstance(terms, Sequence):
         defects.append(f"terms: is a {type(terms).__name__}; expected a list")
         return [], [], []
-    table, own, places = [], [], []
+    table: list[Mapping[str, Any]] = []
+    own: list[Any] = []
+    places: list[int] = []
     for k, term in enumerate(terms):
         if isinstance(term, Mapping):
             table.append(term)
