@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 namespace coapt::cli {
 namespace {
@@ -77,7 +78,7 @@ std::function<void(std::size_t)> make_job_progress(const Session& session, std::
   if (session.is_quiet) return [](std::size_t) {};
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   const double pause = is_terminal ? 1 : kLogPause, start = wall_seconds();
-  return [=, last = start](std::size_t ended) mutable {
+  return [=, jobs = std::move(jobs), last = start](std::size_t ended) mutable {
     const double now = wall_seconds(), elapsed = now - start;
     if (now - last < pause) return;
     last = now;

@@ -241,7 +241,8 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
                                       const ImportOptions& given) {
   ImportOptions options = given;
   std::vector<std::string> warnings;
-  auto [valve, numbering] = detail::read_source(file, options, warnings);
+  detail::ImportSource source = detail::read_source(file, options, warnings);
+  Valve& valve = source.valve;
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(file.string() + ": leaflets: missing; it must name the mesh file beside it");
   // Any mesh has a longest rim; an annulus has been named.
@@ -260,7 +261,7 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
     return under_pressure;
   };
   if (is_valve && !options.takes_any_size) refuse_sizes(file.string(), loaded());
-  const MeshRepair repair = detail::judge_leaflets(options, file.string(), numbering, valve, warnings);
+  const MeshRepair repair = detail::judge_leaflets(options, file.string(), source.numbering, valve, warnings);
   if (!options.model.empty()) apply_model(file.string(), valve, options);  // of the repaired mesh
   if (const std::string missing = detail::missing_chords(file.string(), options, valve); !missing.empty())
     warnings.push_back(missing);
@@ -268,7 +269,8 @@ std::vector<std::string> import_valve(const std::filesystem::path& file, const s
   detail::write_repairs(out_dir / "repairs.csv", repair);
   Valve judged = loaded();
   if (!is_valve) judged.annulus.clear();  // a rim of any surface, whose side nobody knows
-  judge_scene(load_scene(out_dir / "scene.json"), judged, file.string(), numbering, is_valve, warnings);
+  judge_scene(load_scene(out_dir / "scene.json"), judged, file.string(), source.numbering, is_valve,
+              warnings);
   return warnings;
 }
 

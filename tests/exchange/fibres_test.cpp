@@ -125,7 +125,8 @@ TEST_F(FibresTest, NameTheirDefects) {
   };
   wrong(R"({"directions": [{"nodes": [0], "direction": "round"}]})", "fibres.directions[0].direction");
   wrong(R"({"directions": [{"nodes": [0], "direction": [0, 0, 0]}]})", "the vector is zero");
-  wrong(R"({"directions": [{"nodes": [0], "direction": [0, 0, 1]}]})", "fibres: fibre direction at vertex 1, counted from 1");
+  wrong(R"({"directions": [{"nodes": [0], "direction": [0, 0, 1]}]})",
+        "fibres: fibre direction at vertex 1, counted from 1");
   wrong(R"({"directions": [{"nodes": [0], "direction": "along"}]})", "no mesh edge joins two");
   wrong(R"({"directions": [{"nodes": "annulus", "direction": "along"}]})", "no node set \"annulus\"");
   wrong(R"({"defaults": "valve"})", "needs the node set \"annulus\"");

@@ -101,7 +101,7 @@ void print_study(const ParameterStudy& study, const std::filesystem::path& folde
 }
 
 std::filesystem::path study_folder(const ParameterStudyArguments& arguments, const Scene& first) {
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
   refuse_replaced_inputs(first, folder, {"study.json", "study.csv", "study.html"});
   return folder;

@@ -1,6 +1,7 @@
 #include "formats/json/base64.hpp"
 
 #include <bit>
+#include <type_traits>
 
 namespace coapt {
 namespace {
@@ -29,7 +30,7 @@ std::string little_endian(std::span<const Number> numbers) {
     if constexpr (sizeof(Number) == sizeof word)
       word = std::bit_cast<std::uint32_t>(number);
     else
-      word = static_cast<std::uint32_t>(number);
+      word = static_cast<std::make_unsigned_t<Number>>(number);
     for (unsigned shift = 0; shift < 8 * sizeof(Number); shift += 8)
       bytes += static_cast<char>((word >> shift) & 255);
   }
