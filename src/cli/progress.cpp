@@ -54,6 +54,16 @@ bool is_interrupted() {
   return true;
 }
 
+namespace {
+
+// On a terminal over the line before.
+void show_line(const std::string& line, bool is_terminal) {
+  std::fprintf(stderr, is_terminal ? "\r  %s\033[K" : "  %s\n", line.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace
+
 Observer make_observer(const Session& session, std::optional<double> wanted) {
   if (session.is_quiet && !session.is_verbose)
     return [](const Iteration&, const Vector&) { return !is_interrupted(); };
@@ -64,10 +74,9 @@ Observer make_observer(const Session& session, std::optional<double> wanted) {
     shown->estimate.see(now);
     if (wall_seconds() - shown->last >= pause) {
       shown->last = wall_seconds();
-      const std::string line = progress_line(now, q.size() / 3, wanted, shown->last - shown->start,
-                                             wanted ? shown->estimate.seconds_left(*wanted) : std::nullopt);
-      std::fprintf(stderr, is_terminal ? "\r  %s\033[K" : "  %s\n", line.c_str());
-      std::fflush(stderr);
+      show_line(progress_line(now, q.size() / 3, wanted, shown->last - shown->start,
+                              wanted ? shown->estimate.seconds_left(*wanted) : std::nullopt),
+                is_terminal);
     }
     return !is_interrupted();
   };
@@ -82,9 +91,7 @@ std::function<void(std::size_t)> make_job_progress(const Session& session, std::
     const double now = wall_seconds(), elapsed = now - start;
     if (now - last < pause) return;
     last = now;
-    const std::string line = job_progress_line(jobs, ended, count, elapsed);
-    std::fprintf(stderr, is_terminal ? "\r  %s\033[K" : "  %s\n", line.c_str());
-    std::fflush(stderr);
+    show_line(job_progress_line(jobs, ended, count, elapsed), is_terminal);
   };
 }
 
