@@ -1,0 +1,120 @@
+#include "energy/contact/barrier_candidates.hpp"
+
+#include "energy/contact/collision_detection.hpp"
+#include "energy/pour_elements.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+namespace coapt {
+namespace {
+
+constexpr double kDistanceRoundOff = 1e-13;  // of a distance, relative to the greatest coordinate
+constexpr double kLookedAt = 1 - 1e-9;       // share of the way that pairs are left out by
+
+template <int kFirst>
+bool are_apart(const PairCorners& x, double range) {
+  const auto a = x.leftCols<kFirst>().array();
+  const auto b = x.rightCols<4 - kFirst>().array();
+  const Eigen::Array3d gap = (b.rowwise().minCoeff() - a.rowwise().maxCoeff())
+                                 .max(a.rowwise().minCoeff() - b.rowwise().maxCoeff())
+                                 .max(0.0);
+  return gap.matrix().squaredNorm() >= range * range;
+}
+
+}  // namespace
+
+PairCorners pair_corners(const Points& x, const int* nodes) {
+  PairCorners corners;
+  for (int a = 0; a < 4; ++a) corners.col(a) = x.col(nodes[a]);
+  return corners;
+}
+
+double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, double most, double kept) {
+  return kind == PairKind::PointTriangle ? point_triangle_step(x, d, most, kept)
+                                         : edge_edge_step(x, d, most, kept);
+}
+
+bool boxes_are_apart(PairKind kind, const PairCorners& x, double range) {
+  return kind == PairKind::PointTriangle ? are_apart<1>(x, range) : are_apart<2>(x, range);
+}
+
+BarrierCandidates::BarrierCandidates(Points found_at) : found_at_(std::move(found_at)) {
+  if (found_at_.size() > 0) round_off_ = kDistanceRoundOff * found_at_.cwiseAbs().maxCoeff();
+}
+
+void BarrierCandidates::add(const FeaturePair& pair, const BarrierRest& rest, double distance) {
+  rest_.push_back(rest);
+  distance_.push_back(kLookedAt * distance - round_off_);
+  stencils_.nodes.insert(stencils_.nodes.end(), pair.nodes.begin(), pair.nodes.end());
+}
+
+void BarrierCandidates::renumber(MovingPart& moving) {
+  for (int& node : stencils_.nodes) node = moving.number(node);
+}
+
+Vector BarrierCandidates::displacements(const Points& x) const {
+  Vector moved = Vector::Zero(x.cols());
+  moved.head(found_at_.cols()) = (x.leftCols(found_at_.cols()) - found_at_).colwise().norm().transpose();
+  return moved;
+}
+
+bool BarrierCandidates::are_within(const Points& x, double most) const {
+  return found_at_.size() != 0 && (x - found_at_).colwise().squaredNorm().maxCoeff() <= most * most;
+}
+
+double BarrierCandidates::approach(size_t k, const Vector& moved) const {
+  const int* n = nodes(k);
+  if (rest_[k].kind == PairKind::PointTriangle)
+    return moved[n[0]] + std::max({moved[n[1]], moved[n[2]], moved[n[3]]});
+  return std::max(moved[n[0]], moved[n[1]]) + std::max(moved[n[2]], moved[n[3]]);
+}
+
+double BarrierCandidates::evaluate(const Points& x, double pressure, Sink& sink, long& active) const {
+  const bool wants_gradient = sink.wants_gradient(), wants_hessian = sink.wants_hessian();
+  const Vector moved = displacements(x);
+  std::atomic<long> within = 0;
+  const double energy = pour_elements<Evaluated>(
+      stencils_, sink,
+      [&](size_t k, Evaluated& out) {
+        out.is_active = false;
+        if (distance_[k] - approach(k, moved) >= rest_[k].range) return 0.0;
+        const PairCorners corners = pair_corners(x, nodes(k));
+        if (boxes_are_apart(rest_[k].kind, corners, rest_[k].range)) return 0.0;
+        const ClosestPair closest = closest_points(rest_[k].kind, corners);
+        if (closest.distance >= rest_[k].range) return 0.0;
+        out.is_active = true;
+        const double own =
+            pressure * evaluate_barrier(rest_[k], corners, closest, sink.projection(),
+                                        wants_gradient ? &out.g : nullptr, wants_hessian ? &out.h : nullptr);
+        if (wants_gradient) out.g *= pressure;
+        if (wants_hessian) out.h *= pressure;
+        return own;
+      },
+      [&](size_t k, const Evaluated& in, Sink& to) {
+        if (!in.is_active) return;
+        const int* n = nodes(k);
+        if (to.has_node(n[0])) within.fetch_add(1, std::memory_order_relaxed);
+        for (int a = 0; wants_gradient && a < 4; ++a) to.add_gradient(n[a], in.g.segment<3>(3 * a));
+        for (int a = 0; wants_hessian && a < 4; ++a)
+          for (int b = 0; b < 4; ++b)
+            to.add_block(16 * static_cast<long>(k), 4, a, b, in.h.block<3, 3>(3 * a, 3 * b));
+      });
+  active = within;
+  return energy;
+}
+
+double BarrierCandidates::step_limit(const Points& x, const Points& d, double most, double kept) const {
+  const Vector moved = displacements(x), speed = d.colwise().norm().transpose();
+  double limit = most;
+  for (size_t k = 0; k < size(); ++k) {
+    const double distance = distance_[k] - approach(k, moved);
+    if (limit * approach(k, speed) < kLookedAt * (1 - kept) * distance) continue;
+    limit = std::min(
+        limit, pair_step(rest_[k].kind, pair_corners(x, nodes(k)), pair_corners(d, nodes(k)), limit, kept));
+  }
+  return limit;
+}
+
+}  // namespace coapt
