@@ -23,15 +23,15 @@ void MultifrontalFactor::analyse(const NodeGraph& graph, Supernodes nodes, int b
                      static_cast<size_t>(3 * nodes_.columns(s)) * static_cast<size_t>(stride(s)));
     most = std::max(most, height(s));
   }
-  values_.resize(panel_.back());
-  passed_.resize(3 * nodes_.rows.size());
+  values_.need(panel_.back());
+  passed_.need(3 * nodes_.rows.size());
   part_tree();
   plan_updates();
-  kept_.resize(plan_.size[2]);
+  kept_.need(plan_.size[2]);
   workspaces_.resize(is_shared() ? static_cast<size_t>(team_->size()) : 1);
   for (Workspace& own : workspaces_) {
-    for (int k = 0; k < 2; ++k) own.stack[k].resize(plan_.size[k]);
-    own.column.resize(static_cast<size_t>(most) + 3);
+    for (int k = 0; k < 2; ++k) own.stack[k].need(plan_.size[k]);
+    own.column.need(static_cast<size_t>(most) + 3);
   }
   place_blocks(graph);
 }
@@ -182,8 +182,7 @@ void MultifrontalFactor::place_blocks(const NodeGraph& graph) {
 // update matrix come once that is written.
 DenseFront MultifrontalFactor::assembled_front(int s, const double* source, Workspace& own) {
   const DenseFront front = front_of(s, update_of(s, own));
-  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(panel_[s]),
-            values_.begin() + static_cast<std::ptrdiff_t>(panel_[s + 1]), 0.0);
+  std::fill(values_.data() + panel_[s], values_.data() + panel_[s + 1], 0.0);
   for (int k = first_move_[s]; k < first_move_[s + 1]; ++k) {
     const BlockMove& move = moves_[k];
     for (int c = 0; c < 3; ++c)
@@ -233,7 +232,7 @@ void MultifrontalFactor::restore(const Vector& y, Vector& x) const {
   for (size_t k = 0; k < nodes_.order.size(); ++k) x.segment<3>(3 * nodes_.order[k]) = y.segment<3>(3 * k);
 }
 
-void MultifrontalFactor::solve_front_forward(int s, Vector& x, std::vector<double>& column) {
+void MultifrontalFactor::solve_front_forward(int s, Vector& x, Scratch& column) {
   const DenseFront front = front_of(s, nullptr);
   double* y = column.data();
   std::copy_n(x.data() + 3 * nodes_.first[s], front.columns, y);
@@ -241,14 +240,15 @@ void MultifrontalFactor::solve_front_forward(int s, Vector& x, std::vector<doubl
   for (int k = nodes_.child_start[s]; k < nodes_.child_start[s + 1]; ++k) {
     const int child = nodes_.child[k];
     for (int row = nodes_.below[child]; row < nodes_.below[child + 1]; ++row)
-      for (int c = 0; c < 3; ++c) y[3 * nodes_.place[row] + c] += passed_[3 * static_cast<size_t>(row) + c];
+      for (int c = 0; c < 3; ++c)
+        y[3 * nodes_.place[row] + c] += passed_.data()[3 * static_cast<size_t>(row) + c];
   }
   if (s < eliminated_) solve_columns_forward(front, y);
   std::copy_n(y, front.columns, x.data() + 3 * nodes_.first[s]);
   std::copy_n(y + front.columns, front.below, passed_.data() + 3 * static_cast<size_t>(nodes_.below[s]));
 }
 
-void MultifrontalFactor::solve_front_backward(int s, Vector& x, std::vector<double>& column) {
+void MultifrontalFactor::solve_front_backward(int s, Vector& x, Scratch& column) {
   const DenseFront front = front_of(s, nullptr);
   double* y = column.data();
   std::copy_n(x.data() + 3 * nodes_.first[s], front.columns, y);
@@ -280,7 +280,8 @@ bool MultifrontalFactor::measure_pivots() {
   double least = kInfinity, greatest = 0;
   for (int s = 0; s < eliminated_; ++s)
     for (int c = 0; c < 3 * nodes_.columns(s); ++c) {
-      const double pivot = values_[panel_[s] + static_cast<size_t>(c) * static_cast<size_t>(stride(s) + 1)];
+      const double pivot =
+          values_.data()[panel_[s] + static_cast<size_t>(c) * static_cast<size_t>(stride(s) + 1)];
       if (!std::isfinite(pivot)) return false;
       least = std::min(least, pivot);
       greatest = std::max(greatest, pivot);

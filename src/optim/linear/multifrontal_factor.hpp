@@ -5,6 +5,7 @@
 
 #include "core/thread_team.hpp"
 #include "optim/linear/dense_front.hpp"
+#include "optim/linear/scratch.hpp"
 #include "optim/linear/supernodes.hpp"
 
 #include <memory>
@@ -68,7 +69,8 @@ class MultifrontalFactor {
 
   // What a thread works with.
   struct Workspace {
-    std::vector<double> stack[2], scaled, column;
+    Scratch stack[2], column;
+    std::vector<double> scaled;
   };
 
   enum class Part { Columns, Below };  // of a front
@@ -99,8 +101,8 @@ class MultifrontalFactor {
   void add_updates(int s, const DenseFront& front, Part part, Workspace& own);
   void add_columns(const double* update, int child, int first, int last, int begin, double* target,
                    int stride);
-  void solve_front_forward(int s, Vector& x, std::vector<double>& column);
-  void solve_front_backward(int s, Vector& x, std::vector<double>& column);
+  void solve_front_forward(int s, Vector& x, Scratch& column);
+  void solve_front_backward(int s, Vector& x, Scratch& column);
   bool measure_pivots();
 
   static constexpr double kWorthThreads = 5e7;  // multiplications of a factor: more than at 2,500 triangles
@@ -108,16 +110,16 @@ class MultifrontalFactor {
   Supernodes nodes_;
   int eliminated_ = 0;         // supernodes, all but the border
   std::vector<size_t> panel_;  // where each supernode's columns begin in the values
-  std::vector<double> values_;
+  Scratch values_;
   double work_ = 0;                            // multiplications of a factor
   std::vector<std::pair<int, int>> subtrees_;  // first and last supernode of those that threads share
   std::vector<int> top_;                       // the supernodes above them, ascending
   UpdatePlan plan_;
-  std::vector<double> kept_;           // what subtrees leave
+  Scratch kept_;                       // what subtrees leave
   std::vector<Workspace> workspaces_;  // of each thread
   std::vector<BlockMove> moves_;
   std::vector<int> first_move_;  // of each supernode
-  std::vector<double> passed_;   // from each front to its parent's, in a forward solve
+  Scratch passed_;               // from each front to its parent's, in a forward solve
   double pivot_ratio_ = 1;
   std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
 };
