@@ -147,7 +147,7 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     prepare(x);
     bool is_too_soft = false;
     for (size_t k = 0; k < candidates_.size() && !is_too_soft; ++k)
-      is_too_soft = closest_points(candidates_.rest(k).kind, pair_corners(x, candidates_.nodes(k))).distance <
+      is_too_soft = pair_distance(candidates_.rest(k).kind, pair_corners(x, candidates_.nodes(k))) <
                     kTooClose * candidates_.rest(k).range;
     if (is_too_soft) pressure_ *= kStiffening;
     return is_too_soft;
@@ -180,12 +180,12 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
   std::optional<Found> candidate(const FeaturePair& pair, const Points& x, double ahead) const {
     const PairCorners corners = pair_corners(x, pair.nodes.data());
     if (boxes_are_apart(pair.kind, corners, gap_ + ahead)) return {};
-    const double distance = closest_points(pair.kind, corners).distance;
+    const double distance = pair_distance(pair.kind, corners);
     if (distance >= gap_ + ahead) return {};
     const PairCorners at_rest = pair_corners(surface_.rest(), pair.nodes.data());
     double range = gap_;
     if (!boxes_are_apart(pair.kind, at_rest, kAmple * gap_ / kShareOfRest))
-      range = std::min(gap_, kShareOfRest * closest_points(pair.kind, at_rest).distance);
+      range = std::min(gap_, kShareOfRest * pair_distance(pair.kind, at_rest));
     if (distance >= range + ahead) return {};
     const double lengths =
         (at_rest.col(1) - at_rest.col(0)).squaredNorm() * (at_rest.col(3) - at_rest.col(2)).squaredNorm();

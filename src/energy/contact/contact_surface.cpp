@@ -3,6 +3,9 @@
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace coapt {
 namespace {
@@ -17,22 +20,56 @@ struct SweptBounds {
   }
 };
 
-// A box, and whether anything in it moves.
-struct PartBounds {
-  Bounds at;
-  bool moves = false;
+// Four numbers that are compared at once.
+using Four [[gnu::vector_size(16)]] = float;
+using Mask [[gnu::vector_size(16)]] = int;
 
-  void include(const PartBounds& other) {
-    at.include(other.at);
-    moves = moves || other.moves;
+bool all_of(const Mask& mask) {
+  std::uint64_t halves[2];
+  std::memcpy(halves, &mask, sizeof halves);
+  return (halves[0] & halves[1]) == ~std::uint64_t{0};
+}
+
+// A box in units of the scene's extent, from its lowest corner on, in single precision; the fourth numbers of
+// two boxes overlap where anything in either moves.
+struct NearBox {
+  static constexpr Four kFar = {1e30F, 1e30F, 1e30F, 1e30F};
+  Four low = kFar, high = -kFar;  // empty
+
+  void include(const NearBox& other) {
+    low = other.low < low ? other.low : low;
+    high = other.high > high ? other.high : high;
   }
 };
 
-// Written out, as this is what a search spends its time on.
-bool overlap(const Bounds& a, const Bounds& b) {
-  return a.low[0] <= b.high[0] && b.low[0] <= a.high[0] && a.low[1] <= b.high[1] && b.low[1] <= a.high[1] &&
-         a.low[2] <= b.high[2] && b.low[2] <= a.high[2];
-}
+// What a search spends its time on.
+bool overlap(const NearBox& a, const NearBox& b) { return all_of((a.low <= b.high) & (b.low <= a.high)); }
+
+// Makes boxes around nodes.
+class NearBoxes {
+ public:
+  NearBoxes(const Points& x, double reach) : x_(x) {
+    if (x.cols() == 0) return;
+    origin_ = x.rowwise().minCoeff();
+    const double extent = (x.rowwise().maxCoeff() - origin_).maxCoeff();
+    scale_ =
+        std::isfinite(extent) ? (extent > 0 ? 1 / extent : 0) : kNaN;  // nothing is near what is not finite
+    half_ = static_cast<float>(std::min(0.5 * reach * scale_, 2.0)) + kRounding;
+  }
+  NearBox around(int node, bool moves) const {
+    const Eigen::Vector3f at = (scale_ * (x_.col(node) - origin_)).cast<float>();
+    const Four point = {at[0], at[1], at[2], 0}, half = {half_, half_, half_, moves ? 2.0f : -1.0f};
+    return {point - half, point + half};
+  }
+
+ private:
+  static constexpr float kRounding = 1e-6F;  // of the extent: of the coordinates and of the sums with them
+
+  const Points& x_;
+  Vec3 origin_ = Vec3::Zero();
+  double scale_ = 0;
+  float half_ = 0;
+};
 
 // Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
 // the relative positions form an interval whose ends move linearly, and the times at which it holds zero are
@@ -178,13 +215,14 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
-  visit_pairs<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, overlap, visit, {});
+  const NearBoxes boxes(x, reach);
+  visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
 }
 
 std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, ThreadTeam& team) const {
   constexpr size_t kShare = 256;  // pairs of triangles that a thread takes at once
-  const auto of =
-      feature_bounds<Bounds>([&](int node) { return bounds_around(x.col(node), 0.5 * reach); }, true);
+  const NearBoxes boxes(x, reach);
+  const auto of = feature_bounds<NearBox>([&](int node) { return boxes.around(node, true); }, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
   const size_t shares = (near.size() + kShare - 1) / kShare;
@@ -202,12 +240,8 @@ std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reac
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
                                 const Visit& visit) const {
-  visit_pairs<PartBounds>(
-      [&](int node) {
-        return PartBounds{bounds_around(x.col(node), 0.5 * reach), moving.moves(node)};
-      },
-      [](const PartBounds& a, const PartBounds& b) { return (a.moves || b.moves) && overlap(a.at, b.at); },
-      visit, {});
+  const NearBoxes boxes(x, reach);
+  visit_pairs<NearBox>([&](int node) { return boxes.around(node, moving.moves(node)); }, overlap, visit, {});
 }
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,

@@ -131,6 +131,9 @@ PairVector distance_gradient(const PairCorners& x, const ClosestPair& closest) {
   return g;
 }
 
+// The offset of the scene must not eat the digits of a small gap.
+PairCorners from_first_corner(const PairCorners& x) { return x.colwise() - Vec3(x.col(0)); }
+
 ClosestPair closest_point_triangle(const PairCorners& x) {
   const ClosestOnTriangle found = closest_on_triangle(x.col(0), x.col(1), x.col(2), x.col(3));
   ClosestPair pair;
@@ -162,10 +165,16 @@ ClosestPair closest_edge_edge(const PairCorners& x) {
 }  // namespace
 
 ClosestPair closest_points(PairKind kind, const PairCorners& x) {
-  // From the first corner: the offset of the scene must not eat the digits of a small gap.
-  PairCorners local = x;
-  local.colwise() -= Vec3(x.col(0));
+  const PairCorners local = from_first_corner(x);
   return kind == PairKind::PointTriangle ? closest_point_triangle(local) : closest_edge_edge(local);
+}
+
+double pair_distance(PairKind kind, const PairCorners& x) {
+  const PairCorners local = from_first_corner(x);
+  return std::sqrt(
+      kind == PairKind::PointTriangle
+          ? closest_on_triangle(local.col(0), local.col(1), local.col(2), local.col(3)).distance_squared
+          : closest_on_segments(local.col(0), local.col(1), local.col(2), local.col(3)).distance_squared);
 }
 
 BarrierValue barrier(double s) {
@@ -181,8 +190,7 @@ double evaluate_barrier(const BarrierRest& rest, const PairCorners& corners, con
     if (H != nullptr) H->setConstant(kNaN);
     return kInfinity;
   }
-  PairCorners x = corners;
-  x.colwise() -= Vec3(corners.col(0));
+  const PairCorners x = from_first_corner(corners);
   const BarrierValue phi = barrier(closest.distance / rest.range);
   const double energy = rest.strength * phi.energy, slope = rest.strength / rest.range * phi.slope,
                curvature = rest.strength / (rest.range * rest.range) * phi.curvature;

@@ -41,6 +41,9 @@ struct ClosestPair {
 
 ClosestPair closest_points(PairKind kind, const PairCorners& x);
 
+// Their distance alone, the same number [length].
+double pair_distance(PairKind kind, const PairCorners& x);
+
 // phi and its first two derivatives at s = d/r > 0; zero for s >= 1.
 struct BarrierValue {
   double energy, slope, curvature;
