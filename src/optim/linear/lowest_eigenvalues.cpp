@@ -60,7 +60,7 @@ constexpr std::array kBoundShifts = {2.0, 4.0};  // likewise, at which imaginary
 constexpr int kPowerSteps = 40;                  // towards the greatest imaginary part
 constexpr double kMargin = 1.1;                  // on the imaginary part that they find
 constexpr double kConverged = 1e-8;              // relative residual of an eigenpair
-constexpr int kFirst = 20, kMost = 160;          // eigenvalues that are asked for
+constexpr int kFirst = 40, kMost = 160;          // eigenvalues that are asked for
 constexpr int kSubspace = 60;                    // vectors of the Krylov space, at least
 constexpr int kRestarts = 100;                   // of Arnoldi's method
 constexpr double kMoreThanNeeded = 1.3;          // asked for, over what the last search lets expect
