@@ -1,91 +1,138 @@
 #include "energy/hessian_pattern.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 namespace coapt {
 namespace {
 
-// The blocks of all elements at and below the diagonal, by block column.
-struct ElementBlocks {
-  std::vector<size_t> start;  // of each column
-  std::vector<int> row;
-  std::vector<BlockSlot*> slot;  // of the element, to be filled in
-};
+bool is_contact(const EnergyTerm& term) { return term.role() == TermRole::Contact; }
 
-// slots: of each term, to point into.
-ElementBlocks element_blocks(const std::vector<std::unique_ptr<EnergyTerm>>& terms,
-                             const std::vector<int>& block, int block_count,
-                             std::vector<std::vector<BlockSlot>>& slots) {
+}  // namespace
+
+HessianPattern::ElementBlocks HessianPattern::element_blocks(
+    const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact) const {
   const auto visit_blocks = [&](const auto& visit) {
     for (size_t k = 0; k < terms.size(); ++k) {
+      if (is_contact(*terms[k]) != of_contact) continue;
       const Stencils& stencils = terms[k]->stencils();
-      BlockSlot* slot = slots[k].data();
+      size_t slot = 0;
       for (size_t first = 0; first < stencils.nodes.size(); first += stencils.width)
         for (int a = 0; a < stencils.width; ++a)
           for (int b = 0; b < stencils.width; ++b, ++slot) {
-            const int row = block[stencils.nodes[first + a]], column = block[stencils.nodes[first + b]];
-            if (column >= 0 && row >= column) visit(row, column, slot);
+            const int row = block_[stencils.nodes[first + a]], column = block_[stencils.nodes[first + b]];
+            if (column >= 0 && row >= column) visit(column, ElementBlock{row, slot, k});
           }
     }
   };
   ElementBlocks blocks;
-  blocks.start.assign(block_count + 1, 0);
-  visit_blocks([&](int, int column, BlockSlot*) { ++blocks.start[column + 1]; });
+  blocks.start.assign(block_count_ + 1, 0);
+  visit_blocks([&](int column, const ElementBlock&) { ++blocks.start[column + 1]; });
   std::partial_sum(blocks.start.begin(), blocks.start.end(), blocks.start.begin());
-  blocks.row.resize(blocks.start.back());
-  blocks.slot.resize(blocks.start.back());
+  blocks.block.resize(blocks.start.back());
   std::vector<size_t> next(blocks.start.begin(), blocks.start.end() - 1);
-  visit_blocks([&](int row, int column, BlockSlot* slot) {
-    blocks.row[next[column]] = row;
-    blocks.slot[next[column]++] = slot;
-  });
+  visit_blocks([&](int column, const ElementBlock& block) { blocks.block[next[column]++] = block; });
   return blocks;
 }
 
-}  // namespace
-
 HessianPattern::HessianPattern(const std::vector<std::unique_ptr<EnergyTerm>>& terms,
                                const std::vector<int>& block, int block_count,
-                               const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed) {
-  for (const auto& term : terms) slots_.emplace_back(term->stencils().nodes.size() * term->stencils().width);
-  const ElementBlocks elements = element_blocks(terms, block, block_count, slots_);
-  zero_.resize(3 * block_count, 3 * block_count);
-  std::vector<int> rows, place(block_count), column_of(block_count, -1), inner;
-  inner.reserve(elements.row.size() * 3);
-  for (int j = 0; j < block_count; ++j) {
-    rows.assign(1, j);
-    column_of[j] = j;
-    for (size_t k = elements.start[j]; k < elements.start[j + 1]; ++k)
-      if (std::exchange(column_of[elements.row[k]], j) != j) rows.push_back(elements.row[k]);
-    std::sort(rows.begin(), rows.end());
-    const int position = static_cast<int>(inner.size()), height = 3 * static_cast<int>(rows.size());
-    for (size_t k = 0; k < rows.size(); ++k) place[rows[k]] = static_cast<int>(k);
-    for (size_t k = elements.start[j]; k < elements.start[j + 1]; ++k)
-      *elements.slot[k] = {position + 3 * place[elements.row[k]], height};
-    for (int c = 0; c < 3; ++c) {
-      zero_.outerIndexPtr()[3 * j + c] = position + c * height;
-      for (const int row : rows) inner.insert(inner.end(), {3 * row, 3 * row + 1, 3 * row + 2});
-    }
-  }
-  const auto size = static_cast<Eigen::Index>(inner.size());
-  zero_.outerIndexPtr()[3 * block_count] = static_cast<int>(size);
-  zero_.resizeNonZeros(size);
-  std::copy(inner.begin(), inner.end(), zero_.innerIndexPtr());
-  std::fill_n(zero_.valuePtr(), size, 0.0);
-
-  std::vector<char> masked(3 * block_count, 0);
+                               const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed)
+    : block_(block), block_count_(block_count), is_masked_(3 * block_count, 0) {
   for (size_t node = 0; node < block.size(); ++node)
     for (int c = 0; c < 3; ++c)
       if (block[node] >= 0 && fixed(c, static_cast<Eigen::Index>(node))) {
-        masked[3 * block[node] + c] = 1;
+        is_masked_[3 * block[node] + c] = 1;
         masked_.push_back(3 * block[node] + c);
       }
+  couple_fixed(terms);
+  renew_pairs(terms);
+}
+
+void HessianPattern::couple_fixed(const std::vector<std::unique_ptr<EnergyTerm>>& terms) {
+  slots_.resize(terms.size());
+  fixed_entry_.resize(terms.size());
+  for (size_t k = 0; k < terms.size(); ++k) {
+    if (is_contact(*terms[k])) continue;
+    slots_[k].resize(terms[k]->stencils().nodes.size() * terms[k]->stencils().width);
+    fixed_entry_[k].assign(slots_[k].size(), -1);
+  }
+  const ElementBlocks elements = element_blocks(terms, false);
+  std::vector<int> rows, place(block_count_), column_of(block_count_, -1);
+  fixed_start_.assign(1, 0);
+  for (int j = 0; j < block_count_; ++j) {
+    rows.assign(1, j);
+    column_of[j] = j;
+    for (size_t k = elements.start[j]; k < elements.start[j + 1]; ++k)
+      if (std::exchange(column_of[elements.block[k].row], j) != j) rows.push_back(elements.block[k].row);
+    std::sort(rows.begin(), rows.end());
+    for (size_t k = 0; k < rows.size(); ++k) place[rows[k]] = static_cast<int>(fixed_row_.size() + k);
+    for (size_t k = elements.start[j]; k < elements.start[j + 1]; ++k)
+      fixed_entry_[elements.block[k].term][elements.block[k].slot] = place[elements.block[k].row];
+    fixed_row_.insert(fixed_row_.end(), rows.begin(), rows.end());
+    fixed_start_.push_back(fixed_row_.size());
+  }
+}
+
+void HessianPattern::renew_pairs(const std::vector<std::unique_ptr<EnergyTerm>>& terms) {
+  for (size_t k = 0; k < terms.size(); ++k)
+    if (is_contact(*terms[k]))
+      slots_[k].assign(terms[k]->stencils().nodes.size() * terms[k]->stencils().width, {});
+  const ElementBlocks pairs = element_blocks(terms, true);
+  std::vector<int> more, place(block_count_), column_of(block_count_, -1);
+  std::vector<BlockSlot> of_entry(fixed_row_.size());
+  start_.assign(1, 0);
+  row_.clear();
+  for (int j = 0; j < block_count_; ++j) {
+    const auto first = fixed_row_.begin() + static_cast<std::ptrdiff_t>(fixed_start_[j]),
+               last = fixed_row_.begin() + static_cast<std::ptrdiff_t>(fixed_start_[j + 1]);
+    std::for_each(first, last, [&](int row) { column_of[row] = j; });
+    more.clear();
+    for (size_t k = pairs.start[j]; k < pairs.start[j + 1]; ++k)
+      if (std::exchange(column_of[pairs.block[k].row], j) != j) more.push_back(pairs.block[k].row);
+    std::sort(more.begin(), more.end());
+    std::merge(first, last, more.begin(), more.end(), std::back_inserter(row_));
+    const int begin = start_.back(), end = static_cast<int>(row_.size());
+    for (int k = begin; k < end; ++k) place[row_[k]] = k - begin;
+    const auto slot_of = [&](int row) { return BlockSlot{9 * begin + 3 * place[row], 3 * (end - begin)}; };
+    for (size_t k = fixed_start_[j]; k < fixed_start_[j + 1]; ++k) of_entry[k] = slot_of(fixed_row_[k]);
+    for (size_t k = pairs.start[j]; k < pairs.start[j + 1]; ++k)
+      slots_[pairs.block[k].term][pairs.block[k].slot] = slot_of(pairs.block[k].row);
+    start_.push_back(end);
+  }
+  for (size_t k = 0; k < terms.size(); ++k)
+    for (size_t i = 0; i < fixed_entry_[k].size(); ++i)
+      if (fixed_entry_[k][i] >= 0) slots_[k][i] = of_entry[fixed_entry_[k][i]];
+  write_matrix();
+  find_masked();
+}
+
+void HessianPattern::write_matrix() {
+  zero_.resize(3 * block_count_, 3 * block_count_);
+  zero_.resizeNonZeros(9 * static_cast<Eigen::Index>(row_.size()));
+  int *outer = zero_.outerIndexPtr(), *inner = zero_.innerIndexPtr();
+  for (int j = 0; j < block_count_; ++j) {
+    const int height = 3 * (start_[j + 1] - start_[j]);
+    for (int c = 0; c < 3; ++c) {
+      outer[3 * j + c] = 9 * start_[j] + c * height;
+      for (int k = start_[j]; k < start_[j + 1]; ++k)
+        for (int r = 0; r < 3; ++r) *inner++ = 3 * row_[k] + r;
+    }
+  }
+  outer[3 * block_count_] = 9 * static_cast<int>(row_.size());
+  std::fill_n(zero_.valuePtr(), zero_.nonZeros(), 0.0);
+}
+
+void HessianPattern::find_masked() {
+  masked_zero_.clear();
+  masked_one_.clear();
+  if (masked_.empty()) return;
   for (int column = 0; column < zero_.outerSize(); ++column)
     for (int k = zero_.outerIndexPtr()[column]; k < zero_.outerIndexPtr()[column + 1]; ++k) {
       const int row = zero_.innerIndexPtr()[k];
-      if (!masked[row] && !masked[column]) continue;
+      if (!is_masked_[row] && !is_masked_[column]) continue;
       (row == column ? masked_one_ : masked_zero_).push_back(k);
     }
 }

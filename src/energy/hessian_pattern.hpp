@@ -1,4 +1,5 @@
-// Where every element's 3x3 blocks go in the assembled Hessian: computed once, written in place.
+// Where every element's 3x3 blocks go in the assembled Hessian: computed once, written in place. What pairs
+// in contact couple changes from one search to the next; the rest stays.
 #pragma once
 
 #include "energy/term.hpp"
@@ -19,6 +20,9 @@ class HessianPattern {
   HessianPattern(const std::vector<std::unique_ptr<EnergyTerm>>& terms, const std::vector<int>& block,
                  int block_count, const Eigen::Array<bool, 3, Eigen::Dynamic>& fixed);
 
+  // The pattern after terms of contact have found other pairs. Pre: the same terms, and no other has changed.
+  void renew_pairs(const std::vector<std::unique_ptr<EnergyTerm>>& terms);
+
   // The lower triangle (whole diagonal blocks) with zero values.
   const Eigen::SparseMatrix<double>& zero_matrix() const { return zero_; }
 
@@ -35,8 +39,34 @@ class HessianPattern {
   const std::vector<int>& masked() const { return masked_; }
 
  private:
+  // A 3x3 block of an element at or below the diagonal.
+  struct ElementBlock {
+    int row;
+    size_t slot;  // of the term
+    size_t term;
+  };
+  // By block column.
+  struct ElementBlocks {
+    std::vector<size_t> start;
+    std::vector<ElementBlock> block;
+  };
+
+  ElementBlocks element_blocks(const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact) const;
+  void couple_fixed(const std::vector<std::unique_ptr<EnergyTerm>>& terms);
+  void write_matrix();
+  void find_masked();
+
+  std::vector<int> block_;  // of each node
+  int block_count_ = 0;
+  // Rows that all terms but contact couple with each block column, ascending, the diagonal among them; and
+  // which of them each slot of these terms is, -1 above the diagonal.
+  std::vector<size_t> fixed_start_;
+  std::vector<int> fixed_row_;
+  std::vector<std::vector<int>> fixed_entry_;  // per term
+  std::vector<int> start_, row_;               // of all block columns, contact included
   Eigen::SparseMatrix<double> zero_;
   std::vector<std::vector<BlockSlot>> slots_;  // per term
+  std::vector<char> is_masked_;                // of each unknown
   std::vector<int> masked_;                    // unknowns
   std::vector<int> masked_zero_, masked_one_;  // positions in the values
 };

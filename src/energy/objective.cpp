@@ -175,13 +175,17 @@ void Objective::prepare(const Vector& q) {
     for (int c = 0; c < 3; ++c)
       if (!fixed_(c, active_[k])) x_(c, active_[k]) = q[3 * k + c];
   for (const auto& term : terms_)
-    if (term->prepare(x_)) pattern_is_current_ = false;
+    if (term->prepare(x_))
+      (term->role() == TermRole::Contact ? pairs_are_current_ : pattern_is_current_) = false;
 }
 
 void Objective::update_pattern() {
-  if (pattern_is_current_) return;
-  pattern_ = HessianPattern(terms_, block_, static_cast<int>(active_.size()), fixed_);
-  pattern_is_current_ = true;
+  if (pattern_is_current_ && pairs_are_current_) return;
+  if (pattern_is_current_)
+    pattern_.renew_pairs(terms_);
+  else
+    pattern_ = HessianPattern(terms_, block_, static_cast<int>(active_.size()), fixed_);
+  pattern_is_current_ = pairs_are_current_ = true;
   ++pattern_version_;
   part_sink();
 }

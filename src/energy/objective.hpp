@@ -239,7 +239,8 @@ class Objective {
   bool reference_is_current_ = false;
 
   HessianPattern pattern_;
-  bool pattern_is_current_ = false;
+  bool pattern_is_current_ = false;  // but for pairs in contact
+  bool pairs_are_current_ = false;   // those in the pattern
   long pattern_version_ = 0;
   EvaluationCounts counts_;
 };
