@@ -79,6 +79,12 @@ class DoubtTest(CommandCase):
         self.assert_page_doubts("tuning.html")
         self.assertIn(OPEN, self.document("tuning.json")["after"]["doubts"][0])
 
+    def test_stiffness_by_regions_says_that_the_valve_stands_open(self):
+        text = self.solve_several("tune-regions", self.open_valve(), "--yield-strain", 1, "--regions", 4, "--orifice", 5000)
+        self.assertIn("before in doubt: ", text)
+        found = self.document("region_tuning.json")
+        self.assertTrue(all(OPEN in found[state]["doubts"][0] for state in ("before", "after")))
+
     def test_refinement_sensitivity_and_benchmark_say_that_the_valve_stands_open(self):
         scene = self.open_valve()
         self.solve_several("mesh-study", scene, "--levels", 1)
