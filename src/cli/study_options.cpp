@@ -25,15 +25,6 @@ std::string steps_defect(const std::string& text) {
          ", read " + text;
 }
 
-// That a scene states. What is wrong with the scene is said by whoever solves it.
-std::optional<double> stated_tolerance(const std::string& scene) {
-  try {
-    return load_scene(scene).solver.tolerance;
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 RunOptions StudyArguments::options(const Session& session) const {
@@ -44,7 +35,7 @@ RunOptions StudyArguments::options(const Session& session) const {
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, options.tolerance ? options.tolerance : stated_tolerance(scene));
+  show_progress(session, options);
   return options;
 }
 

@@ -12,9 +12,15 @@
 
 namespace coapt {
 
+struct Model;
 struct Scene;
 struct SceneGeometry;
-struct Model;
+
+// What a run does next, for those who show how far it is.
+struct RunPhase {
+  std::string name = {};  // "mesh 1 of 3", "finest mesh", "certificate"; empty: one solve
+  double tolerance = 0;   // on the residual, of the solve that begins; 0: none does
+};
 
 struct RunOptions {
   std::string solver;                 // empty: the scene's
@@ -27,6 +33,7 @@ struct RunOptions {
   std::filesystem::path folder;       // empty: the scene's, see result_folder() of run.hpp
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty
+  std::function<void(const RunPhase&)> phase = {};  // told of each as it begins; may be empty
 
   // What is doubtful about a scene that was built, asked before it is solved: sentences for the warnings of
   // the result; may be empty.

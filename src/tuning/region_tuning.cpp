@@ -64,7 +64,7 @@ Tuning search(const TunedScene& tuned, const RegionTuningOptions& options, const
               const Result& first, Model& model, const RegionTuning& found) {
   const YieldExcess excess(model, options.yield_strain, found.orifice_limit_mm2);
   TrackingOptions tracking;
-  tracking.factorisation = setup.stability.factorisation;
+  tracking.factorisation = setup.factorisation;
   tracking.tolerance = setup.stop.tolerance;
   tracking.max_seconds = setup.stop.max_seconds;
   tracking.observer = setup.observer;

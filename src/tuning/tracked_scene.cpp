@@ -204,7 +204,7 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
                               : solve_scene(scene, geometry, tracked.model, setup).result;
   tracked.chords = std::make_shared<NamedChords>(named_chords(scene, geometry, tracked.model));
   tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(geometry));
-  tracking.factorisation = setup.stability.factorisation;
+  tracking.factorisation = setup.factorisation;
   tracked.equilibrium =
       std::make_unique<TrackedEquilibrium>(*tracked.model.objective, tracked.first.q, std::move(tracking));
   return tracked;

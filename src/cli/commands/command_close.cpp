@@ -172,7 +172,7 @@ RunReport solve_valve(const fs::path& folder, const Session& session) {
   options.folder = folder / "result";
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, scene.solver.tolerance);
+  show_progress(session, options);
   RunReport solved = run(scene, all_solvers(), options);
   end_progress();
   const Metrics& metrics = solved.report.metrics;

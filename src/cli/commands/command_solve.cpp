@@ -254,7 +254,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   std::optional<double> accuracy_mm;
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
   options.doubts = told_doubts;
-  options.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
+  show_progress(session, options);
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
@@ -264,7 +264,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   }
   RunReport report = solved(scene, solvers, options, accuracy_mm, unwritten);
   RunOptions again = options;
-  again.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
+  show_progress(session, again);  // without a checkpoint
   report.report = completed(unwritten, [&] {
     return with_branches(scene, all_solvers(), again, arguments.branches, report.model,
                          std::move(report.report), report.folder);
