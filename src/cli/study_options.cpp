@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "formats/text.hpp"
 #include "run/replaced_inputs.hpp"
+#include "tuning/first_order.hpp"
 
 #include <charconv>
 #include <utility>
@@ -36,6 +37,7 @@ RunOptions StudyArguments::options(const Session& session) const {
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
   show_progress(session, options);
+  options.first_order = first_order_of_runs(all_solvers(), options);
   return options;
 }
 

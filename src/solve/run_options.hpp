@@ -12,7 +12,9 @@
 
 namespace coapt {
 
+struct FirstOrder;
 struct Model;
+struct Report;
 struct Scene;
 struct SceneGeometry;
 
@@ -38,6 +40,10 @@ struct RunOptions {
   // What is doubtful about a scene that was built, asked before it is solved: sentences for the warnings of
   // the result; may be empty.
   std::function<std::vector<std::string>(const Scene&, const SceneGeometry&, const Model&)> doubts = {};
+
+  // How a result follows its parameters, for the sliders of report.html: asked where that page is written,
+  // once all other files are. May be empty: no sliders. first_order_of_runs() of tuning makes one.
+  std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order = {};
 
   // Those of the build; a scene that leaves the choice open gets "multifrontal".
   FactorisationTable factorisations = built_in_factorisations();

@@ -22,6 +22,7 @@
 #include "results/result_warnings.hpp"
 #include "results/results.hpp"
 #include "run/run.hpp"
+#include "tuning/first_order.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 #include "valve/separate_leaflets.hpp"
 
@@ -173,6 +174,7 @@ RunReport solve_valve(const fs::path& folder, const Session& session) {
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
   show_progress(session, options);
+  options.first_order = first_order_of_runs(all_solvers(), options);
   RunReport solved = run(scene, all_solvers(), options);
   end_progress();
   const Metrics& metrics = solved.report.metrics;
