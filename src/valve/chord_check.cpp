@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kNoLength = 1e-6;  // of the median rest length
 constexpr size_t kNamed = 10;
-constexpr double kManyFans = 0.1;  // of all fans, that a coarse mesh makes end together
-constexpr double kAllSlack = 0.5;  // strain, below zero, of the tautest way; of valves at hand at most 0.13
+constexpr double kManyFans = 0.08;  // of all fans, that a coarse mesh makes end together
+constexpr double kAllSlack = 0.5;   // strain, below zero, of the tautest way; of valves at hand at most 0.13
 
 constexpr const char* kLengths = "`rest_length`, its unit and any `length_scale`";
 
