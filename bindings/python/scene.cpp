@@ -7,6 +7,7 @@
 #include "run/branches.hpp"
 #include "scene/file/schema.hpp"
 #include "solution.hpp"
+#include "tuning/first_order.hpp"
 #include "valve/generators/mitral.hpp"
 
 #include <optional>
@@ -35,6 +36,8 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
   if (folder) options.folder = *folder;
   options.factorisations = factorisations();
   options.checker = checker();
+  if (!input.vertices && input.terms.empty())  // the scene says all that its sliders are made of
+    options.first_order = first_order_of_runs(cli::all_solvers(), options);
   Failure failure;
   Given given = input.given(failure);
   const bool is_from_given_start = given.start.has_value();

@@ -1,6 +1,7 @@
 #include "cli/progress.hpp"
 
 #include "cli/progress_estimate.hpp"
+#include "core/number_text.hpp"
 #include "core/timing.hpp"
 
 #include <csignal>
@@ -19,10 +20,11 @@ volatile std::sig_atomic_t interrupted = 0;
 
 constexpr double kLogPause = 5;  // [s] between lines where nobody watches
 
-// What a run of make_observer() has shown.
+// What show_progress() has shown.
 struct ShownProgress {
   double start = wall_seconds(), last = start;
   ProgressEstimate estimate;
+  RunPhase phase;  // the last that is a solve
 };
 
 constexpr unsigned kIterateTime = 120;  // [s] that an iterate may still take after a signal
@@ -64,17 +66,33 @@ void show_line(const std::string& line, bool is_terminal) {
 
 }  // namespace
 
-Observer make_observer(const Session& session, std::optional<double> wanted) {
-  if (session.is_quiet && !session.is_verbose)
-    return [](const Iteration&, const Vector&) { return !is_interrupted(); };
+void show_progress(const Session& session, RunOptions& options) {
+  if (session.is_quiet && !session.is_verbose) {
+    options.observer = [](const Iteration&, const Vector&) { return !is_interrupted(); };
+    return;
+  }
   const bool is_terminal = isatty(STDERR_FILENO) == 1 && !session.is_verbose;
   const double pause = session.is_verbose ? 0 : is_terminal ? 0.1 : kLogPause;
   const auto shown = std::make_shared<ShownProgress>();
-  return [=](const Iteration& now, const Vector& q) {
+  options.phase = [=](const RunPhase& phase) {
+    if (phase.tolerance > 0) {
+      shown->phase = phase;
+      return;
+    }
+    const double now = wall_seconds();
+    if (now - shown->last < pause && !is_terminal) return;
+    shown->last = now;
+    show_line(phase.name + ", " + fixed_text(now - shown->start, 1) + " s", is_terminal);
+  };
+  options.observer = [=](const Iteration& now, const Vector& q) {
+    const bool is_question = now.evaluations == 0 && now.residual == 0;
+    if (is_question) return !is_interrupted();
     shown->estimate.see(now);
     if (wall_seconds() - shown->last >= pause) {
       shown->last = wall_seconds();
-      show_line(progress_line(now, q.size() / 3, wanted, shown->last - shown->start,
+      const std::optional<double> wanted =
+          shown->phase.tolerance > 0 ? std::optional(shown->phase.tolerance) : std::nullopt;
+      show_line(progress_line(shown->phase.name, now, q.size() / 3, wanted, shown->last - shown->start,
                               wanted ? shown->estimate.seconds_left(*wanted) : std::nullopt),
                 is_terminal);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/session.hpp"
-#include "optim/solver.hpp"
+#include "solve/run_options.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -20,11 +20,11 @@ void listen_for_interrupts();
 // Whether such a signal has come; whoever asks is about to stop.
 bool is_interrupted();
 
-// Shows on the standard error how far a solve is: step, iterations, residual and the one that is wanted,
-// where that is known, time since this call, and what is left by estimate. On a terminal in one line,
+// Shows on the standard error how far a run is: its phase, step, iterations, residual and the one that is
+// wanted, where that is known, time since this call, and what is left by estimate. On a terminal in one line,
 // elsewhere as a line every five seconds, none for --quiet, for --verbose a line at every iterate. Asks the
 // run to stop after an interrupt.
-Observer make_observer(const Session& session, std::optional<double> wanted = std::nullopt);
+void show_progress(const Session& session, RunOptions& options);
 
 // The same of jobs that go on beside each other, to be called again and again with how many have ended since
 // this call: "2 of 5 points, 14.0 s, about 21 s left".

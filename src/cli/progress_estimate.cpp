@@ -33,10 +33,10 @@ std::optional<double> ProgressEstimate::seconds_left(double wanted) const {
   return std::max(0.0, (now_s_ - start_s_) * open / fallen);
 }
 
-std::string progress_line(const Iteration& now, long nodes, std::optional<double> wanted, double elapsed_s,
-                          std::optional<double> left_s) {
-  return "step " + std::to_string(now.outer_iteration) + ", " + std::to_string(nodes) + " nodes, iteration " +
-         std::to_string(now.iteration) +
+std::string progress_line(const std::string& phase, const Iteration& now, long nodes,
+                          std::optional<double> wanted, double elapsed_s, std::optional<double> left_s) {
+  return phase + (phase.empty() ? "" : ", ") + "step " + std::to_string(now.outer_iteration) + ", " +
+         std::to_string(nodes) + " nodes, iteration " + std::to_string(now.iteration) +
          (std::isnan(now.path) ? "" : ", path " + fixed_text(100 * now.path, 0) + " %") + ", residual " +
          number_text(now.residual, 2) + (wanted ? " (wanted " + number_text(*wanted, 2) + ")" : "") + ", " +
          fixed_text(elapsed_s, 1) + " s" + (left_s ? left_text(*left_s) + " in this step" : "");

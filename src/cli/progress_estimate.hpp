@@ -24,11 +24,11 @@ class ProgressEstimate {
   double first_residual_ = 0, least_residual_ = 0;
 };
 
-// "step 3, 1234 nodes, iteration 12, path 45 %, residual 0.0012 (wanted 1e-06), 3.4 s, about 5 s left in this
-// step"; of a path of loads or of prescribed motion the share done. The energy is left out: that of a step on
-// the way is not the one that is reported.
-std::string progress_line(const Iteration& now, long nodes, std::optional<double> wanted, double elapsed_s,
-                          std::optional<double> left_s);
+// "finest mesh, step 3, 1234 nodes, iteration 12, path 45 %, residual 0.0012 (wanted 1e-06), 3.4 s, about 5 s
+// left in this step"; of a path of loads or of prescribed motion the share done. The energy is left out: that
+// of a step on the way is not the one that is reported. phase: may be empty.
+std::string progress_line(const std::string& phase, const Iteration& now, long nodes,
+                          std::optional<double> wanted, double elapsed_s, std::optional<double> left_s);
 
 // "2 of 5 points, 14.0 s, about 21 s left": by the mean time of those that have ended.
 std::string job_progress_line(const std::string& jobs, std::size_t ended, std::size_t count,

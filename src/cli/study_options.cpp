@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "formats/text.hpp"
 #include "run/replaced_inputs.hpp"
+#include "tuning/first_order.hpp"
 
 #include <charconv>
 #include <utility>
@@ -25,15 +26,6 @@ std::string steps_defect(const std::string& text) {
          ", read " + text;
 }
 
-// That a scene states. What is wrong with the scene is said by whoever solves it.
-std::optional<double> stated_tolerance(const std::string& scene) {
-  try {
-    return load_scene(scene).solver.tolerance;
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 RunOptions StudyArguments::options(const Session& session) const {
@@ -44,7 +36,8 @@ RunOptions StudyArguments::options(const Session& session) const {
   options.damped_steps = damped_steps;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, options.tolerance ? options.tolerance : stated_tolerance(scene));
+  show_progress(session, options);
+  options.first_order = first_order_of_runs(all_solvers(), options);
   return options;
 }
 

@@ -16,8 +16,19 @@ Vec3 end_of_path(int node, const SceneGeometry& geometry) {
   return path == geometry.prescribed.paths.end() ? Vec3(geometry.model.X.col(node)) : path->second.back();
 }
 
-// All networks as one, at the positions of the model.
-ChordNetwork joined_networks(const SceneGeometry& geometry) {
+// By the term that makes a line of the chord.
+double length_scale(const Scene& scene, const std::string& network, const Chord& chord) {
+  for (const TermSpec& term : scene.terms) {
+    const Parameters& p = term.parameters;
+    if (p.has("network") && p.text("network") == network && p.has("length_scale") &&
+        takes_material(p, chord.material))
+      return p.number("length_scale");
+  }
+  return 1;
+}
+
+// All networks as one, at the positions of the model, with the lengths that the terms make of theirs.
+ChordNetwork joined_networks(const Scene& scene, const SceneGeometry& geometry) {
   ChordNetwork all;
   std::vector<int> tips, junctions;  // nodes
   for (const auto& [path, placed] : geometry.networks) {
@@ -29,6 +40,7 @@ ChordNetwork joined_networks(const SceneGeometry& geometry) {
         if (end->kind == ChordEnd::Kind::Papillary) end->index += first_tip;
         if (end->kind == ChordEnd::Kind::Junction) end->index += first_junction;
       }
+      chord.rest_length *= length_scale(scene, path, chord);
       all.chords.push_back(std::move(chord));
     }
   }
@@ -93,7 +105,7 @@ std::vector<std::string> valve_doubts(const Scene& scene, const SceneGeometry& g
   valve.leaflets = geometry.model.mesh;
   valve.closed_reference = geometry.model.closed_reference;
   valve.annulus = annulus->second;
-  valve.chords = joined_networks(geometry);
+  valve.chords = joined_networks(scene, geometry);
   valve.pressure = model.applied_pressure;
   double greatest_thickness = 0;
   for (const MembraneProperties& membrane : model.membrane) {

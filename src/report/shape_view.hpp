@@ -44,6 +44,9 @@ struct ViewField {
   std::string none = {};                     // said in place of a missing value
 };
 
+// How many sliders of parameters a page has room for that shows so many nodes.
+size_t most_sliders(size_t nodes);
+
 struct ShapeView {
   std::string name;            // of the picture's file
   Vec3 origin = Vec3::Zero();  // added to positions that are told [mm]

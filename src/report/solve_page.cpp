@@ -46,8 +46,8 @@ PageMarkup tiles(const Report& report) {
   for (const MetricRow& row : rows)
     for (const char* name :
          {"orifice_area_mm2", "coaptation_area_mm2", "coaptation_height_mm", "tenting_height_mm",
-          "max_principal_strain", "p95_principal_strain", "max_cauchy_stress_kpa", "max_chord_force_n",
-          "max_chord_stress_kpa", "max_displacement_mm"})
+          "max_principal_strain", "p95_principal_strain", "p99_principal_strain", "max_cauchy_stress_kpa",
+          "max_chord_force_n", "max_chord_stress_kpa", "max_displacement_mm"})
       if (row.name == name && row.value)
         html += tile(metric_in_words(row), *row.value, unit_sign(row.unit), criterion_of(report, name));
   for (const HealthyCriterion& criterion : report.metrics.healthy_closure)  // those that are no metric

@@ -1,5 +1,5 @@
 // How the shape of a result and its figures follow single parameters of its scene, to first order, and over
-// which range solves have checked it. Plain data: whoever solves fills it in, pages show it.
+// which range that was checked. Plain data: whoever solves fills it in, pages show it.
 #pragma once
 
 #include "results/metrics.hpp"
@@ -11,19 +11,20 @@
 
 namespace coapt {
 
-// What a solve found at one end of a parameter's range.
+// The equilibrium at one end of a parameter's range.
 struct CheckedEnd {
   double change = 0;    // of the parameter from its value in the result, in its unit; below 0: the lower end
   double error_mm = 0;  // greatest distance of a node of the sheet from where the first order has it
-  std::vector<MetricRow> figures = {};  // of the solve
+  std::vector<MetricRow> figures = {};  // there
 };
 
 struct ParameterResponse {
-  std::string name = {};   // in words: "rest length of the chords of tip_0"
-  std::string key = {};    // as make_named_parameter() knows it
-  std::string unit = {};   // of changes: "%" of the value, "mm" or "°"
-  Points motion = {};      // displacement of each node per unit, 3 x node_count [mm]
-  double movement_mm = 0;  // of the sheet, root of the mean square, by the change that was tried first
+  std::string name = {};    // in words: "rest length of the chords of tip_0"
+  std::string key = {};     // as make_named_parameter() knows it
+  std::string unit = {};    // of changes: "%" of the value, "mm" or "°"
+  Vector unit_change = {};  // of the parameter's numbers, per unit
+  Points motion = {};       // displacement of each node per unit, 3 x node_count [mm]
+  double movement_mm = 0;   // of the sheet, root of the mean square, by the change that was tried first
   std::array<CheckedEnd, 2> ends{};  // lower, upper; a change of 0: nothing could be checked that way
 };
 

@@ -1,5 +1,6 @@
 // What surgeons and engineers ask of a mitral valve that closes well, beside the figures of a result.
-// Source: Toma et al. 2016, section 2.1 (papillary muscles were placed so that these held).
+// Sources: Toma et al. 2016, section 2.1 (papillary muscles were placed so that these held); of the strain of
+// the leaflets Rausch et al. 2011.
 #pragma once
 
 #include <optional>
@@ -24,7 +25,8 @@ struct ClosureFigures {
   double anterior_share = 0;        // of the antero-posterior diameter (Closure::anterior_share)
   double coaptation_height_mm = 0;  // 90th percentile along the coaptation line
   double regurgitant_area_mm2 = 0;
-  double pressure_mpa = 0;  // on the leaflets; 0: not known
+  double pressure_mpa = 0;                // on the leaflets; 0: not known
+  std::optional<double> strain_p99 = {};  // greatest principal, not exceeded on 99 % of the area
 };
 
 // Regurgitant volume of one systole [ml] through an orifice [mm2] under a pressure [MPa]: area times the
@@ -41,5 +43,9 @@ std::string figure_in_words(const HealthyCriterion& criterion);
 
 // A range in words: "3 to 5 mm", "at most 5 ml".
 std::string range_in_words(const HealthyCriterion& criterion);
+
+// Why the strain of the leaflets is doubtful, a clause with the published values; empty: it is in their
+// range, or is not judged.
+std::string strain_doubt(const std::vector<HealthyCriterion>& criteria);
 
 }  // namespace coapt

@@ -31,7 +31,8 @@ void measure_annulus(const Model& model, const Fields& fields, const ContactMeas
   metrics.prolapse_height_mm = closure.prolapse_height_mm;
   if (closure.anterior_share)
     metrics.healthy_closure = healthy_criteria({*closure.anterior_share, closure.coaptation_height_mm,
-                                                *metrics.regurgitant_area_mm2, model.applied_pressure});
+                                                *metrics.regurgitant_area_mm2, model.applied_pressure,
+                                                metrics.p99_principal_strain});
   metrics.closure = std::move(closure);
 }
 

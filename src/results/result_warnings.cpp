@@ -122,6 +122,8 @@ std::vector<std::string> further_doubts(const Report& report) {
     list.push_back(std::to_string(pairs) + (pairs == 1 ? " pair of facets passes" : " pairs of facets pass") +
                    " through each other");
   if (const std::string reason = standing_open(report.metrics); !reason.empty()) list.push_back(reason);
+  if (const std::string reason = strain_doubt(report.metrics.healthy_closure); !reason.empty())
+    list.push_back(reason);
   if (2 * report.metrics.slack_chords.value_or(0) > report.fields.line_strain.size())
     list.emplace_back("most chords are slack");
   list.insert(list.end(), report.surface_doubts.begin(), report.surface_doubts.end());

@@ -33,8 +33,8 @@ std::vector<std::string> surface_doubts(const TriangleMesh& mesh);
 bool is_in_doubt(const Report& report);
 
 // Why an equilibrium is no plain result, a clause for each reason: it is not stable, facets pass through each
-// other, the valve stands open, most chords are slack, its surface is doubtful, it may not be the only one.
-// None where the run did not converge.
+// other, the valve stands open, its leaflets are stretched far beyond what was measured in vivo, most chords
+// are slack, its surface is doubtful, it may not be the only one. None where the run did not converge.
 std::vector<std::string> doubts(const Report& report);
 
 // A state at rest in which facets pass through each other that collisions were to keep apart is not

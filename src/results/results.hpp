@@ -32,7 +32,7 @@ struct Report {
   std::optional<AccuracyEstimate> accuracy;  // where one was wanted
   NeighbourCheck neighbours;
   std::optional<Branches> branches;       // where they were looked for
-  std::optional<FirstOrder> first_order;  // where it was wanted, for the page
+  std::optional<FirstOrder> first_order;  // where it was wanted, for the page; or why there is none
   std::vector<std::string> warnings;
   std::vector<std::string> surface_doubts;  // clauses, see surface_doubts()
   bool has_frames = false;                  // of an animation, in the result folder

@@ -118,20 +118,32 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   return report;
 }
 
-void write_run(const std::filesystem::path& folder, const Model& model, const Report& report) {
+namespace {
+
+// complete: what the report gets for its page, once all else is written.
+void write_files(const std::filesystem::path& folder, const Model& model, const Report& report,
+                 const std::function<void()>& complete) {
   const std::filesystem::path page = folder / "report.html";
   std::error_code ignored;
   try {
     WriteAttempts attempt;
     attempt([&] { write_results(folder, model, report); });
-    if (report.has_page)
+    if (report.has_page) {
+      complete();
       attempt([&] { formats::write_whole(page, solve_page(model, report)); });
-    else
+    } else {
       std::filesystem::remove(page, ignored);  // of an earlier solve
+    }
     attempt.finish();
   } catch (const OutputError& error) {
     throw UnwrittenReport(error, report);
   }
+}
+
+}  // namespace
+
+void write_run(const std::filesystem::path& folder, const Model& model, const Report& report) {
+  write_files(folder, model, report, [] {});
 }
 
 std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options) {
@@ -147,7 +159,10 @@ Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& mo
                     const RunNotes& notes, const IntersectionChecker& checker,
                     const std::filesystem::path& folder) {
   Report report = measure_run(scene, setup, model, std::move(solved), notes, checker);
-  if (!folder.empty()) write_run(folder, model, report);
+  if (!folder.empty())
+    write_files(folder, model, report, [&] {
+      if (notes.first_order && has_shape_view()) report.first_order = notes.first_order(report);
+    });
   return report;
 }
 
@@ -172,9 +187,10 @@ Report run_built(const Scene& scene, const SceneGeometry& geometry, SolveSetup s
       lost_frames = error;
     }
   const auto complete = [&] {
-    return complete_run(scene, setup, model, std::move(solved),
-                        {.has_page = has_page, .has_frames = frames && !lost_frames}, options.checker,
-                        folder);
+    RunNotes notes{.has_page = has_page, .has_frames = frames && !lost_frames};
+    if (options.first_order)
+      notes.first_order = [&](const Report& report) { return options.first_order(scene, model, report); };
+    return complete_run(scene, setup, model, std::move(solved), notes, options.checker, folder);
   };
   if (!lost_frames) return complete();
   try {

@@ -25,6 +25,7 @@ struct RunNotes {
   bool has_page = false, has_frames = false;
   std::optional<AccuracyEstimate> accuracy = {};
   std::vector<std::string> warnings = {};
+  std::function<FirstOrder(const Report&)> first_order = {};  // asked before the page is written
 };
 
 // Whether the options and the scene want report.html.

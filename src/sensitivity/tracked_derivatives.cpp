@@ -9,9 +9,10 @@
 namespace coapt {
 namespace {
 
-constexpr double kExact = 1e-10;  // residual of the linear systems of derivatives
-constexpr double kSolved = 1e-6;  // relative residual beyond which a linear system counts as singular
-constexpr int kStaleFactor = 30;  // applications of a factor from nearby; a fresh one needs half
+constexpr double kExact =
+    TrackedEquilibrium::kExactResponse;  // residual of the linear systems of derivatives
+constexpr double kSolved = 1e-6;         // relative residual beyond which a linear system counts as singular
+constexpr int kStaleFactor = 30;         // applications of a factor from nearby; a fresh one needs half
 
 // Displacements of nodes from those of unknowns.
 Points nodal_motion(const Objective& objective, const Vector& direction) {
@@ -114,13 +115,13 @@ const std::vector<Switch>& TrackedEquilibrium::kinks() {
   return *kinks_;
 }
 
-Points TrackedEquilibrium::response(const Vector& change) {
+Points TrackedEquilibrium::response(const Vector& change, double tolerance) {
   require_solved();
   if (change.size() != number_count_)
     throw InputError("response: " + std::to_string(change.size()) + " numbers were given; there are " +
                      std::to_string(number_count_));
   ready_tangent();
-  return predict(change, kExact);
+  return predict(change, tolerance);
 }
 
 void TrackedEquilibrium::require_wanted() const {

@@ -27,6 +27,7 @@
 #include "sensitivity/switches.hpp"
 #include "sensitivity/tangent_system.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,6 +83,16 @@ struct WarmSolve {
   double seconds = 0;  // wall time, the check of the branch included
 };
 
+// Where a solve for other numbers would end, as TrackedEquilibrium::corrected() finds it.
+struct CorrectedShape {
+  bool is_found = false;  // the corrections shrank until what is left of them is below what was asked
+  Points x;               // as far as they went
+  double distance = 0;    // from where they began, greatest of the nodes that count [length]
+  double left = 0;        // estimate of the distance from the equilibrium, likewise
+  int steps = 0;          // each one evaluation of the forces and one linear system
+  int tangents = 0;       // that were taken for these
+};
+
 struct Derivatives {
   double value = 0;
   Vector gradient;      // by every number
@@ -92,6 +103,8 @@ struct Derivatives {
 
 class TrackedEquilibrium {
  public:
+  static constexpr double kExactResponse = 1e-10;  // relative residual of linear systems of derivatives
+
   // objective: must outlive this object; prescribed coordinates where they are to be held. Where a load has
   // no potential the objective follows its path from now on. q: see above.
   TrackedEquilibrium(Objective& objective, Vector q, TrackingOptions options = {});
@@ -138,7 +151,18 @@ class TrackedEquilibrium {
 
   // dx/d(numbers) change, 3 x node_count, and its transpose: the derivative of any function of the shape
   // whose derivative by x is `weights`.
-  Points response(const Vector& change);
+  // tolerance: on the relative residual of the linear system.
+  Points response(const Vector& change, double tolerance = kExactResponse);
+
+  // The shape of other numbers, from a start near it, without a solve: Newton steps with one tangent as long
+  // as they close in on something, and else with the next. They end once the last one and
+  // its predecessor say that less than `until` is left, or once the shape is `most` from the start. Lengths
+  // are of `nodes`. start: 3 x node_count, the prescribed nodes as they are now: they go where the numbers
+  // want them. Neither shape nor numbers of this object change. look: called where the shape was found, while
+  // the terms have the numbers. Throws InputError as set() does.
+  CorrectedShape corrected(const Vector& numbers, const Points& start, const std::vector<int>& nodes,
+                           double until, double most = kInfinity,
+                           const std::function<void(const CorrectedShape&)>& look = {});
   Vector pull_back(const Eigen::Ref<const Points>& weights);
 
   // One row for each metric, by as many linear systems as there are metrics or numbers, whichever are fewer.
@@ -183,6 +207,7 @@ class TrackedEquilibrium {
   WarmSolve solve_at(const Vector& now);
   WarmSolve move_to(const Place& from, const Points& predicted);
   bool move_quickly(const Points& predicted, WarmSolve& report);
+  void close_in(CorrectedShape& found, const std::vector<int>& nodes, double until, double most);
   std::optional<LostBranch> check_branch(const Place& from, const WarmSolve& report);
   void check_anchor_in_time(WarmSolve& report);
   Points predicted_change(const Place& from, const Vector& to);

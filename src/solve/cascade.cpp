@@ -114,8 +114,11 @@ bool was_interrupted(Status status) { return status == Status::Cancelled || stat
 
 class Cascade {
  public:
-  Cascade(const SolverMaker& make_solver, const StopRule& stop, const Observer& observer)
-      : make_solver_(make_solver), stop_(stop), observer_(observer) {}
+  Cascade(const SolverMaker& make_solver, const StopRule& stop, const Observer& observer,
+          const std::function<void(const RunPhase&)>& phase)
+      : make_solver_(make_solver), stop_(stop), observer_(observer), phase_(phase) {}
+
+  void has_meshes(size_t count) { meshes_ = count; }  // coarser than the scene's own
 
   // Solves a mesh of the cascade and notes it as a level.
   Result level(const Problem& problem, const Model& model, double tolerance) {
@@ -123,6 +126,12 @@ class Cascade {
     stop.tolerance = std::max(tolerance, stop_.tolerance);
     stop.max_seconds = std::max(0.0, stop_.max_seconds - (wall_seconds() - wall_start_));
     const std::unique_ptr<Solver> solver = make_solver_(model);
+    const size_t done = outcome.levels.size();
+    if (phase_)
+      phase_({meshes_ == 0     ? ""
+              : done < meshes_ ? "mesh " + std::to_string(done + 1) + " of " + std::to_string(meshes_ + 1)
+                               : "finest mesh",
+              stop.tolerance});
     Result result = solve(*solver, problem, stop, observer_);
     outcome.levels.push_back({model.mesh.triangle_count(), result.iterations, result.status, result.residual,
                               wall_seconds() - level_wall_, cpu_seconds() - level_cpu_, result.damped_steps});
@@ -151,6 +160,8 @@ class Cascade {
   const SolverMaker& make_solver_;
   const StopRule& stop_;
   const Observer& observer_;
+  const std::function<void(const RunPhase&)>& phase_;
+  size_t meshes_ = 0;
   double wall_start_ = wall_seconds(), cpu_start_ = cpu_seconds();
   double level_wall_ = wall_start_, level_cpu_ = cpu_start_;
 };
@@ -179,6 +190,7 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geome
     cascade.warn("The mesh is too small for a cascade, or cannot be made coarser: it was solved directly.");
     return std::nullopt;
   }
+  cascade.has_meshes(steps.size());
   Start start;
   for (size_t k = steps.size(); k-- > 0;) {
     const TriangleMesh& mesh = steps[k].coarsening.mesh;
@@ -218,8 +230,9 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geome
 CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer,
-                             const StabilityOptions& stability) {
-  Cascade cascade(make_solver, stop, observer);
+                             const StabilityOptions& stability,
+                             const std::function<void(const RunPhase&)>& phase) {
+  Cascade cascade(make_solver, stop, observer, phase);
   std::optional<Start> start = coarse_start(scene, geometry, continuation, cascade);
   if (start && !make_startable(start->x, model)) {
     cascade.warn(

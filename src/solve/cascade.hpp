@@ -3,6 +3,7 @@
 
 #include "results/cascade_level.hpp"
 #include "scene/build/scene_geometry.hpp"
+#include "solve/run_options.hpp"
 
 #include <functional>
 #include <memory>
@@ -18,10 +19,11 @@ using SolverMaker = std::function<std::unique_ptr<Solver>(const Model& model)>;
 // the scene's own mesh, that is solved from its own start, with a warning. The stop rule holds for the whole,
 // its iterations for each level. The observer sees the iterates of every level, whose unknowns are those of
 // that level. geometry, model: of the scene's own mesh, whose result gets the certificate that `stability`
-// asks for.
+// asks for. phase: told of each mesh as its solve begins; may be empty.
 CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, Model& model,
                              const SolverMaker& make_solver, const StopRule& stop,
                              const Continuation& continuation, const Observer& observer = {},
-                             const StabilityOptions& stability = {});
+                             const StabilityOptions& stability = {},
+                             const std::function<void(const RunPhase&)>& phase = {});
 
 }  // namespace coapt

@@ -12,9 +12,17 @@
 
 namespace coapt {
 
+struct FirstOrder;
+struct Model;
+struct Report;
 struct Scene;
 struct SceneGeometry;
-struct Model;
+
+// What a run does next, for those who show how far it is.
+struct RunPhase {
+  std::string name = {};  // "mesh 1 of 3", "finest mesh", "certificate"; empty: one solve
+  double tolerance = 0;   // on the residual, of the solve that begins; 0: none does
+};
 
 struct RunOptions {
   std::string solver;                 // empty: the scene's
@@ -27,10 +35,15 @@ struct RunOptions {
   std::filesystem::path folder;       // empty: the scene's, see result_folder() of run.hpp
   bool writes = true;                 // false: measures only
   Observer observer;                  // may be empty
+  std::function<void(const RunPhase&)> phase = {};  // told of each as it begins; may be empty
 
   // What is doubtful about a scene that was built, asked before it is solved: sentences for the warnings of
   // the result; may be empty.
   std::function<std::vector<std::string>(const Scene&, const SceneGeometry&, const Model&)> doubts = {};
+
+  // How a result follows its parameters, for the sliders of report.html: asked where that page is written,
+  // once all other files are. May be empty: no sliders. first_order_of_runs() of tuning makes one.
+  std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order = {};
 
   // Those of the build; a scene that leaves the choice open gets "multifrontal".
   FactorisationTable factorisations = built_in_factorisations();

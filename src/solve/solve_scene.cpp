@@ -107,16 +107,32 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   };
   setup.stop = stop_rule(scene, options);
   setup.continuation = chosen_continuation(scene, options);
+  setup.factorisation = factorisation;
   setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
+  if (options.phase)
+    setup.stability.factorisation = [factorisation, phase = options.phase] {
+      phase({.name = "certificate"});
+      return factorisation();
+    };
   setup.observer = options.observer;
+  setup.phase = options.phase;
   return setup;
 }
+
+namespace {
+
+void tell_of_solve(const SolveSetup& setup) {
+  if (setup.phase) setup.phase({.tolerance = setup.stop.tolerance});
+}
+
+}  // namespace
 
 CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Model& model,
                            const SolveSetup& setup) {
   if (scene.solver.cascade)
     return solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
-                         setup.observer, setup.stability);
+                         setup.observer, setup.stability, setup.phase);
+  tell_of_solve(setup);
   CascadeOutcome outcome;
   outcome.result = solve(*setup.make_solver(model),
                          {*model.objective, model.q0, model.motion, setup.continuation, setup.stability},
@@ -127,6 +143,7 @@ CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Mo
 Result solve_along_path(const Points& x, Model& model, const SolveSetup& setup) {
   Objective& objective = *model.objective;
   objective.prescribe(model.X);
+  tell_of_solve(setup);
   return solve(*setup.make_solver(model),
                {objective, objective.unknowns(x), model.motion, setup.continuation, setup.stability},
                setup.stop, setup.observer);
@@ -135,6 +152,7 @@ Result solve_along_path(const Points& x, Model& model, const SolveSetup& setup) 
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup) {
   Problem problem = problem_at(x, model);
   problem.stability = setup.stability;
+  tell_of_solve(setup);
   return solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
 }
 

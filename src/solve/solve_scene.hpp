@@ -15,8 +15,10 @@ struct SolveSetup {
   SolverMaker make_solver;
   StopRule stop;
   Continuation continuation;
-  StabilityOptions stability;
-  Observer observer;  // may be empty
+  FactorisationFactory factorisation;          // of the scene
+  StabilityOptions stability;                  // the same, which tells `phase` of the certificate
+  Observer observer;                           // may be empty
+  std::function<void(const RunPhase&)> phase;  // likewise
 };
 
 // Throws InputError for a solver that is not in the table (listing those that are), a factorisation that is

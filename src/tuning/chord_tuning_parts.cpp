@@ -93,7 +93,7 @@ EquilibriumMaker equilibrium_maker(const PreparedTuning& ready, Model& model, bo
       if ((first.array() > 0).all()) all.push_back({term.get(), std::move(first)});
     }
   TrackingOptions tracking;
-  tracking.factorisation = ready.setup.stability.factorisation;
+  tracking.factorisation = ready.setup.factorisation;
   tracking.tolerance = std::min(ready.setup.stop.tolerance, kTightest);
   tracking.max_iterations = kTrialIterations;
   tracking.checks_branch = checks_branch;

@@ -1,25 +1,35 @@
 #include "tuning/first_order.hpp"
 
 #include "core/error.hpp"
+#include "report/shape_view.hpp"
+#include "results/result_warnings.hpp"
 #include "run/run_parts.hpp"
 #include "tuning/tracked_scene.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <map>
 #include <numbers>
+#include <thread>
 
 namespace coapt {
 namespace {
 
-constexpr double kShare = 0.1;           // of a factor or a number, that is tried first
-constexpr double kShift = 0.05;          // of the extent of the sheet, of a displacement
-constexpr double kTilt = 0.1;            // [rad]
-constexpr double kUsualExtent = 40;      // [mm] of a sheet to which the tolerance belongs
-constexpr double kKept = 0.8;            // of the tolerance: the rest is for rounding in a page
-constexpr double kSameShape = 1e-2;      // of the tolerance, that a shape may miss the report's by
-constexpr double kMostMovement = 8;      // of the tolerance, of a node by the change that is tried first
-constexpr int kMostTrials = 4;           // solves for one end of a range
-constexpr double kLeastMovement = 0.05;  // of the tolerance: what moves the sheet less says nothing
+constexpr double kShare = 0.1;               // of a factor or a number, that is tried first
+constexpr double kShift = 0.05;              // of the extent of the sheet, of a displacement
+constexpr double kTilt = 0.1;                // [rad]
+constexpr double kUsualExtent = 100;         // [mm], beyond which the tolerance grows with the sheet
+constexpr double kKept = 0.8;                // of the tolerance: the rest is for rounding in a page
+constexpr double kSmaller = 0.3;             // of a range at whose end nothing was found
+constexpr double kLeft = 0.02;               // of the tolerance, that corrections leave
+constexpr double kResponse = 1e-6;           // residual of the linear system of a response
+constexpr double kSameShape = 1e-2;          // of the tolerance, that a shape may miss the report's by
+constexpr double kMostMovement = 6;          // of the tolerance, of a node by the change that is tried first
+constexpr Eigen::Index kMostShared = 20000;  // nodes of a scene of which every thread has one
+constexpr int kMostTrials = 6;               // for one end of a range
+constexpr double kLeastMovement = 0.05;      // of the tolerance: what moves the sheet less says nothing
 
 // One number, or one direction among the numbers of a parameter.
 struct Direction {
@@ -88,6 +98,8 @@ class Responses {
         nodes_.push_back(node);
     const Points& x = report.fields.x;
     extent_ = (x.leftCols(sheet).rowwise().maxCoeff() - x.leftCols(sheet).rowwise().minCoeff()).norm();
+    for (const MetricRow& row : metric_rows(report.metrics))
+      if (row.value) now_[row.name] = *row.value;
     found_.tolerance_mm = wanted.tolerance_mm * std::max(1.0, extent_ / kUsualExtent);
   }
 
@@ -109,7 +121,9 @@ class Responses {
       const std::vector<Meaning> all = meanings(key, equilibrium_.parameter(index).value(), extent_);
       for (size_t k = 0; k < all.size(); ++k) {
         const Eigen::Index number = equilibrium_.first_number(index) + static_cast<Eigen::Index>(k);
-        directions_.push_back({{.name = all[k].name, .key = key, .unit = all[k].unit},
+        Vector own = Vector::Zero(equilibrium_.parameter(index).value().size());
+        own[static_cast<Eigen::Index>(k)] = all[k].per_unit;
+        directions_.push_back({{.name = all[k].name, .key = key, .unit = all[k].unit, .unit_change = own},
                                all[k].per_unit * Vector::Unit(equilibrium_.number_count(), number),
                                all[k].step});
       }
@@ -129,9 +143,9 @@ class Responses {
   }
 
   // The derivative of the shape by each, those that move the sheet most first.
-  void rank(size_t most) {
+  void rank() {
     for (Direction& direction : directions_) try {
-        direction.response.motion = equilibrium_.response(direction.change);
+        direction.response.motion = equilibrium_.response(direction.change, kResponse);
         const Points moved = direction.response.motion(Eigen::all, nodes_);
         direction.response.movement_mm = direction.step * std::sqrt(moved.colwise().squaredNorm().mean());
       } catch (const InputError& error) {
@@ -143,24 +157,22 @@ class Responses {
     std::stable_sort(directions_.begin(), directions_.end(), [](const Direction& a, const Direction& b) {
       return a.response.movement_mm > b.response.movement_mm;
     });
-    most_ = most;
   }
 
-  // Until as many as wanted are checked.
-  FirstOrder checked() {
-    for (Direction& direction : directions_) {
-      if (found_.parameters.size() == most_ || is_lost_) break;
-      for (const int side : {0, 1}) check(direction, side);
-      const auto& ends = direction.response.ends;
-      if (ends[0].change != 0 || ends[1].change != 0)
-        found_.parameters.push_back(std::move(direction.response));
-    }
-    if (!found_.parameters.empty())
-      found_.message.clear();
-    else if (found_.message.empty())
-      found_.message = "no parameter moves the sheet over a range in which the first order holds";
-    return std::move(found_);
+  // Both ends of the range of a direction, of this or of a twin.
+  void check(Direction& direction) {
+    // Contact looks for its pairs anew from far away, so that only the last digits depend on what was checked
+    // before, by which thread.
+    Objective& objective = *tracked_.model.objective;
+    const Vector& q = equilibrium_.unknowns();
+    objective.value(q.array() + 2 * objective.extent(q));
+    for (const size_t side : {size_t{0}, size_t{1}}) check(direction, side);
+    complete_upper_end(direction.response.ends);
   }
+
+  const Vector& unknowns() const { return equilibrium_.unknowns(); }
+  std::vector<Direction>& directions() { return directions_; }
+  FirstOrder& found() { return found_; }
 
  private:
   // Of the nodes that count, the greatest.
@@ -169,56 +181,109 @@ class Responses {
     return apart.cols() == 0 ? 0 : std::sqrt(apart.colwise().squaredNorm().maxCoeff());
   }
 
-  // Whether the solve converged.
-  bool solve_at(const Vector& value) {
-    try {
-      equilibrium_.set(value);
-      return equilibrium_.solve().status == Status::Converged;
-    } catch (const InputError&) {  // beyond a limit of the parameter, or no tangent to predict with
-      return false;
-    }
-  }
-
-  void check(Direction& direction, int side) {
-    const Points moved = direction.response.motion(Eigen::all, nodes_);
+  // The length of the corrections that lead from the first order's shape to the equilibrium is its error.
+  void check(Direction& direction, size_t side) {
+    const double kept = kKept * found_.tolerance_mm;
+    const Points& motion = direction.response.motion;
+    const Points moved = motion(Eigen::all, nodes_);
     const double furthest = std::sqrt(moved.colwise().squaredNorm().maxCoeff());
+    const bool has_closure = direction.response.ends[0].change == 0;  // of the other end, that is
     double change = std::min(direction.step, kMostMovement * found_.tolerance_mm / furthest);
     if (side == 0) change = -change;
-    for (int trial = 0; trial < kMostTrials && !is_lost_; ++trial) {
-      const bool is_solved = solve_at(value_ + change * direction.change);
-      const double error = is_solved ? distance(x_ + change * direction.response.motion) : kInfinity;
-      if (error <= kKept * found_.tolerance_mm) {
-        direction.response.ends[static_cast<size_t>(side)] = {change, error, figures()};
+    for (int trial = 0; trial < kMostTrials; ++trial) {
+      if (std::abs(change) * furthest < kLeastMovement * found_.tolerance_mm) return;
+      std::vector<MetricRow> figures;
+      CorrectedShape shape;
+      try {
+        shape =
+            equilibrium_.corrected(value_ + change * direction.change, x_ + change * motion, nodes_,
+                                   kLeft * found_.tolerance_mm, 2 * kept, [&](const CorrectedShape& found) {
+                                     if (found.distance + found.left <= kept)
+                                       figures = figures_at(found.x, has_closure);
+                                   });
+      } catch (const InputError&) {  // beyond a limit of the parameter
+      }
+      const double error = shape.distance + shape.left;
+      if (shape.is_found && error <= kept) {
+        direction.response.ends[side] = {change, error, std::move(figures)};
         return;
       }
-      // What ends so far away may be on another branch.
-      if (error > kMostMovement * found_.tolerance_mm || trial + 1 == kMostTrials)
-        is_lost_ = !solve_at(value_) || distance(x_) > kKept * found_.tolerance_mm;
       // By the square where the shape is smooth, at least by a tenth.
-      const double share = std::isfinite(error) ? std::sqrt(kKept * found_.tolerance_mm / error) : 0;
-      change *= std::clamp(0.9 * share, 0.1, trial == 0 ? 0.9 : 0.5);
+      change *= shape.distance > kept ? std::clamp(0.9 * std::sqrt(kept / error), 0.1, 0.9) : kSmaller;
     }
   }
 
-  std::vector<MetricRow> figures() {
-    take_rest_lengths(tracked_.model);
-    const Fields fields = compute_fields(tracked_.model, equilibrium_.positions());
+  // has_closure: those of the closure of a valve among them, which take most of the time.
+  std::vector<MetricRow> figures_at(const Points& x, bool has_closure) {
+    Model& model = tracked_.model;
+    take_rest_lengths(model);
+    const Fields fields = compute_fields(model, x);
     const IntersectionChecker none = {
         "nobody", [](const Points&, const Triangles&) { return std::vector<std::array<int, 2>>(); }};
-    return metric_rows(measure(tracked_.model, equilibrium_.unknowns(), fields, none));
+    auto annulus = has_closure ? decltype(model.sets)::node_type() : model.sets.extract("annulus");
+    std::vector<MetricRow> rows = metric_rows(measure(model, model.objective->unknowns(x), fields, none));
+    if (!annulus.empty()) model.sets.insert(std::move(annulus));
+    std::erase_if(rows, [](const MetricRow& row) { return row.name == "intersections"; });
+    return rows;
+  }
+
+  // Along straight lines from those of the result.
+  std::vector<MetricRow> shares_of(std::vector<MetricRow> rows, double share) const {
+    for (MetricRow& row : rows)
+      if (const auto now = now_.find(row.name); row.value && now != now_.end())
+        row.value = now->second + share * (*row.value - now->second);
+    return rows;
+  }
+
+  // What was measured at the lower end alone goes on along its straight line.
+  void complete_upper_end(std::array<CheckedEnd, 2>& ends) const {
+    if (ends[0].change == 0 || ends[1].change == 0) return;
+    const std::vector<MetricRow> mirrored = shares_of(ends[0].figures, ends[1].change / ends[0].change);
+    for (const MetricRow& row : mirrored)
+      if (std::none_of(ends[1].figures.begin(), ends[1].figures.end(),
+                       [&](const MetricRow& own) { return own.name == row.name && own.value; }))
+        ends[1].figures.push_back(row);
   }
 
   TrackedScene tracked_;
   TrackedEquilibrium& equilibrium_;
   FirstOrder found_;
   std::vector<Direction> directions_;
-  std::vector<int> nodes_;  // of the sheet, whose places are determined
-  double extent_ = 0;       // [mm]
-  size_t most_ = 0;
-  Points x_;              // of the result
-  Vector value_;          // numbers there
-  bool is_lost_ = false;  // the result was not found again
+  std::vector<int> nodes_;             // of the sheet, whose places are determined
+  double extent_ = 0;                  // [mm]
+  Points x_;                           // of the result
+  Vector value_;                       // numbers there
+  std::map<std::string, double> now_;  // figures there
 };
+
+// The directions from `begin` to `end`, each by whoever is free. Of a run that is no longer wanted the rest
+// stays unchecked.
+void check_shared(Responses& first, const std::vector<std::unique_ptr<Responses>>& helpers, size_t begin,
+                  size_t end, const std::function<bool()>& is_wanted) {
+  std::vector<Direction>& directions = first.directions();
+  std::atomic<size_t> at = begin;
+  std::atomic<bool> goes_on = true;
+  std::vector<std::exception_ptr> errors(helpers.size() + 1);
+  const auto work = [&](Responses& worker, std::exception_ptr& error, const std::function<bool()>& asks) {
+    try {
+      for (size_t k = at++; k < end && goes_on; k = at++) {
+        worker.check(directions[k]);
+        if (asks && !asks()) goes_on = false;
+      }
+    } catch (...) {
+      error = std::current_exception();
+      goes_on = false;
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (size_t k = 0; k < helpers.size(); ++k)
+      threads.emplace_back([&, k] { work(*helpers[k], errors[k], {}); });
+    work(first, errors.back(), is_wanted);
+  }
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
 
 }  // namespace
 
@@ -227,40 +292,69 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   FirstOrder none;
   none.message = "the solve did not converge";
   if (report.result.status != Status::Converged) return none;
+  none.message = "the stability of the equilibrium is in doubt";
+  if (is_in_doubt(report)) return none;
+  const size_t most = std::min(wanted.most, most_sliders(static_cast<size_t>(model.X.cols())));
+  none.message = "a page has no room for the displacements of so many nodes";
+  if (most == 0) return none;
   const Points start = report.fields.x.colwise() + model.origin;
   RunOptions again = options;
   again.solver = report.solver;
   again.tolerance = report.tolerance;
   again.modes = 0;
+  again.phase = {};
   TrackingOptions tracking{.tolerance = report.tolerance, .checks_branch = false, .anchor_steps = 0};
   if (options.max_seconds) tracking.max_seconds = *options.max_seconds;
-  tracking.observer = options.observer;
-  Given given;
-  given.start.emplace(start.data(), 3, start.cols());
-  TrackedScene tracked = track(scene, std::move(given), solvers, again, std::move(tracking));
-  none.message = "the scene solved again from the result does not converge: " + tracked.first.message;
-  if (tracked.first.status != Status::Converged) return none;
-  Responses responses(model, report, std::move(tracked), wanted);
-  responses.take_parameters(scene);
-  none.message = responses.solve_first(report.fields.x);
+  const auto make = [&](const Observer& observer) {
+    tracking.observer = observer;
+    auto made = std::make_unique<Responses>(model, report,
+                                            track_shape(scene, start, solvers, again, tracking), wanted);
+    made->take_parameters(scene);
+    return made;
+  };
+  const std::unique_ptr<Responses> first = make(options.observer);
+  none.message = first->solve_first(report.fields.x);
   if (!none.message.empty()) return none;
-  responses.rank(wanted.most);
-  return responses.checked();
+  first->rank();
+  // Each helper has a scene of its own, at the same shape.
+  const auto most_helpers =
+      model.X.cols() > kMostShared ? 0 : static_cast<size_t>(thread_count(scene.solver)) - 1;
+  std::vector<std::unique_ptr<Responses>> helpers;
+  const auto is_wanted = [&] { return !options.observer || options.observer({}, first->unknowns()); };
+  std::vector<Direction>& directions = first->directions();
+  FirstOrder& found = first->found();
+  for (size_t next = 0; next < directions.size() && found.parameters.size() < most && is_wanted();) {
+    const size_t begin = next;
+    next = std::min(directions.size(), next + most - found.parameters.size());
+    while (helpers.size() < std::min(most_helpers, next - begin - 1)) {
+      helpers.push_back(make({}));
+      if (!helpers.back()->solve_first(report.fields.x).empty()) return std::move(found);
+    }
+    check_shared(*first, helpers, begin, next, is_wanted);
+    for (size_t k = begin; k < next; ++k)
+      if (const auto& ends = directions[k].response.ends; ends[0].change != 0 || ends[1].change != 0)
+        found.parameters.push_back(std::move(directions[k].response));
+  }
+  if (!found.parameters.empty())
+    found.message.clear();
+  else if (found.message.empty())
+    found.message = "no parameter moves the sheet over a range in which the first order holds";
+  return std::move(found);
 }
 
-Report with_first_order(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
-                        const Model& model, Report report, const std::filesystem::path& folder) {
-  if (!report.has_page) {
-    report.warnings.emplace_back("No sliders of parameters: no page is written.");
-    return report;
-  }
-  report.first_order = first_order(scene, solvers, options, model, report);
-  if (report.first_order->parameters.empty()) {
-    report.warnings.push_back("No sliders of parameters: " + report.first_order->message + ".");
-    report.first_order.reset();
-  }
-  if (!folder.empty()) write_run(folder, model, report);
-  return report;
+std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order_of_runs(SolverTable solvers,
+                                                                                         RunOptions options) {
+  return [solvers = std::move(solvers), options = std::move(options)](const Scene& scene, const Model& model,
+                                                                      const Report& report) {
+    if (options.phase) options.phase({.name = "sliders of the page"});
+    try {
+      return first_order(scene, solvers, options, model, report);
+    } catch (const std::exception& error) {  // the result is there, whatever its sliders are
+      FirstOrder none;
+      none.message = error.what();
+      return none;
+    }
+  };
 }
 
 }  // namespace coapt

@@ -4,6 +4,7 @@
 #include "core/number_text.hpp"
 #include "core/timing.hpp"
 #include "results/orifice_area.hpp"
+#include "results/standing.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "solve/solve_scene.hpp"
@@ -63,7 +64,7 @@ Tuning search(const TunedScene& tuned, const RegionTuningOptions& options, const
               const Result& first, Model& model, const RegionTuning& found) {
   const YieldExcess excess(model, options.yield_strain, found.orifice_limit_mm2);
   TrackingOptions tracking;
-  tracking.factorisation = setup.stability.factorisation;
+  tracking.factorisation = setup.factorisation;
   tracking.tolerance = setup.stop.tolerance;
   tracking.max_seconds = setup.stop.max_seconds;
   tracking.observer = setup.observer;
@@ -86,13 +87,23 @@ Tuning search(const TunedScene& tuned, const RegionTuningOptions& options, const
   return tune(make, first.q, {.residuals = &excess}, *built_in_minimisers().at("gauss_newton")(), own);
 }
 
+// Of a solve, with what is doubtful about it.
+TuningState solved_state(const Model& model, const Result& result, const RegionTuningOptions& options,
+                         const IntersectionChecker& checker) {
+  const Points x = model.objective->positions(result.q);
+  TuningState state = tuning_state(model, x, options.yield_strain);
+  const Fields fields = compute_fields(model, x);
+  state.doubts = doubts(model, result, fields, measure(model, result.q, fields, checker));
+  return state;
+}
+
 // The scene with the factors that were found, built anew and solved from where the search ended.
 void finish(const TunedScene& tuned, const RegionTuningOptions& options, const SolveSetup& setup,
-            const Points& x, const Vector& factors, RegionTuning& found) {
+            const IntersectionChecker& checker, const Points& x, const Vector& factors, RegionTuning& found) {
   Model model = build(tuned.scene(factors), tuned.geometry);
   const Result last = solve_again(x, model, setup);
   ++found.solves;
-  found.after = tuning_state(model, model.objective->positions(last.q), options.yield_strain);
+  found.after = solved_state(model, last, options, checker);
   if (last.status != Status::Converged) {
     ++found.failed_solves;
     found.message = "the scene with the factors that were found is not solved: " + last.message;
@@ -107,7 +118,8 @@ void finish(const TunedScene& tuned, const RegionTuningOptions& options, const S
 
 // Pre: the scene itself is solved and exceeds a limit. Returns the factors.
 Vector tune_factors(const TunedScene& tuned, const RegionTuningOptions& options, const SolveSetup& setup,
-                    const Result& first, Model& model, RegionTuning& found) {
+                    const IntersectionChecker& checker, const Result& first, Model& model,
+                    RegionTuning& found) {
   const Tuning tuning = search(tuned, options, setup, first, model, found);
   found.solves += tuning.solves - 1;  // the first trial is the first solve
   found.failed_solves = tuning.failed;
@@ -115,7 +127,7 @@ Vector tune_factors(const TunedScene& tuned, const RegionTuningOptions& options,
   found.rounds = std::max(0, found.rounds - 1);
   Vector factors = tuning.best.value.array().exp();
   if (found.rounds > 0)
-    finish(tuned, options, setup, model.objective->positions(tuning.best.q), factors, found);
+    finish(tuned, options, setup, checker, model.objective->positions(tuning.best.q), factors, found);
   else if (tuning.status == TuningStatus::NoStart || tuning.jacobian.size() == 0)
     found.message = "the derivatives by the factors are not known: " + tuning.message;
   else if (tuning.jacobian.isZero(0))
@@ -154,7 +166,7 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
   const Result first = solve_scene(split, tuned.geometry, model, setup).result;
   const Points x = model.objective->positions(first.q);
   found.solves = 1;
-  found.before = found.after = tuning_state(model, x, options.yield_strain);
+  found.before = found.after = solved_state(model, first, options, run.checker);
   found.orifice_limit_mm2 = options.orifice_limit_mm2;
   if (const std::optional<OrificeArea> area = orifice_area(model, x); area && !found.orifice_limit_mm2)
     found.orifice_limit_mm2 = kOrificeShare * area->annulus;
@@ -165,7 +177,7 @@ RegionTuning tune_regions(const Scene& scene, const SolverTable& solvers, const 
     found.is_reached = true;
     found.message = "nothing to tune";
   } else {
-    factors = tune_factors(tuned, options, setup, first, model, found);
+    factors = tune_factors(tuned, options, setup, run.checker, first, model, found);
   }
   found.region_of_triangle = tuned.geometry.model.mesh.regions;
   tuned.name_factors(factors, found.regions, found.chords);

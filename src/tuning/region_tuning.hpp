@@ -23,6 +23,7 @@ struct TuningState {
   double max_yield_ratio = 0;                    // of chords and facets: strain over that at yield
   int strained_chords = 0, strained_facets = 0;  // beyond the yield strain
   std::optional<double> orifice_area_mm2;
+  std::vector<std::string> doubts = {};  // of the equilibrium, see doubts() in result_warnings.hpp
 };
 
 struct TunedFactor {

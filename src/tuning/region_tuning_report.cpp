@@ -22,7 +22,8 @@ void write_region_tuning(const std::filesystem::path& folder, const RegionTuning
             {"max_yield_ratio", number_json(s.max_yield_ratio)},
             {"strained_chords", s.strained_chords},
             {"strained_facets", s.strained_facets},
-            {"orifice_area_mm2", number_json(s.orifice_area_mm2)}};
+            {"orifice_area_mm2", number_json(s.orifice_area_mm2)},
+            {"doubts", s.doubts}};
   };
   OrderedJson json = {{"scene", tuning.scene_file},
                       {"reached", tuning.is_reached},

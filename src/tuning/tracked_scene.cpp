@@ -4,6 +4,7 @@
 #include "core/number_text.hpp"
 #include "formats/json/suggestion.hpp"
 #include "run/run_parts.hpp"
+#include "scene/build/build.hpp"
 #include "scene/build/build_parts.hpp"
 #include "scene/terms/term_types.hpp"
 #include "sensitivity/parameters/dead_load.hpp"
@@ -191,6 +192,26 @@ TrackedScene track(const Scene& scene, const SolverTable& solvers, const RunOpti
   return track(scene, Given(), solvers, options, std::move(tracking));
 }
 
+namespace {
+
+// What a scene is built to, before anything is solved.
+TrackedScene built(const Scene& scene, SceneGeometry& geometry, const GivenTerms& terms) {
+  TrackedScene tracked{build(scene, geometry, terms), {}, nullptr, nullptr, nullptr};
+  tracked.chords = std::make_shared<NamedChords>(named_chords(scene, geometry, tracked.model));
+  return tracked;
+}
+
+TrackedScene followed(TrackedScene tracked, const Scene& scene, SceneGeometry geometry,
+                      const SolveSetup& setup, TrackingOptions tracking) {
+  tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(geometry));
+  tracking.factorisation = setup.factorisation;
+  tracked.equilibrium =
+      std::make_unique<TrackedEquilibrium>(*tracked.model.objective, tracked.first.q, std::move(tracking));
+  return tracked;
+}
+
+}  // namespace
+
 TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options,
                    TrackingOptions tracking) {
   if (!given.has_hessians)
@@ -198,16 +219,21 @@ TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, 
                      ": a term that is given has no Hessian, which an equilibrium that is followed needs");
   SolveSetup setup = given_setup(scene, given, solvers, options);
   SceneGeometry geometry = given_geometry(scene, given);
-  TrackedScene tracked{build(scene, geometry, given.terms), {}, nullptr, nullptr, nullptr};
+  TrackedScene tracked = built(scene, geometry, given.terms);
   if (given.observer) setup.observer = given.observer(tracked.model);
   tracked.first = given.start ? solve_again(relative_start(*given.start, tracked.model), tracked.model, setup)
                               : solve_scene(scene, geometry, tracked.model, setup).result;
-  tracked.chords = std::make_shared<NamedChords>(named_chords(scene, geometry, tracked.model));
-  tracked.numbers = std::make_shared<SceneNumbers>(scene, std::move(geometry));
-  tracking.factorisation = setup.stability.factorisation;
-  tracked.equilibrium =
-      std::make_unique<TrackedEquilibrium>(*tracked.model.objective, tracked.first.q, std::move(tracking));
-  return tracked;
+  return followed(std::move(tracked), scene, std::move(geometry), setup, std::move(tracking));
+}
+
+TrackedScene track_shape(const Scene& scene, const Points& shape, const SolverTable& solvers,
+                         const RunOptions& options, TrackingOptions tracking) {
+  const SolveSetup setup = solve_setup(scene, solvers, options);
+  SceneGeometry geometry = scene_geometry(scene);
+  TrackedScene tracked = built(scene, geometry, {});
+  const Points x = relative_start({shape.data(), 3, shape.cols()}, tracked.model);
+  tracked.first.q = problem_at(x, tracked.model).q0;
+  return followed(std::move(tracked), scene, std::move(geometry), setup, std::move(tracking));
 }
 
 std::vector<std::string> parameter_names(const TrackedScene& tracked) {

@@ -33,6 +33,11 @@ TrackedScene track(const Scene& scene, const SolverTable& solvers, const RunOpti
 TrackedScene track(const Scene& scene, Given given, const SolverTable& solvers, const RunOptions& options,
                    TrackingOptions tracking = {});
 
+// The same of a shape that is known, 3 x node_count in the coordinates of the input [mm], which is not solved
+// again: `first` holds its unknowns alone, and TrackedEquilibrium::solve() judges it.
+TrackedScene track_shape(const Scene& scene, const Points& shape, const SolverTable& solvers,
+                         const RunOptions& options, TrackingOptions tracking = {});
+
 // The parameter of this name, for TrackedEquilibrium::add():
 //   TERM.lengths     rest length of each line of a cable or tether term, by itself [mm]
 //   TERM.length      one factor on all of them, first 1

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <queue>
 #include <set>
@@ -13,7 +14,10 @@ namespace {
 
 constexpr double kNoLength = 1e-6;  // of the median rest length
 constexpr size_t kNamed = 10;
-constexpr double kAllSlack = 0.5;  // strain, below zero, of the tautest way; of valves at hand at most 0.13
+constexpr double kManyFans = 0.08;  // of all fans, that a coarse mesh makes end together
+constexpr double kAllSlack = 0.5;   // strain, below zero, of the tautest way; of valves at hand at most 0.13
+
+constexpr const char* kLengths = "`rest_length`, its unit and any `length_scale`";
 
 using Kind = ChordEnd::Kind;
 
@@ -64,18 +68,59 @@ class ChordGraph {
   std::vector<std::vector<int>> at_;
 };
 
+// Strands of each fan: from a junction or a tip straight to leaflets.
+std::map<int, std::vector<int>> fans(const Valve& valve, const ChordGraph& graph) {
+  std::map<int, std::vector<int>> strands;
+  for (size_t k = 0; k < valve.chords.chords.size(); ++k) {
+    const Chord& chord = valve.chords.chords[k];
+    const int from = graph.point(chord.from), to = graph.point(chord.to);
+    if (graph.is_leaflet(from) != graph.is_leaflet(to))
+      strands[graph.is_leaflet(to) ? from : to].push_back(static_cast<int>(k));
+  }
+  return strands;
+}
+
+// Strands of fans that end on a mesh coarser than themselves. There many fans have strands that end together:
+// few are slips. A copied strand makes its fan larger than all others, and in a network that is copied as a
+// whole half of all strands are repeated.
+std::set<int> fanned_together(const Valve& valve, const ChordGraph& graph, const std::set<int>& repeated) {
+  std::map<size_t, int> sizes;
+  size_t strands = 0, many = 0, together = 0;
+  const std::map<int, std::vector<int>> all = fans(valve, graph);
+  const auto repeats = [&](const std::vector<int>& fan) {
+    return std::count_if(fan.begin(), fan.end(), [&](int k) { return repeated.contains(k); });
+  };
+  for (const auto& [from, fan] : all) {
+    ++sizes[fan.size()];
+    strands += fan.size();
+    together += static_cast<size_t>(repeats(fan));
+    many += repeats(fan) > 0 ? 1 : 0;
+  }
+  std::set<int> meant;
+  if (2 * together >= strands || static_cast<double>(many) < kManyFans * static_cast<double>(all.size()))
+    return meant;
+  for (const auto& [from, fan] : all)
+    if (sizes[fan.size()] > 1) meant.insert(fan.begin(), fan.end());
+  return meant;
+}
+
 void find_repeated(const Valve& valve, const ChordGraph& graph, std::vector<std::string>& doubts) {
-  std::map<std::array<int, 2>, int> first;
-  std::vector<int> repeated;
+  std::set<std::array<int, 2>> seen;
+  std::set<int> repeated;
   for (size_t k = 0; k < valve.chords.chords.size(); ++k) {
     const Chord& chord = valve.chords.chords[k];
     std::array<int, 2> ends = {graph.point(chord.from), graph.point(chord.to)};
     std::sort(ends.begin(), ends.end());
-    if (!first.emplace(ends, static_cast<int>(k)).second) repeated.push_back(static_cast<int>(k));
+    if (!seen.insert(ends).second) repeated.insert(static_cast<int>(k));
   }
-  if (!repeated.empty())
+  if (repeated.empty()) return;
+  const std::set<int> meant = fanned_together(valve, graph, repeated);
+  std::vector<int> doubtful;
+  std::set_difference(repeated.begin(), repeated.end(), meant.begin(), meant.end(),
+                      std::back_inserter(doubtful));
+  if (!doubtful.empty())
     doubts.push_back(
-        named("chord", "chords", repeated) + ": " + (repeated.size() == 1 ? "joins" : "each joins") +
+        named("chord", "chords", doubtful) + ": " + (doubtful.size() == 1 ? "joins" : "each joins") +
         " the same two points as an earlier one, and their stiffness adds up; right where a fan of "
         "chords ends at one vertex of a coarse mesh, else leave it out.");
 }
@@ -233,7 +278,8 @@ void find_overstretched(const Valve& valve, const std::vector<Stretch>& all,
   doubts.push_back(text + ". Check rest lengths, their unit and the place of the tips.");
 }
 
-// Chords as long as twice the way bind nothing; where that holds of all of them a unit was misread.
+// Chords much longer than the way bind nothing; where that holds of all of them a unit was misread, or a
+// factor.
 void find_all_slack(const std::vector<Stretch>& all, std::vector<std::string>& doubts) {
   const auto strain = [](const Stretch& stretch) { return std::max(stretch.open, stretch.closed); };
   const auto tautest = std::max_element(
@@ -243,7 +289,7 @@ void find_all_slack(const std::vector<Stretch>& all, std::vector<std::string>& d
                    std::to_string(tautest->chord) + ", is " + number_text(tautest->length) +
                    " mm long for a distance of " +
                    number_text(std::max(tautest->distance, tautest->distance_closed)) +
-                   " mm, in the open and the closed position. Check the unit of `rest_length`.");
+                   " mm, in the open and the closed position. Check " + kLengths + ".");
 }
 
 }  // namespace

@@ -39,4 +39,11 @@ void refuse_other_json(const Json& json, const std::filesystem::path& path) {
   if (json.contains("leaflets")) refuse(path, "a valve JSON", kImport);
 }
 
+void refuse_scene(const std::filesystem::path& path) {
+  const Json json = read_json(path);
+  if (!json.is_object() || !json.contains("terms") || json.contains("leaflets")) return;
+  throw InputError(path.string() + ": is a scene already: `coapt solve " + path.string() +
+                   "` solves it as it is");
+}
+
 }  // namespace coapt

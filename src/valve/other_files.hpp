@@ -1,4 +1,4 @@
-// Files of other kinds that are taken for a scene.
+// Files of other kinds that are taken for a scene, and scenes that are taken for a valve.
 #pragma once
 
 #include "formats/json/read_json.hpp"
@@ -11,5 +11,8 @@ namespace coapt {
 // by the name of a file that is there, a valve JSON, markups and a result by their keys.
 void refuse_other_file(const std::filesystem::path& path);
 void refuse_other_json(const Json& json, const std::filesystem::path& path);
+
+// Throws InputError where the JSON is that of a scene, which commands on valve files are given.
+void refuse_scene(const std::filesystem::path& path);
 
 }  // namespace coapt

@@ -15,7 +15,7 @@ def coapt(*arguments, cwd=None, timeout=120, keeps_progress=False):
     """The command; without the lines of progress that a log gets every five seconds, unless they are wanted."""
     run = subprocess.run([COAPT, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=timeout)
     if not keeps_progress:
-        run.stderr = re.sub(r"(?m)^  (step \d+|\d+ of \d+ points), [^\n]* s[^\n]*\n", "", run.stderr)
+        run.stderr = re.sub(r"(?m)^  ((mesh \d+ of \d+, |finest mesh, )?step \d+, |\d+ of \d+ points, |certificate, |sliders of the page, )[^\n]* s[^\n]*\n", "", run.stderr)
     return run
 
 

@@ -79,6 +79,12 @@ class DoubtTest(CommandCase):
         self.assert_page_doubts("tuning.html")
         self.assertIn(OPEN, self.document("tuning.json")["after"]["doubts"][0])
 
+    def test_stiffness_by_regions_says_that_the_valve_stands_open(self):
+        text = self.solve_several("tune-regions", self.open_valve(), "--yield-strain", 1, "--regions", 4, "--orifice", 5000)
+        self.assertIn("before in doubt: ", text)
+        found = self.document("region_tuning.json")
+        self.assertTrue(all(OPEN in found[state]["doubts"][0] for state in ("before", "after")))
+
     def test_refinement_sensitivity_and_benchmark_say_that_the_valve_stands_open(self):
         scene = self.open_valve()
         self.solve_several("mesh-study", scene, "--levels", 1)
@@ -105,8 +111,16 @@ class DoubtTest(CommandCase):
         self.assertNotEqual(lead[1], "good")
         self.assertIn("against the neighbours", lead[2] + run.stdout)
 
+    def test_leaflets_that_are_stretched_beyond_what_was_measured_are_in_doubt(self):
+        run = coapt("solve", self.generate("mitral", "--triangles", 250, "--preset", "benchmark"), timeout=300)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertRegex(run.stdout.splitlines()[0], r"a hundredth of the leaflets is stretched by more than \d+ %.*Rausch et al. 2011")
+        self.assertRegex(run.stdout, r"p99 principal strain 0\.\d+ \(at most 0\.22\): not healthy")
+        page = (self.folder / "result/report.html").read_text()
+        self.assertEqual(re.search(r'<p class="lead (\w+)">', page)[1], "caution")
+
     def test_a_plain_result_has_no_doubts(self):
-        scene = self.generate("mitral", "--triangles", 200)
+        scene = self.generate("mitral", "--triangles", 200, "--preset", "closed")
         run = coapt("study", scene, "--sweep", "load_pressure.value=100,120mmHg", "-j", 1, "-o", self.out, timeout=300)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertNotIn("in doubt", run.stdout)

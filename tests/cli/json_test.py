@@ -97,10 +97,20 @@ class Json(CommandCase):
         valve.write_text(valve.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))
         self.assertEqual(shares(valve, "--damped-steps", 0, "--max-seconds", 20)[:2], [33, 67])
 
+    def test_progress_tells_the_mesh_of_a_cascade_and_what_follows_the_solve(self):
+        run = coapt("solve", self.generate("mitral", "--triangles", 3000), "--verbose", keeps_progress=True)
+        told = [line for line in run.stderr.splitlines() if line.startswith("  ")]
+        phases = [line.split(",")[0].strip() for line in told]
+        order = list(dict.fromkeys(phases))
+        self.assertRegex(order[0], r"^mesh 1 of \d$", run.stderr)
+        self.assertEqual(order[-3:], ["finest mesh", "certificate", "sliders of the page"])
+        wanted = {phase: re.search(r"\(wanted (\S+)\)", line)[1] for phase, line in zip(phases, told) if "step" in line}
+        self.assertGreater(float(wanted[order[0]]), float(wanted["finest mesh"]))
+
     def test_a_log_has_a_line_every_five_seconds(self):
         scene = self.generate("mitral", "--triangles", 20000)
         run = coapt("solve", scene, "--tolerance", "1e-13", "--max-seconds", 12, keeps_progress=True)
-        lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
+        lines = [line for line in run.stderr.splitlines() if re.match(r"  (mesh \d of \d, |finest mesh, )?step ", line)]
         self.assertIn(len(lines), [1, 2, 3], run.stderr)
 
     def test_every_command_tells_the_residual_that_is_wanted(self):
@@ -110,6 +120,15 @@ class Json(CommandCase):
             lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
             self.assertGreater(len(lines), 0, run.stderr)
             self.assertEqual([line for line in lines if "(wanted 1e-08)" not in line], [], command)
+
+    def test_commands_that_solve_to_several_residuals_tell_which_is_wanted(self):
+        scene = self.generate("mitral", "--triangles", 200)
+        for command, *options in [("bench", "--methods", "newton", "--tolerances", "1e-2,1e-4", "--levels", 0, "--repeats", 1),
+                                  ("tune", "--force-weight", 1, "--by", "all", "--max-solves", 2)]:
+            run = coapt(command, scene, "-o", self.folder / command, "--verbose", *options, keeps_progress=True)
+            lines = [line for line in run.stderr.splitlines() if line.startswith("  step ")]
+            self.assertGreater(len(lines), 0, run.stderr)
+            self.assertEqual([line for line in lines if not re.search(r"\(wanted \S+\)", line)], [], command)
 
     def test_a_study_tells_how_many_points_are_through(self):
         scene = self.generate("mitral", "--triangles", 6000)

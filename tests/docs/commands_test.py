@@ -6,6 +6,7 @@ A line is run as it stands, but for sizes that would take long (CHEAPER); what n
 minutes, stands in LEFT_OUT with the reason. Exit code 2, bad input, is a defect of the page.
 docs/getting_started.md has a test of its own, which runs it as one session.
 """
+import json
 import os
 import pathlib
 import re
@@ -16,14 +17,19 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COAPT = pathlib.Path(sys.argv[1]).resolve()
-PAGES = ["commands.md", "generators.md", "interventions.md", "interrupts.md", "registration.md", "tuning.md"]
+PAGES = ["commands.md", "generators.md", "interventions.md", "interrupts.md", "registration.md", "stress.md", "tuning.md"]
+VOLUME_PAGES = ["image.md", "segmentation.md"]  # where the build reads volumes
 
 CHEAPER = [(r"--triangles \d+", "--triangles 250"), (r"--levels \d", "--levels 1"), (r"^(coapt tune .*)", r"\1 --max-solves 3"),
+           (r"^coapt stress$", "coapt stress --rows S1,S16 --time-limit 5"), (r"--rows S1,S16 SCENE", "--rows S3,S8 SCENE"),
+           (r"^coapt stress SCENE$", "coapt stress --rows S8,S10,S20 SCENE"), (r"0\.7mm|0\.5mm", "0.9mm"),
            (r"26\.\.3[46]mm(:6)?", "26..28mm:2"), (r"0\.65,0\.75,0\.85", "0.7"), (r"80\.\.140mmHg", "80..140mmHg:2")]
-LEFT_OUT = {r"\.mrk\.json|\.nrrd|coapt image|coapt phantom": "wants markups or a volume; tests/cli has image_test.py, segment_test.py, close_test.py",
-            r"^coapt bench|--accuracy|^coapt stress|^coapt tune-regions": "takes a minute and more; tests/cli has bench_test.py, stress_test.py, study_test.py",
+LEFT_OUT = {r"^coapt bench|--accuracy|^coapt tune-regions": "takes a minute and more; tests/cli has bench_test.py, study_test.py",
             r"valve\.inp|leaflets\.ply": "wants a valve of another program; tests/exchange has them",
             r"--resume": "what it would resume has come to its end; tests/cli/resume_test.py"}
+WITHOUT_VOLUMES = {r"\.mrk\.json|\.nrrd|coapt image|coapt phantom": "wants markups or a volume; image.md and segmentation.md are run with those",
+                   r"^coapt stress": "stress.md is run with cheaper rows"}
+OF_VOLUMES = {r"\.seq\.nrrd|dicom_folder": "wants a series of a scanner or of 3D Slicer; tests/cli/image_test.py makes them"}
 LEAST_RUN = 20
 
 # What the Python blocks of a page find, in the order of the page; a reason where a block is left out.
@@ -52,8 +58,9 @@ def lines_of(page: str) -> list[str]:
     return [re.sub(r"\s+#.*", "", line).strip() for line in found]
 
 
-def reason(line: str) -> str:
-    return next((why for pattern, why in LEFT_OUT.items() if re.search(pattern, line)), "")
+def reason(page: str, line: str) -> str:
+    own = OF_VOLUMES if page in VOLUME_PAGES else {} if page == "stress.md" else WITHOUT_VOLUMES
+    return next((why for pattern, why in {**LEFT_OUT, **own}.items() if re.search(pattern, line)), "")
 
 
 def cheap(line: str) -> str:
@@ -75,13 +82,32 @@ def furnished(folder: pathlib.Path, page: str) -> None:
         shutil.copy(folder / "out/mitral" / name, folder / name)
     closed = (folder / "out/mitral/result/closed.obj").read_text()
     shutil.copy(folder / "out/mitral/result/closed.vtp", folder / "closed.vtp")
-    for name in ("A.obj", "B.obj", "scan.obj"):
+    for name in ("A.obj", "B.obj", "closed.obj", "scan.obj"):
         (folder / name).write_text(closed)
     if page == "interventions.md":
         scene = folder / "scene.json"
         ring = '"interventions": [{"type": "ring", "size": "28 mm", "stiffness": "flexible"}],\n  "terms":'
         scene.write_text(scene.read_text().replace('"terms":', ring, 1))
     os.symlink(ROOT / "examples", folder / "examples")
+    os.symlink("scene.json", folder / "SCENE")
+    if page in VOLUME_PAGES:
+        furnish_volume(folder)
+
+
+def furnish_volume(folder: pathlib.Path) -> None:
+    """An image of the valve, with its annulus and papillary tips as 3D Slicer has them."""
+    made = coapt("phantom", "out/mitral/scene.json", "--voxel", "0.7mm", "-o", "phantom", cwd=folder)
+    assert made.returncode == 0, made.stderr
+    image, ring = folder / "phantom/open/image.nrrd", json.loads((folder / "phantom/open/annulus.mrk.json").read_text())
+    for name in ("open.nrrd", "volume.nrrd"):
+        shutil.copy(image, folder / name)
+    assert coapt("image", "convert", image, "-o", folder / "volume.mha", cwd=folder).returncode == 0
+    (folder / "ring.mrk.json").write_text(json.dumps(ring))
+    valve = json.loads((folder / "valve.json").read_text())
+    markup = ring["markups"][0]
+    tips = {**markup, "type": "Fiducial", "controlPoints": [
+        {**markup["controlPoints"][0], "id": str(k + 1), "label": f"tip-{k + 1}", "position": point} for k, point in enumerate(valve["papillary"])]}
+    (folder / "tips.mrk.json").write_text(json.dumps({**ring, "markups": [tips]}))
 
 
 def run_page(page: str) -> tuple[int, list[str]]:
@@ -91,7 +117,7 @@ def run_page(page: str) -> tuple[int, list[str]]:
         furnished(folder, page)
         shell = f"set -u; coapt() {{ '{COAPT}' \"$@\"; }}\n"
         for line in lines_of(page):
-            if why := reason(line):
+            if why := reason(page, line):
                 print(f"left out  {page}: {line}\n          {why}")
                 continue
             done = subprocess.run(["bash", "-c", shell + cheap(line)], cwd=folder, capture_output=True, text=True, timeout=300)
@@ -127,7 +153,8 @@ def run_python(page: str, module: str) -> tuple[int, list[str]]:
 
 def main() -> int:
     count, defects = 0, []
-    for page in PAGES:
+    has_volumes = "needs ITK" not in coapt("image", "info", "none.nrrd", cwd=ROOT).stderr
+    for page in [*PAGES, *VOLUME_PAGES] if has_volumes else PAGES:
         found = run_page(page)
         count, defects = count + found[0], defects + found[1]
     if len(sys.argv) > 2:

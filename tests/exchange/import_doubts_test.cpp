@@ -153,6 +153,27 @@ TEST_F(ImportDoubts, NameSizesThatNoValveHasInACheckedScene) {
   EXPECT_FALSE(tells(checked(mesh, mesh), "mm across"));
 }
 
+TEST_F(ImportDoubts, KnowAScene) {
+  imported(mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark}));
+  const std::filesystem::path scene = folder_.path() / "b" / "scene.json";
+  try {
+    import_valve(scene, folder_.path() / "c");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), scene.string() + ": is a scene already: `coapt solve " +
+                                             scene.string() + "` solves it as it is");
+  }
+}
+
+TEST_F(ImportDoubts, NameLengthsOfChordsThatLetTheLeafletsTurnOver) {
+  const std::string young = "\"young\": \"40 MPa\"";
+  EXPECT_FALSE(tells(checked(young, young), "slack"));
+  EXPECT_FALSE(tells(checked(young, young + ", \"length_scale\": 1.1"), "slack"));
+  EXPECT_TRUE(tells(checked(young, young + ", \"length_scale\": 2.2"), "all chords are slack"));
+  EXPECT_TRUE(tells(checked(young, young + ", \"length_scale\": 3"), "all chords are slack"));
+  EXPECT_TRUE(tells(checked(young, young + ", \"length_scale\": 0.5"), "farther from the papillary tip"));
+}
+
 TEST_F(ImportDoubts, WriteASceneOfAValveWithoutChordsThatBuilds) {
   Valve valve = mitral_valve({.triangles = 400, .preset = MitralPreset::Benchmark});
   valve.chords.chords.clear();

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace coapt {
 namespace {
 
@@ -80,11 +82,30 @@ TEST(Units, RefusesWhatIsNoQuantityAndSaysWhy) {
   EXPECT_EQ(refusal("3 kg", kPressure), "read \"3 kg\", a mass; expected a pressure such as \"120 mmHg\"");
   EXPECT_EQ(refusal("3", kLength), "read \"3\", which has no unit; expected a length such as \"0.65 mm\"");
   EXPECT_EQ(refusal("3 mmhg", kPressure), "unknown unit \"mmhg\"; did you mean \"mmHg\"?");
+  EXPECT_EQ(
+      refusal("3 parsnip", kPressure),
+      "unknown unit \"parsnip\"; a pressure has one of Pa, kPa, MPa, GPa, N/mm^2, mmHg, cmH2O, bar, psi");
+  EXPECT_EQ(refusal("3 N/inch", kForcePerLength),
+            "unknown unit \"inch\"; a force per length has one of N/m, N/mm, mN/mm, dyn/cm");
+  EXPECT_NE(refusal("3 parsnip", kDimensionless).find("; known are mm, cm, "), std::string::npos);
   EXPECT_EQ(refusal("3 m^9", kLength).substr(0, 26), "read \"3 m^9\", a quantity i");
   for (const char* text :
        {"nan MPa", "inf MPa", "MPa", "", "-", "1e999 MPa", "1e308 GPa", "--1 MPa", "1 N//mm^2", "1 N/",
         "1 N*", "1 *N/mm^2", "1 N^/mm", "1 N/mm^99", "1,5 MPa", "1 MPa!"})
     EXPECT_EQ(refusal(text, kPressure).find("accepted"), std::string::npos) << text;
+}
+
+// What messages name is read.
+TEST(Units, KnowsTheUnitsThatItNames) {
+  for (const Dimension dimension : {kLength, kArea, kPressure, kForce, kForcePerLength, kForcePerVolume,
+                                    kDensity, kAcceleration, kEnergy, kMass, kTime, kAngle}) {
+    const std::string text = refusal("1 parsnip", dimension);
+    const size_t from = text.find(" one of ");
+    ASSERT_NE(from, std::string::npos) << text;
+    std::istringstream names(text.substr(from + 8));
+    for (std::string name; std::getline(names >> std::ws, name, ',');)
+      EXPECT_GT(unit_factor(name, dimension), 0) << name;
+  }
 }
 
 TEST(Units, GivesTheFactorOfAUnitAlone) {

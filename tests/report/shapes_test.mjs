@@ -123,9 +123,9 @@ await run("a study shows the shapes of its points", async () => {
 });
 
 await run("sliders move shape and figures to what a solve of the other scene finds", async () => {
-  const place = join(scratch, "sliders");
-  finished("solve", scene, "--sliders", "-o", place);
-  const more = statSync(join(place, "report.html")).size - statSync(join(folder, "report.html")).size;
+  const place = folder, without = join(scratch, "no_sliders");
+  finished("solve", scene, "--no-sliders", "-o", without);
+  const more = statSync(join(place, "report.html")).size - statSync(join(without, "report.html")).size;
   assert.ok(more > 10000 && more <= 200000, more + " bytes more");
   const { page, closed } = await opened(place, { viewport: { width: 1280, height: 900 } });
   const group = page.getByRole("group", { name: "What if · first order" }), sliders = group.getByRole("slider");
@@ -164,9 +164,22 @@ await run("sliders move shape and figures to what a solve of the other scene fin
   assert.ok(left < 0.01, "as it was: " + left);
   await sliders.nth(0).press("End");
   await sliders.nth(1).press("End");
-  assert.match(await text(group.locator("#what-if-note")), /^First order of several at once, which no solve has checked/);
+  assert.match(await text(group.locator("#what-if-note")), /^First order of several at once, which nobody has checked/);
   await assertFitsEveryScreen(page, "sliders", 2);
   await closed();
+});
+
+await run("a page without sliders shows none, and one that has none says why", async () => {
+  const { page, closed } = await opened(join(scratch, "no_sliders"));
+  assert.ok(await page.locator("#what-if").isHidden());
+  await closed();
+  const place = join(scratch, "cut_short");
+  finished("solve", scene, "--max-seconds", "0.001", "-o", place);
+  const cut = await opened(place);
+  assert.equal(await text(cut.page.locator("#what-if-note")), "No sliders of parameters: the solve did not converge.");
+  assert.equal(await cut.page.locator("#what-if").getByRole("slider").count(), 0);
+  assert.ok(await cut.page.locator("#what-if-reset").isHidden());
+  await cut.closed();
 });
 
 await finish();

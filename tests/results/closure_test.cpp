@@ -5,6 +5,7 @@
 #include "results/detail/coaptation_height.hpp"
 #include "results/metrics.hpp"
 #include "results/result_surfaces.hpp"
+#include "results/result_warnings.hpp"
 #include "support/trough_valve.hpp"
 
 #include <Eigen/Geometry>
@@ -212,7 +213,7 @@ TEST(HealthyClosure, AsksForTwoThirdsOfTheDiameterUnderTheAnteriorLeaflet) {
 
 TEST(HealthyClosure, EstimatesTheRegurgitantVolumeWhereThePressureIsKnown) {
   Model model = trough_model({.gap = 1}, 0.3);
-  EXPECT_EQ(measured(model, model.X).healthy_closure.size(), 2u);
+  EXPECT_EQ(measured(model, model.X).healthy_closure.size(), 3u);
   model.applied_pressure = 0.016;  // 5.5 m/s
   const Metrics open = measured(model, model.X);
   const HealthyCriterion& volume = criterion(open, "regurgitant_volume_ml");
@@ -224,6 +225,28 @@ TEST(HealthyClosure, EstimatesTheRegurgitantVolumeWhereThePressureIsKnown) {
   Model closed = trough_model({.gap = 0.2}, 0.3);
   closed.applied_pressure = 0.016;
   EXPECT_TRUE(criterion(measured(closed, closed.X), "regurgitant_volume_ml").is_met());
+}
+
+// The bound is two deviations above the mean of Rausch et al. 2011.
+TEST(HealthyClosure, JudgesTheStrainOfTheLeafletsByWhatWasMeasuredInVivo) {
+  for (const double strain : {0.1, 0.22, 0.23, 0.43}) {
+    const std::vector<HealthyCriterion> criteria = healthy_criteria({0.67, 4, 0, 0.016, strain});
+    const HealthyCriterion& judged = criteria.back();
+    EXPECT_EQ(judged.name, "p99_principal_strain");
+    EXPECT_NEAR(judged.highest.value(), 0.224, 1e-12);
+    EXPECT_NE(judged.source.find("Rausch et al. 2011"), std::string::npos);
+    EXPECT_EQ(range_in_words(judged), "at most 0.22");
+    EXPECT_EQ(judged.is_met(), strain < 0.224);
+    Report report;
+    report.result.status = Status::Converged;
+    report.metrics.healthy_closure = criteria;
+    EXPECT_EQ(doubts(report).empty(), strain < 0.224) << strain;
+    EXPECT_EQ(headline(report).is_in_doubt, strain > 0.224) << strain;
+  }
+  EXPECT_EQ(strain_doubt(healthy_criteria({0.67, 4, 0, 0.016, 0.43})),
+            "a hundredth of the leaflets is stretched by more than 43 %, where peaks in vivo are 13 +- 4.7 % "
+            "(Rausch et al. 2011)");
+  EXPECT_EQ(healthy_criteria({0.67, 4, 0, 0.016}).size(), 3u) << "a scene whose strain is not known";
 }
 
 TEST(HealthyClosure, IsAskedOfMitralValvesAlone) {

@@ -8,6 +8,7 @@
 #include "sensitivity/parameters/dead_load.hpp"
 #include "sensitivity/refusal.hpp"
 #include "sensitivity/tracked_valve.hpp"
+#include "sensitivity/truss.hpp"
 
 #include <gtest/gtest.h>
 
@@ -81,50 +82,6 @@ TEST(TrackedEquilibrium, SeveralAtOnceGiveTheSameBits) {
   ASSERT_GT(alone.norm(), 0);
   for (const Vector& gradient : together) EXPECT_EQ(gradient, alone);
 }
-
-// An apex between two supports, on springs that resist compression, under a dead load: von Mises' truss.
-struct Truss {
-  explicit Truss(double load, TrackingOptions options = {})
-      : objective(positions(), fixed(), terms(load)),
-        equilibrium(objective, objective.unknowns(positions()), with_tolerance(std::move(options))) {
-    const Points supports = positions().leftCols(2);
-    equilibrium.add(make_prescribed_positions(
-        "span", objective, {0, 1},
-        [supports](const Vector& value, std::vector<Points>* slopes) {
-          const Vec3 scale(1, 0, 0);
-          Points by = scale.asDiagonal() * supports;
-          if (slopes != nullptr) *slopes = {by};
-          return Points(supports + (value[0] - 1) * by);
-        },
-        Vector::Ones(1)));
-  }
-  static TrackingOptions with_tolerance(TrackingOptions options) {
-    options.tolerance = 1e-12;
-    return options;
-  }
-  static FixedMask fixed() {
-    FixedMask mask = fixed_nodes(3, {0, 1});
-    mask(1, 2) = true;  // or the compressed springs would swing sideways
-    return mask;
-  }
-  static Points positions() {
-    Points x(3, 3);
-    x << -1, 1, 0, 0, 0, 0, 0, 0, 0.2;
-    return x;
-  }
-  static Terms terms(double load) {
-    Points forces = Points::Zero(3, 3);
-    forces(2, 2) = -load;
-    BlendedLine law;
-    law.young = 1;
-    const double length = std::sqrt(1.04);
-    std::vector<Spring::Rest> springs(2, Spring::Rest{length, 1, 0, true, law});
-    return terms_of(std::make_unique<ElementTerm<Spring>>("arms", std::vector<int>{0, 2, 1, 2}, springs),
-                    std::make_unique<LoadDead>("load", "load_field", forces, positions()));
-  }
-  Objective objective;
-  TrackedEquilibrium equilibrium;
-};
 
 TEST(TrackedEquilibrium, ReportsTheBranchThatASnapLeaves) {
   Truss truss(0.0015);

@@ -70,7 +70,6 @@ void bench_scene(const BenchArguments& arguments, Session& session) {
   listen_for_interrupts();
   const Scene scene = load_scene(arguments.scene);
   RunOptions run = arguments.options(session);
-  run.observer = make_observer(session);  // solves to several tolerances
   const OutputFolder output(arguments.folder_for(scene, {"bench.json", "bench.csv", "bench.html"}));
   run.folder = output.path();
   BenchOptions options;

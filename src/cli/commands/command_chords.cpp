@@ -11,6 +11,7 @@
 #include "formats/utf8.hpp"
 #include "mesh/mesh_check.hpp"
 #include "valve/generators/leaflet_chords.hpp"
+#include "valve/other_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -63,6 +64,7 @@ Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& war
   Valve valve;
   Numbering numbering = file_numbering(arguments.input);
   if (formats::lower_extension(arguments.input) == ".json") {
+    refuse_scene(arguments.input);
     ValveFile file = read_valve(arguments.input);
     valve = std::move(file.valve);
     numbering = file.numbering;

@@ -22,6 +22,7 @@
 #include "results/result_warnings.hpp"
 #include "results/results.hpp"
 #include "run/run.hpp"
+#include "tuning/first_order.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 #include "valve/separate_leaflets.hpp"
 
@@ -172,7 +173,8 @@ RunReport solve_valve(const fs::path& folder, const Session& session) {
   options.folder = folder / "result";
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, scene.solver.tolerance);
+  show_progress(session, options);
+  options.first_order = first_order_of_runs(all_solvers(), options);
   RunReport solved = run(scene, all_solvers(), options);
   end_progress();
   const Metrics& metrics = solved.report.metrics;

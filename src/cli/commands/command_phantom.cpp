@@ -126,7 +126,7 @@ Points closed_nodes(const PhantomArguments& arguments, const Scene& scene, const
   options.writes = false;
   options.factorisations = all_factorisations();
   options.checker = intersection_checker();
-  options.observer = make_observer(session, scene.solver.tolerance);
+  show_progress(session, options);
   const RunReport solved = run(scene, all_solvers(), options);
   end_progress();
   if (solved.report.result.status != Status::Converged) {

@@ -34,7 +34,7 @@ struct SolveArguments {
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
   std::optional<int> damped_steps, threads;
-  bool has_no_report = false, has_sliders = false;
+  bool has_no_report = false, has_no_sliders = false;
   BranchSearch branches = {.starts = 0};
   SolveCheckpointArguments checkpoint;
 };
@@ -254,7 +254,8 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   std::optional<double> accuracy_mm;
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
   options.doubts = told_doubts;
-  options.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
+  show_progress(session, options);
+  if (!arguments.has_no_sliders) options.first_order = first_order_of_runs(all_solvers(), options);
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
@@ -264,16 +265,11 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   }
   RunReport report = solved(scene, solvers, options, accuracy_mm, unwritten);
   RunOptions again = options;
-  again.observer = make_observer(session, options.tolerance.value_or(scene.solver.tolerance));
+  show_progress(session, again);  // without a checkpoint
   report.report = completed(unwritten, [&] {
     return with_branches(scene, all_solvers(), again, arguments.branches, report.model,
                          std::move(report.report), report.folder);
   });
-  if (arguments.has_sliders)
-    report.report = completed(unwritten, [&] {
-      return with_first_order(scene, all_solvers(), again, report.model, std::move(report.report),
-                              report.folder);
-    });
   end_progress();
   session.document = result_json(report.model, report.report);
   print_summary(report, unwritten);
@@ -323,11 +319,9 @@ void add_solve_command(CLI::App& app, Session& session) {
   add_branch_options(*command, arguments->branches);
   add_solve_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
-  auto* sliders = command->add_flag(
-      "--sliders", arguments->has_sliders,
-      "In report.html, sliders of the parameters that matter most, which move the shape and its figures by "
-      "their first-order response, over ranges that solves have checked");
-  sliders->excludes("--no-report")->excludes("--accuracy");
+  command->add_flag("--no-sliders", arguments->has_no_sliders,
+                    "In report.html no sliders of the parameters that matter most, which move shape and "
+                    "figures by their first-order response");
   command->callback([arguments, tolerance, seconds, modes, frames, &session] {
     listen_for_interrupts();
     RunOptions options;

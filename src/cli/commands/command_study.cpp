@@ -41,6 +41,7 @@ int solve_point(const StudyPoint& point, const std::filesystem::path& scene,
                 const std::filesystem::path& folder, const ParameterStudyArguments& arguments) {
   RunOptions options = arguments.options({.is_quiet = true});
   options.folder = folder;
+  options.first_order = {};  // of many points: their page compares them
   try {
     Scene of_point = parse_scene(point.scene, scene);
     if (of_point.solver.threads == 0) of_point.solver.threads = 1;  // the processes share the processors

@@ -202,7 +202,6 @@ void run_command(const TuneArguments& arguments, Session& session) {
   listen_for_interrupts();
   ChordTuningOptions options = tuning_options(arguments);
   RunOptions run = arguments.options(session);
-  run.observer = make_observer(session);  // the first solve has another tolerance than the trials
   run.folder = arguments.folder;
   if (arguments.total_seconds > 0) run.max_seconds = arguments.total_seconds;
   options.is_cancelled = [] { return is_interrupted(); };

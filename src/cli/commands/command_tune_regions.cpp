@@ -8,10 +8,12 @@
 #include "cli/study_options.hpp"
 #include "core/error.hpp"
 #include "formats/whole_file.hpp"
+#include "results/standing.hpp"
 #include "tuning/region_tuning.hpp"
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 namespace coapt::cli {
 namespace {
@@ -50,6 +52,9 @@ void tune(const TuneRegionsArguments& arguments, Session& session) {
   std::printf("%s\n", found.message.c_str());
   print_state("before", found.before);
   print_state("after", found.after);
+  for (const auto& [name, state] : {std::pair("before", &found.before), std::pair("after", &found.after)})
+    if (!state->doubts.empty())
+      std::printf("  %s in doubt: %s\n", name, joined_doubts(state->doubts).c_str());
   if (found.orifice_limit_mm2) std::printf("  %-22s %.2f mm2\n", "orifice at most", *found.orifice_limit_mm2);
   std::printf("  %-22s %d (%d not converged) in %d iterations, %.2f s\n", "solves", found.solves,
               found.failed_solves, found.rounds, found.wall_s);

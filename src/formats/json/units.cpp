@@ -55,22 +55,24 @@ struct NamedDimension {
   const char* name;
   const char* unit;
   const char* example;
+  const char* units;  // that messages name
 };
 
 constexpr std::array kNamed{
-    NamedDimension{kDimensionless, "number", "1", "0.45"},
-    NamedDimension{kLength, "length", "mm", "0.65 mm"},
-    NamedDimension{kArea, "area", "mm^2", "0.3 mm^2"},
-    NamedDimension{kPressure, "pressure", "MPa", "120 mmHg"},
-    NamedDimension{kForce, "force", "N", "2 N"},
-    NamedDimension{kForcePerLength, "force per length", "N/mm", "1000 N/m"},
-    NamedDimension{kForcePerVolume, "force per volume", "N/mm^3", "0.1 N/mm^3"},
-    NamedDimension{kDensity, "mass density", "t/mm^3", "1060 kg/m^3"},
-    NamedDimension{kAcceleration, "acceleration", "mm/s^2", "9.81 m/s^2"},
-    NamedDimension{kEnergy, "energy", "mJ", "0.05 N*m"},
-    NamedDimension{kMass, "mass", "t", "20 g"},
-    NamedDimension{kTime, "time", "s", "10 ms"},
-    NamedDimension{kAngle, "angle", "rad", "30 deg"},
+    NamedDimension{kDimensionless, "number", "1", "0.45", "%"},
+    NamedDimension{kLength, "length", "mm", "0.65 mm", "mm, cm, m, um"},
+    NamedDimension{kArea, "area", "mm^2", "0.3 mm^2", "mm^2, cm^2, m^2"},
+    NamedDimension{kPressure, "pressure", "MPa", "120 mmHg",
+                   "Pa, kPa, MPa, GPa, N/mm^2, mmHg, cmH2O, bar, psi"},
+    NamedDimension{kForce, "force", "N", "2 N", "N, mN, kN, dyn"},
+    NamedDimension{kForcePerLength, "force per length", "N/mm", "1000 N/m", "N/m, N/mm, mN/mm, dyn/cm"},
+    NamedDimension{kForcePerVolume, "force per volume", "N/mm^3", "0.1 N/mm^3", "N/mm^3, N/m^3"},
+    NamedDimension{kDensity, "mass density", "t/mm^3", "1060 kg/m^3", "kg/m^3, g/cm^3, t/mm^3"},
+    NamedDimension{kAcceleration, "acceleration", "mm/s^2", "9.81 m/s^2", "m/s^2, mm/s^2"},
+    NamedDimension{kEnergy, "energy", "mJ", "0.05 N*m", "J, mJ, N*m"},
+    NamedDimension{kMass, "mass", "t", "20 g", "g, kg, t"},
+    NamedDimension{kTime, "time", "s", "10 ms", "s, ms"},
+    NamedDimension{kAngle, "angle", "rad", "30 deg", "deg, rad"},
 };
 
 const NamedDimension* named(Dimension dimension) {
@@ -81,11 +83,18 @@ const NamedDimension* named(Dimension dimension) {
 
 std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
-[[noreturn]] void refuse_unit(std::string_view unit) {
+// A near one, or else those of the dimension that is expected.
+[[noreturn]] void refuse_unit(std::string_view unit, const Dimension* expected) {
   static const std::vector<std::string> kCommon{"mm",  "cm",   "m", "um", "Pa",  "kPa", "MPa", "GPa",
                                                 "bar", "mmHg", "N", "mN", "kN",  "dyn", "J",   "mJ",
                                                 "kg",  "g",    "s", "ms", "psi", "deg", "rad", "t"};
-  throw InputError("unknown unit " + quoted(unit) + suggestion(unit, kCommon));
+  const NamedDimension* wanted = expected == nullptr ? nullptr : named(*expected);
+  std::string known = suggestion(unit, kCommon);
+  if (known.empty() && wanted != nullptr && *expected != kDimensionless)
+    known = std::string("; a ") + wanted->name + " has one of " + wanted->units;
+  else if (known.empty())
+    known = "; known are " + listed(kCommon) + ", their products, quotients and powers";
+  throw InputError("unknown unit " + quoted(unit) + known);
 }
 
 double scaled(double value, double mantissa, int exponent) {
@@ -113,14 +122,15 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // Reads one unit text from left to right.
 class UnitParser {
  public:
-  explicit UnitParser(std::string_view text) : text_(text), rest_(text) {}
+  UnitParser(std::string_view text, const Dimension* expected)
+      : text_(text), rest_(text), expected_(expected) {}
 
   Symbol parse() {
     Symbol product{"", 1, 0, kDimensionless, false};
     for (bool first = true;; first = false) {
       const bool divides = skip_separators(first);
       if (rest_.empty()) {
-        if (divides) refuse_unit(text_);
+        if (divides) refuse_unit(text_, expected_);
         return product;
       }
       const Symbol symbol = next_symbol();
@@ -148,7 +158,7 @@ class UnitParser {
       }
     }
     if (operators > 1 || (first && operators > 0 && !divides) || (operators > 0 && rest_.empty()))
-      refuse_unit(text_);
+      refuse_unit(text_, expected_);
     return divides;
   }
 
@@ -161,7 +171,7 @@ class UnitParser {
     }
     const std::string_view word = rest_.substr(0, size);
     const std::optional<Symbol> symbol = find_symbol(word);
-    if (!symbol) refuse_unit(word.empty() ? text_ : word);
+    if (!symbol) refuse_unit(word.empty() ? text_ : word, expected_);
     rest_.remove_prefix(size);
     return *symbol;
   }
@@ -183,11 +193,11 @@ class UnitParser {
     int power = 1;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), power);
     if (error != std::errc{}) {
-      if (caret) refuse_unit(text_);
+      if (caret) refuse_unit(text_, expected_);
       return 1;
     }
     constexpr int kGreatestPower = 9;
-    if (std::abs(power) > kGreatestPower) refuse_unit(text_);
+    if (std::abs(power) > kGreatestPower) refuse_unit(text_, expected_);
     rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
     return power;
   }
@@ -202,6 +212,7 @@ class UnitParser {
   }
 
   std::string_view text_, rest_;
+  const Dimension* expected_;  // null: any
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -212,7 +223,9 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-Quantity parse_quantity(std::string_view text) {
+namespace {
+
+Quantity parse(std::string_view text, const Dimension* expected) {
   std::string_view rest = trimmed(text);
   if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
   const size_t first = rest.starts_with('-') ? 1 : 0;
@@ -228,14 +241,18 @@ Quantity parse_quantity(std::string_view text) {
   }
   if (end == rest.data())
     throw InputError("read " + quoted(text) + ", which does not start with a finite number");
-  const Symbol unit = UnitParser(rest.substr(static_cast<size_t>(end - rest.data()))).parse();
+  const Symbol unit = UnitParser(rest.substr(static_cast<size_t>(end - rest.data())), expected).parse();
   value = scaled(value, unit.mantissa, unit.exponent);
   if (!std::isfinite(value)) throw InputError("read " + quoted(text) + ": the number is out of range");
   return {value, unit.dimension};
 }
 
+}  // namespace
+
+Quantity parse_quantity(std::string_view text) { return parse(text, nullptr); }
+
 double quantity_value(std::string_view text, Dimension expected) {
-  const Quantity quantity = parse_quantity(text);
+  const Quantity quantity = parse(text, &expected);
   if (quantity.dimension == expected) return quantity.value;
   if (quantity.dimension == kDimensionless && quantity.value == 0) return 0;
   const std::string wanted =
@@ -246,7 +263,7 @@ double quantity_value(std::string_view text, Dimension expected) {
 }
 
 double unit_factor(std::string_view unit, Dimension expected) {
-  const Symbol symbol = UnitParser(trimmed(unit)).parse();
+  const Symbol symbol = UnitParser(trimmed(unit), &expected).parse();
   if (symbol.dimension != expected)
     throw InputError("read " + quoted(unit) + ", a unit of " + dimension_name(symbol.dimension) +
                      "; expected a unit of " + dimension_name(expected) + " such as \"" +

@@ -1,5 +1,5 @@
 // Sliders of parameters. They move the result by its first-order response to each, and its figures along straight lines
-// between what solves found at both ends of each range.
+// to those of the equilibria at both ends of each range.
 
 const kFollowed = 3;  // nodes that a corner of an outline goes with
 
@@ -46,7 +46,7 @@ function makeResponse(data) {
   };
 }
 
-// By how much a figure changes: along a straight line to what the solve at that end of the range found.
+// By how much a figure changes: along a straight line to that of the equilibrium at that end of the range.
 function changeOf(parameter, name, value, now) {
   const ends = parameter.figures[name], end = value < 0 ? 0 : 1;
   if (!ends || value === 0 || ends[end] === null) return 0;
@@ -65,10 +65,10 @@ const changeText = (value, unit) => (value > 0 ? "+" : value < 0 ? "−" : "") +
 function noteText({ parameters, candidates }, values) {
   const moved = values.filter(value => value !== 0).length, error = figure(errorOf(parameters, values), 2) + " mm";
   if (moved === 0)
-    return `The ${parameters.length} of ${candidates} parameters that move the sheet most. At both ends of each range, of one at a time, a solve found the sheet within ` +
-        figure(Math.max(...parameters.flatMap(parameter => parameter.errors)), 2) + " mm of its first-order place; figures lie on straight lines to what it found.";
+    return `The ${parameters.length} of ${candidates} parameters that move the sheet most. At both ends of each range, of one at a time, the equilibrium has the sheet within ` +
+        figure(Math.max(...parameters.flatMap(parameter => parameter.errors)), 2) + " mm of its first-order place; figures lie on straight lines to those there.";
   if (moved === 1) return "First order: within about " + error + " of a solve. Colours and outlines are those of the result, carried along with the sheet.";
-  return "First order of several at once, which no solve has checked: about " + error + " from one. Colours and outlines are carried along.";
+  return "First order of several at once, which nobody has checked: about " + error + " from one. Colours and outlines are carried along.";
 }
 
 function showFigures(sliders, values) {
@@ -95,6 +95,11 @@ function connectParameters({ data, parts, show }) {
   const { sliders } = data;
   byId("what-if").hidden = !sliders;
   if (!sliders) return;
+  if (sliders.parameters.length === 0) {
+    byId("what-if-note").textContent = "No sliders of parameters: " + sliders.message + ".";
+    byId("what-if-reset").hidden = true;
+    return;
+  }
   const rows = sliders.parameters.map(sliderRow), values = rows.map(() => 0), last = data.states.length - 1;
   const outline = data.states[last].orifice_text;
   const respond = makeResponse(data), note = byId("what-if-note");
