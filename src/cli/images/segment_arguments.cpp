@@ -10,21 +10,49 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace coapt::cli {
 namespace {
 
-const std::map<std::string, SegmentMethod> kMethods = {{"ridge", SegmentMethod::Ridge},
-                                                       {"isosurface", SegmentMethod::Isosurface},
-                                                       {"burlina-2010", SegmentMethod::Burlina2010}};
+// What a user writes for each value of an option; the first is the default.
+template <typename Value>
+using Names = std::vector<std::pair<std::string, Value>>;
+
+const Names<SegmentMethod>& methods() {
+  static const Names<SegmentMethod> kNames = {{"ridge", SegmentMethod::Ridge},
+                                              {"isosurface", SegmentMethod::Isosurface},
+                                              {"burlina-2010", SegmentMethod::Burlina2010}};
+  return kNames;
+}
+
+const Names<Inhibition>& inhibitions() {
+  static const Names<Inhibition> kNames = {{"intensity", Inhibition::Intensity}, {"edge", Inhibition::Edge}};
+  return kNames;
+}
+
+// Pre: one of the names, or empty for the default.
+template <typename Value>
+Value value_named(const Names<Value>& names, const std::string& name) {
+  for (const auto& [other, value] : names)
+    if (other == name) return value;
+  return names.front().second;
+}
+
+template <typename Value>
+std::string name_of(const Names<Value>& names, Value value) {
+  for (const auto& [name, other] : names)
+    if (other == value) return name;
+  return "";
+}
 
 SegmentOptions segment_options(const SegmentArguments& arguments) {
   SegmentOptions options;
-  options.method = kMethods.at(arguments.method);
-  options.inhibition = arguments.inhibition == "edge" ? Inhibition::Edge : Inhibition::Intensity;
+  options.method = value_named(methods(), arguments.method);
+  options.inhibition = value_named(inhibitions(), arguments.inhibition);
   if (!arguments.seeds.empty()) {
     options.seeds = papillary_points(arguments.seeds);
     if (options.seeds->cols() != 2)
@@ -65,6 +93,8 @@ void print_found(const Segmentation& found) {
 }  // namespace
 
 void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
+  arguments.method = methods().front().first;
+  arguments.inhibition = inhibitions().front().first;
   command
       .add_option("VOLUME", arguments.volume,
                   "Volume with the open valve: NRRD, NIfTI, MetaImage or a DICOM folder")
@@ -91,14 +121,14 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
               "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
               "is above a threshold; burlina-2010: what the thin-tissue detector and the level set of "
               "that paper leave")
-          ->check(CLI::IsMember({"ridge", "isosurface", "burlina-2010"}))
+          ->check(CLI::IsMember(methods()))
           ->capture_default_str();
   command.add_option("--threshold", arguments.threshold, "Of the isosurface (default: Otsu's)")
       ->needs(method);
   command
       .add_option("--inhibition", arguments.inhibition,
                   "Of burlina-2010, what stops its contours: edge (eq. 7) or intensity (eq. 8)")
-      ->check(CLI::IsMember({"edge", "intensity"}))
+      ->check(CLI::IsMember(inhibitions()))
       ->capture_default_str()
       ->needs(method);
   command
@@ -122,10 +152,13 @@ Volume printed_volume(const std::string& path, const std::optional<int>& frame) 
 }
 
 Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volume) {
-  if (arguments.threshold && arguments.method != "isosurface")
-    throw InputError("--threshold: belongs to --method isosurface");
-  if ((!arguments.seeds.empty() || arguments.inhibition != "intensity") && arguments.method != "burlina-2010")
-    throw InputError("--seeds and --inhibition: belong to --method burlina-2010");
+  const auto needs_method = [&](SegmentMethod method, const std::string& options) {
+    if (value_named(methods(), arguments.method) != method)
+      throw InputError(options + ": belongs to --method " + name_of(methods(), method));
+  };
+  if (arguments.threshold) needs_method(SegmentMethod::Isosurface, "--threshold");
+  if (!arguments.seeds.empty() || value_named(inhibitions(), arguments.inhibition) != Inhibition::Intensity)
+    needs_method(SegmentMethod::Burlina2010, "--seeds or --inhibition");
   const SegmentOptions options = segment_options(arguments);
   try {
     const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());

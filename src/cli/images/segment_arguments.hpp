@@ -14,8 +14,8 @@ class App;
 namespace coapt::cli {
 
 struct SegmentArguments {
-  std::string volume, annulus, papillary, mask, seeds, output, method = "ridge", inhibition = "intensity",
-                                                               edge_length = "1.2mm";
+  std::string volume, annulus, papillary, mask, seeds, output, edge_length = "1.2mm";
+  std::string method, inhibition;  // add_segment_options sets the defaults
   std::optional<int> frame;
   std::optional<double> threshold, dynamic_range;
   std::string blur;  // empty: found

@@ -14,9 +14,9 @@
 namespace coapt {
 namespace {
 
-constexpr double kRidgeReach = 2;       // to both sides of the layer in which the ridge is sought [mm]
+constexpr double kRidgeReach = 1.25;    // to both sides of the layer in which the ridge is sought [mm]
 constexpr double kRidgeStep = 0.25;     // [mm]
-constexpr double kNearRidge = 1.2;      // places are preferred that lie nearer than this [mm]
+constexpr double kNearRidge = 0.7;      // places are preferred that lie nearer than this [mm]
 constexpr double kOutlyingRidge = 0.5;  // residual from which a place counts less [mm]
 constexpr double kAnnulusNoise = 0.5;   // to which the annulus is taken to be where it was given [mm]
 constexpr double kSomeEvidence = 0.3;   // weight from which residuals are counted as noise

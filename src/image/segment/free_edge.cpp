@@ -15,14 +15,14 @@ constexpr double kNearSide = 1.5, kFarSide = 2.5;  // of what lies beside it [mm
 constexpr double kEdgeReadingStep = 0.25;          // [mm]
 constexpr double kLevelFrom = 2, kLevelTo = 6;     // from the annulus, where all leaflets are [mm]
 constexpr double kShortest = 3;                    // leaflet [mm]
-constexpr double kBrighterShare = 1.0 / 3;         // of the contrast in the evidence where chords follow
-constexpr double kBrighterShareInBlood = 0.5;      // and where blood follows
+constexpr double kContrastShare = 1.0 / 3;         // of the contrast in the evidence where chords follow
+constexpr double kContrastShareInBlood = 0.5;      // and where blood follows
 constexpr double kLeafletInBlood = 0.64;           // as kLeaflet, where blood follows
-constexpr double kBloodBelow = 0.05,
-                 kChordsAbove = 0.2;          // strength beyond the edge, over that of the leaflets
+constexpr double kBloodBelow = 0.02,
+                 kChordsAbove = 0.08;         // strength beyond the edge, over that of the leaflets
 constexpr double kFanFrom = 2.5, kFanTo = 5;  // from the edge, where that is read [mm]
-constexpr double kLeaflet = 0.75;      // evidence over that of the leaflets, from which there is leaflet
-constexpr double kChords = 0.55;       // what fans of chords have
+constexpr double kLeaflet = 0.73;      // evidence over that of the leaflets, from which there is leaflet
+constexpr double kChords = 0.53;       // what fans of chords have
 constexpr double kEchoGap = 0.2;       // what gaps in the echoes have, and blood
 constexpr double kGreatestGain = 0.3;  // of evidence above that of leaflets, counted
 constexpr double kChordLoss = 0.25, kGapLoss = 0.02;  // what chords and gaps speak against a leaflet
@@ -41,21 +41,16 @@ double mean_between(const Volume& volume, const Vec3& x, const Vec3& normal, dou
   return sum / count;
 }
 
-// To the darker and to the brighter side, in values of the volume; NaN where a side lies outside of it.
-struct Contrasts {
-  Eigen::MatrixXd darker, brighter;
-};
-
-Contrasts contrasts(const Volume& volume, const LayerGrid& grid) {
-  Contrasts contrast{Eigen::MatrixXd(grid.rows, grid.columns), Eigen::MatrixXd(grid.rows, grid.columns)};
+// To the darker side, in values of the volume; NaN where a side lies outside of it.
+Eigen::MatrixXd contrasts(const Volume& volume, const LayerGrid& grid) {
+  Eigen::MatrixXd contrast(grid.rows, grid.columns);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const Vec3 x = grid.at(column, row), normal = grid.normals.col(grid.node(column, row));
       const double inside = mean_between(volume, x, normal, -kInside, kInside);
       const double outer = mean_between(volume, x, normal, kNearSide, kFarSide);
       const double inner = mean_between(volume, x, normal, -kFarSide, -kNearSide);
-      contrast.darker(row, column) = inside - std::min(outer, inner);
-      contrast.brighter(row, column) = inside - std::max(outer, inner);
+      contrast(row, column) = inside - std::min(outer, inner);
     }
   return contrast;
 }
@@ -91,10 +86,10 @@ Eigen::MatrixXd over_level(const Eigen::MatrixXd& values, const Eigen::MatrixXd&
   return values.unaryExpr([unit](double value) { return std::isfinite(value) ? value / unit : 0; });
 }
 
-// Of the sheet and of the contrast with the brighter side, by the share of the latter.
-Eigen::MatrixXd leaflet_evidence(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& brighter,
+// Of the sheet and of the contrast with the darker side, by the share of the latter.
+Eigen::MatrixXd leaflet_evidence(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& contrast,
                                  double share) {
-  return (1 - share) * strength + share * brighter;
+  return (1 - share) * strength + share * contrast;
 }
 
 // What a millimetre speaks for leaflet. Least of all where chords fan out: a gap may be one of the echoes.
@@ -171,7 +166,7 @@ Vector moved_to_blood(const Vector& ends, const Eigen::MatrixXd& evidence, const
       beyond = std::max(beyond, value_at(evidence, lengths, column, ends[column] + t, kBeside));
     const double blood = std::clamp(1 - beyond / kChords, 0.0, 1.0);
     const double least = kLeaflet - (kLeaflet - kEndInBlood) * blood;
-    for (double t = 0; t <= kFarthestMove; t += kEdgeReadingStep) {
+    for (double t = 0; t <= kFarthestMove * blood; t += kEdgeReadingStep) {
       if (value_at(evidence, lengths, column, ends[column] + t, kBeside) < least) break;
       moved[column] = ends[column] + t;
     }
@@ -191,14 +186,14 @@ double share_of_blood(const Vector& ends, const Eigen::MatrixXd& strength, const
 
 // Along each column, before it is smoothed [mm]. Where blood follows the strength of the sheet fades some two
 // millimetres before the edge and the contrast does not: once a first edge says so it is found again.
-Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& brighter,
+Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& contrast,
                   const Eigen::MatrixXd& lengths) {
-  Eigen::MatrixXd shown = leaflet_evidence(strength, brighter, kBrighterShare);
+  Eigen::MatrixXd shown = leaflet_evidence(strength, contrast, kContrastShare);
   Vector ends = kStateStep * closed_polygon(end_costs(shown, lengths), {});
   const double blood = share_of_blood(ends, strength, lengths);
   if (blood > 0) {
-    shown = leaflet_evidence(strength, brighter,
-                             kBrighterShare + blood * (kBrighterShareInBlood - kBrighterShare))
+    shown = leaflet_evidence(strength, contrast,
+                             kContrastShare + blood * (kContrastShareInBlood - kContrastShare))
                 .array() +
             blood * (kLeaflet - kLeafletInBlood);
     ends = kStateStep * closed_polygon(end_costs(shown, lengths), {});
@@ -211,8 +206,8 @@ Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& bright
 FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid) {
   FreeEdge edge;
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
-  const Contrasts contrast = contrasts(volume, grid);
-  edge.contrast = level_of(contrast.darker, lengths);
+  const Eigen::MatrixXd contrast = contrasts(volume, grid);
+  edge.contrast = level_of(contrast, lengths);
   if (std::isnan(edge.contrast))
     throw InputError("the leaflets lie outside of the volume; is the annulus in its frame (LPS)?");
   if (edge.contrast <= 0)
@@ -220,9 +215,7 @@ FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const La
         "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
         "volume's frame (LPS), and are the leaflets bright in it?");
   const Eigen::MatrixXd strength = over_level(strengths(evidence, grid), lengths);
-  const bool has_side = level_of(contrast.brighter, lengths) > 0;  // else the strength has to do alone
-  const Vector found =
-      found_ends(strength, has_side ? over_level(contrast.brighter, lengths) : strength, lengths);
+  const Vector found = found_ends(strength, over_level(contrast, lengths), lengths);
   edge.lengths = smoothed(found, grid, lengths);
   edge.deviation = std::sqrt((found - edge.lengths).squaredNorm() / grid.columns);
   for (int column = 0; column < grid.columns; ++column)

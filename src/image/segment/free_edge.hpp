@@ -14,12 +14,12 @@ struct FreeEdge {
 
 // At each point of the layer the evidence is two thirds that of a sheet and one third the contrast (half and
 // half where blood follows the edge all around, and no chords): what the value on the layer (the mean of half
-// a millimetre to both sides) exceeds that on the brighter of its sides (1.5 to 2.5 mm away) by; both over
-// their medians two to six millimetres from the annulus. Beyond the free edge chords fan out so densely that
-// they too look like a sheet, but one of half the strength, and thicker. What a leaflet has speaks for it,
-// what chords have against it, and what is dark hardly at all, because echoes drop out within leaflets. The
-// edge is the closed polygon (closed_polygon.hpp) that these contradict least, moved on by up to 1.5 mm where
-// blood follows and no chords, and smoothed along the ring.
+// a millimetre to both sides) exceeds that on the darker of its sides (1.5 to 2.5 mm away) by; both over
+// their medians two to six millimetres from the annulus. The brighter side is not asked: chords of the rough
+// zone run along it long before the leaflet ends. What a leaflet has speaks for it, what bundles of chords
+// have against it, and what is dark hardly at all, because echoes drop out within leaflets. The edge is the
+// closed polygon (closed_polygon.hpp) that these contradict least, moved on by up to 1.5 mm where blood
+// follows and no chords, and smoothed along the ring. `evidence` is that of all scales.
 FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid);
 
 }  // namespace coapt

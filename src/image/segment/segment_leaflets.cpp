@@ -209,12 +209,15 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
                      .greatest_length = kGreatestShare * plane.diameter};
   const Volume seen = looked_at(part, options, plane, track, threshold, result);
-  SheetEvidence evidence = sheet_evidence(seen, sheet_scales(part));
+  const std::vector<double> scales = sheet_scales(part);
+  SheetEvidence evidence = sheet_evidence(seen, scales);
+  // Greater scales see a leaflet and the chords beside it as one sheet.
+  const SheetEvidence ridge = sheet_evidence(seen, {scales.front()});
 
   phases.begin("layer from the annulus");
   track.ventricle = side_of_ventricle(evidence, options, plane, track);
-  LayerGrid grid = track_layer(evidence, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
-  const LayerFit fit = fit_layer(grid, evidence, options.smoothing, kFitRounds);
+  LayerGrid grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
+  const LayerFit fit = fit_layer(grid, ridge, options.smoothing, kFitRounds);
 
   phases.begin("free edge");
   const FreeEdge edge = free_edge(seen, evidence, grid);

@@ -12,12 +12,13 @@
 namespace coapt {
 namespace {
 
-// Half the range and number of the turns that are tried at each step, and what they cost in the unit of the
+// Least radius over which leaflets bend [mm]: bundles of chords leave them more sharply. It gives half the
+// range of the turns that are tried at each step; then their number, and what they cost in the unit of the
 // evidence: a turn by the whole range, and a difference of one turn between neighbours.
-constexpr double kTurn = 0.35;
+constexpr double kLeastRadius = 5;
 constexpr int kTurns = 13;
 constexpr double kTurnCost = 0.15;
-constexpr double kTurnDifference = 0.03;
+constexpr double kTurnDifference = 0.1;
 // At the annulus: directions from 45 degrees on the side of the atrium to 120 degrees.
 constexpr double kFirstDirection = -0.8, kLastDirection = 2.1;
 constexpr int kDirections = 30;
@@ -86,12 +87,12 @@ Points first_directions(const SheetEvidence& evidence, const Points& ring, const
 }
 
 // The directions at the next row: those of the last one, turned.
-Points next_directions(const SheetEvidence& evidence, const Front& front) {
+Points next_directions(const SheetEvidence& evidence, const Front& front, double step) {
   const Eigen::Index n = front.points.cols();
   Eigen::MatrixXd costs(kTurns, n);
   Points straight(3, n);
   const auto turned = [&](Eigen::Index i, int turn) -> Vec3 {
-    const double angle = kTurn * (2.0 * turn / (kTurns - 1) - 1);
+    const double angle = step / kLeastRadius * (2.0 * turn / (kTurns - 1) - 1);
     return Eigen::AngleAxisd(angle, front.tangents.col(i)) * straight.col(i);
   };
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -181,7 +182,7 @@ LayerGrid track_layer(const SheetEvidence& evidence, const Points& ring, const T
     front.tangents = tangents_of(front.points);
     rows.push_back(front.points);
     gap = mean_evidence(evidence, front) < kNoEvidence ? gap + options.step : 0;
-    front.directions = next_directions(evidence, front);
+    front.directions = next_directions(evidence, front, options.step);
   }
   LayerGrid grid;
   grid.columns = static_cast<int>(ring.cols());
