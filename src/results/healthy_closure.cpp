@@ -71,8 +71,8 @@ std::string strain_doubt(const std::vector<HealthyCriterion>& criteria) {
   const auto strain = std::find_if(criteria.begin(), criteria.end(),
                                    [](const HealthyCriterion& each) { return each.name == kStrain; });
   if (strain == criteria.end() || strain->is_met()) return "";
-  return "a hundredth of the leaflets is stretched by more than " + number_text(100 * strain->value, 2) +
-         " %, where peaks in vivo are 13 +- 4.7 % (Rausch et al. 2011)";
+  return "1 % of the leaflets strained above " + number_text(100 * strain->value, 2) +
+         " % (in vivo: peaks of 13 +- 4.7 %, Rausch 2011)";
 }
 
 }  // namespace coapt
