@@ -39,8 +39,7 @@ void refuse_other_json(const Json& json, const std::filesystem::path& path) {
   if (json.contains("leaflets")) refuse(path, "a valve JSON", kImport);
 }
 
-void refuse_scene(const std::filesystem::path& path) {
-  const Json json = read_json(path);
+void refuse_scene(const Json& json, const std::filesystem::path& path) {
   if (!json.is_object() || !json.contains("terms") || json.contains("leaflets")) return;
   throw InputError(path.string() + ": is a scene already: `coapt solve " + path.string() +
                    "` solves it as it is");

@@ -13,6 +13,6 @@ void refuse_other_file(const std::filesystem::path& path);
 void refuse_other_json(const Json& json, const std::filesystem::path& path);
 
 // Throws InputError where the JSON is that of a scene, which commands on valve files are given.
-void refuse_scene(const std::filesystem::path& path);
+void refuse_scene(const Json& json, const std::filesystem::path& path);
 
 }  // namespace coapt

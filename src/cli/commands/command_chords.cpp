@@ -64,7 +64,7 @@ Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& war
   Valve valve;
   Numbering numbering = file_numbering(arguments.input);
   if (formats::lower_extension(arguments.input) == ".json") {
-    refuse_scene(arguments.input);
+    refuse_scene(read_json(arguments.input), arguments.input);
     ValveFile file = read_valve(arguments.input);
     valve = std::move(file.valve);
     numbering = file.numbering;

@@ -48,7 +48,7 @@ ImportSource read_source(const std::filesystem::path& file, ImportOptions& optio
     return {std::move(model.valve), {}};
   }
   if (formats::lower_extension(file) != ".json") return {valve_of_mesh(file, warnings), file_numbering(file)};
-  refuse_scene(file);
+  refuse_scene(read_json(file), file);
   ValveFile read = read_valve(file);
   warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
   for (auto& [region, law] : read.valve.membranes) take_membrane_option(options, true, law);
