@@ -36,9 +36,13 @@ std::unique_ptr<Solution> run(const Input& input, const py::object& callback, co
   if (folder) options.folder = *folder;
   options.factorisations = factorisations();
   options.checker = checker();
-  if (!input.vertices && input.terms.empty())  // the scene says all that its sliders are made of
-    options.first_order = first_order_of_runs(cli::all_solvers(), options);
   Failure failure;
+  if (!input.vertices && input.terms.empty())  // the scene says all that its sliders are made of
+    options.first_order = [options, &failure](const Scene& scene, const Model& model, const Report& report) {
+      RunOptions interruptible = options;
+      interruptible.observer = observer_of(py::handle(Py_None), failure, model);
+      return first_order_of_runs(cli::all_solvers(), interruptible)(scene, model, report);
+    };
   Given given = input.given(failure);
   const bool is_from_given_start = given.start.has_value();
   given.observer = [callback = py::handle(callback), &failure](const Model& model) {

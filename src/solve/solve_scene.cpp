@@ -109,11 +109,7 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   setup.continuation = chosen_continuation(scene, options);
   setup.factorisation = factorisation;
   setup.stability = {factorisation, options.modes.value_or(scene.solver.modes)};
-  if (options.phase)
-    setup.stability.factorisation = [factorisation, phase = options.phase] {
-      phase({.name = "certificate"});
-      return factorisation();
-    };
+  if (options.phase) setup.stability.begins = [phase = options.phase] { phase({.name = "certificate"}); };
   setup.observer = options.observer;
   setup.phase = options.phase;
   return setup;

@@ -1,35 +1,33 @@
 #include "tuning/first_order.hpp"
 
 #include "core/error.hpp"
+#include "core/timing.hpp"
 #include "report/shape_view.hpp"
 #include "results/result_warnings.hpp"
 #include "run/run_parts.hpp"
 #include "tuning/tracked_scene.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <exception>
 #include <map>
 #include <numbers>
-#include <thread>
 
 namespace coapt {
 namespace {
 
-constexpr double kShare = 0.1;               // of a factor or a number, that is tried first
-constexpr double kShift = 0.05;              // of the extent of the sheet, of a displacement
-constexpr double kTilt = 0.1;                // [rad]
-constexpr double kUsualExtent = 100;         // [mm], beyond which the tolerance grows with the sheet
-constexpr double kKept = 0.8;                // of the tolerance: the rest is for rounding in a page
-constexpr double kSmaller = 0.3;             // of a range at whose end nothing was found
-constexpr double kLeft = 0.02;               // of the tolerance, that corrections leave
-constexpr double kResponse = 1e-6;           // residual of the linear system of a response
-constexpr double kSameShape = 1e-2;          // of the tolerance, that a shape may miss the report's by
-constexpr double kMostMovement = 6;          // of the tolerance, of a node by the change that is tried first
-constexpr Eigen::Index kMostShared = 20000;  // nodes of a scene of which every thread has one
-constexpr int kMostTrials = 6;               // for one end of a range
-constexpr double kLeastMovement = 0.05;      // of the tolerance: what moves the sheet less says nothing
+constexpr double kShare = 0.1;           // of a factor or a number, that is tried first
+constexpr double kShift = 0.05;          // of the extent of the sheet, of a displacement
+constexpr double kTilt = 0.1;            // [rad]
+constexpr double kUsualExtent = 100;     // [mm], beyond which the tolerance grows with the sheet
+constexpr double kKept = 0.8;            // of the tolerance: the rest is for rounding in a page
+constexpr double kSmaller = 0.3;         // of a range at whose end nothing was found
+constexpr double kLeft = 0.02;           // of the tolerance, that corrections leave
+constexpr double kResponse = 1e-6;       // residual of the linear system of a response
+constexpr double kSameShape = 1e-2;      // of the tolerance, that a shape may miss the report's by
+constexpr double kMostMovement = 6;      // of the tolerance, of a node by the change that is tried first
+constexpr int kMostTrials = 6;           // for one end of a range
+constexpr double kLeastMovement = 0.05;  // of the tolerance: what moves the sheet less says nothing
 
 // One number, or one direction among the numbers of a parameter.
 struct Direction {
@@ -159,15 +157,14 @@ class Responses {
     });
   }
 
-  // Both ends of the range of a direction, of this or of a twin.
+  // Both ends of the range of a direction.
   void check(Direction& direction) {
     // Contact looks for its pairs anew from far away, so that only the last digits depend on what was checked
-    // before, by which thread.
+    // before.
     Objective& objective = *tracked_.model.objective;
     const Vector& q = equilibrium_.unknowns();
     objective.value(q.array() + 2 * objective.extent(q));
     for (const size_t side : {size_t{0}, size_t{1}}) check(direction, side);
-    complete_upper_end(direction.response.ends);
   }
 
   const Vector& unknowns() const { return equilibrium_.unknowns(); }
@@ -187,7 +184,6 @@ class Responses {
     const Points& motion = direction.response.motion;
     const Points moved = motion(Eigen::all, nodes_);
     const double furthest = std::sqrt(moved.colwise().squaredNorm().maxCoeff());
-    const bool has_closure = direction.response.ends[0].change == 0;  // of the other end, that is
     double change = std::min(direction.step, kMostMovement * found_.tolerance_mm / furthest);
     if (side == 0) change = -change;
     for (int trial = 0; trial < kMostTrials; ++trial) {
@@ -198,8 +194,7 @@ class Responses {
         shape =
             equilibrium_.corrected(value_ + change * direction.change, x_ + change * motion, nodes_,
                                    kLeft * found_.tolerance_mm, 2 * kept, [&](const CorrectedShape& found) {
-                                     if (found.distance + found.left <= kept)
-                                       figures = figures_at(found.x, has_closure);
+                                     if (found.distance + found.left <= kept) figures = figures_at(found.x);
                                    });
       } catch (const InputError&) {  // beyond a limit of the parameter
       }
@@ -213,36 +208,15 @@ class Responses {
     }
   }
 
-  // has_closure: those of the closure of a valve among them, which take most of the time.
-  std::vector<MetricRow> figures_at(const Points& x, bool has_closure) {
-    Model& model = tracked_.model;
-    take_rest_lengths(model);
+  std::vector<MetricRow> figures_at(const Points& x) {
+    const Model& model = tracked_.model;
+    take_rest_lengths(tracked_.model);
     const Fields fields = compute_fields(model, x);
     const IntersectionChecker none = {
         "nobody", [](const Points&, const Triangles&) { return std::vector<std::array<int, 2>>(); }};
-    auto annulus = has_closure ? decltype(model.sets)::node_type() : model.sets.extract("annulus");
     std::vector<MetricRow> rows = metric_rows(measure(model, model.objective->unknowns(x), fields, none));
-    if (!annulus.empty()) model.sets.insert(std::move(annulus));
     std::erase_if(rows, [](const MetricRow& row) { return row.name == "intersections"; });
     return rows;
-  }
-
-  // Along straight lines from those of the result.
-  std::vector<MetricRow> shares_of(std::vector<MetricRow> rows, double share) const {
-    for (MetricRow& row : rows)
-      if (const auto now = now_.find(row.name); row.value && now != now_.end())
-        row.value = now->second + share * (*row.value - now->second);
-    return rows;
-  }
-
-  // What was measured at the lower end alone goes on along its straight line.
-  void complete_upper_end(std::array<CheckedEnd, 2>& ends) const {
-    if (ends[0].change == 0 || ends[1].change == 0) return;
-    const std::vector<MetricRow> mirrored = shares_of(ends[0].figures, ends[1].change / ends[0].change);
-    for (const MetricRow& row : mirrored)
-      if (std::none_of(ends[1].figures.begin(), ends[1].figures.end(),
-                       [&](const MetricRow& own) { return own.name == row.name && own.value; }))
-        ends[1].figures.push_back(row);
   }
 
   TrackedScene tracked_;
@@ -256,35 +230,6 @@ class Responses {
   std::map<std::string, double> now_;  // figures there
 };
 
-// The directions from `begin` to `end`, each by whoever is free. Of a run that is no longer wanted the rest
-// stays unchecked.
-void check_shared(Responses& first, const std::vector<std::unique_ptr<Responses>>& helpers, size_t begin,
-                  size_t end, const std::function<bool()>& is_wanted) {
-  std::vector<Direction>& directions = first.directions();
-  std::atomic<size_t> at = begin;
-  std::atomic<bool> goes_on = true;
-  std::vector<std::exception_ptr> errors(helpers.size() + 1);
-  const auto work = [&](Responses& worker, std::exception_ptr& error, const std::function<bool()>& asks) {
-    try {
-      for (size_t k = at++; k < end && goes_on; k = at++) {
-        worker.check(directions[k]);
-        if (asks && !asks()) goes_on = false;
-      }
-    } catch (...) {
-      error = std::current_exception();
-      goes_on = false;
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (size_t k = 0; k < helpers.size(); ++k)
-      threads.emplace_back([&, k] { work(*helpers[k], errors[k], {}); });
-    work(first, errors.back(), is_wanted);
-  }
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
-}
-
 }  // namespace
 
 FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
@@ -297,58 +242,55 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   const size_t most = std::min(wanted.most, most_sliders(static_cast<size_t>(model.X.cols())));
   none.message = "a page has no room for the displacements of so many nodes";
   if (most == 0) return none;
+  none.message = "they take a few times as long as the solve of a mesh of more than " +
+                 std::to_string(wanted.most_nodes) + " nodes; coapt solve --sliders makes them";
+  if (model.X.cols() > wanted.most_nodes) return none;
+  const double begin = wall_seconds();
+  const double left = options.max_seconds ? *options.max_seconds - report.result.wall_s : kInfinity;
+  none.message = "the solve left no time for them";
+  if (!(left > 0)) return none;
   const Points start = report.fields.x.colwise() + model.origin;
   RunOptions again = options;
   again.solver = report.solver;
   again.tolerance = report.tolerance;
   again.modes = 0;
   again.phase = {};
-  TrackingOptions tracking{.tolerance = report.tolerance, .checks_branch = false, .anchor_steps = 0};
-  if (options.max_seconds) tracking.max_seconds = *options.max_seconds;
-  const auto make = [&](const Observer& observer) {
-    tracking.observer = observer;
-    auto made = std::make_unique<Responses>(model, report,
-                                            track_shape(scene, start, solvers, again, tracking), wanted);
-    made->take_parameters(scene);
-    return made;
-  };
-  const std::unique_ptr<Responses> first = make(options.observer);
-  none.message = first->solve_first(report.fields.x);
+  const TrackingOptions tracking{.tolerance = report.tolerance,
+                                 .max_seconds = left,
+                                 .checks_branch = false,
+                                 .anchor_steps = 0,
+                                 .observer = options.observer};
+  Responses responses(model, report, track_shape(scene, start, solvers, again, tracking), wanted);
+  responses.take_parameters(scene);
+  none.message = responses.solve_first(report.fields.x);
   if (!none.message.empty()) return none;
-  first->rank();
-  // Each helper has a scene of its own, at the same shape.
-  const auto most_helpers =
-      model.X.cols() > kMostShared ? 0 : static_cast<size_t>(thread_count(scene.solver)) - 1;
-  std::vector<std::unique_ptr<Responses>> helpers;
-  const auto is_wanted = [&] { return !options.observer || options.observer({}, first->unknowns()); };
-  std::vector<Direction>& directions = first->directions();
-  FirstOrder& found = first->found();
-  for (size_t next = 0; next < directions.size() && found.parameters.size() < most && is_wanted();) {
-    const size_t begin = next;
-    next = std::min(directions.size(), next + most - found.parameters.size());
-    while (helpers.size() < std::min(most_helpers, next - begin - 1)) {
-      helpers.push_back(make({}));
-      if (!helpers.back()->solve_first(report.fields.x).empty()) return std::move(found);
-    }
-    check_shared(*first, helpers, begin, next, is_wanted);
-    for (size_t k = begin; k < next; ++k)
-      if (const auto& ends = directions[k].response.ends; ends[0].change != 0 || ends[1].change != 0)
-        found.parameters.push_back(std::move(directions[k].response));
+  responses.rank();
+  FirstOrder& found = responses.found();
+  bool is_ended = false;
+  for (Direction& direction : responses.directions()) {
+    is_ended =
+        wall_seconds() - begin > left || (options.observer && !options.observer({}, responses.unknowns()));
+    if (is_ended || found.parameters.size() == most) break;
+    responses.check(direction);
+    if (const auto& ends = direction.response.ends; ends[0].change != 0 || ends[1].change != 0)
+      found.parameters.push_back(std::move(direction.response));
   }
   if (!found.parameters.empty())
     found.message.clear();
+  else if (is_ended)
+    found.message = "the search for them was ended before any was found";
   else if (found.message.empty())
     found.message = "no parameter moves the sheet over a range in which the first order holds";
   return std::move(found);
 }
 
-std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order_of_runs(SolverTable solvers,
-                                                                                         RunOptions options) {
-  return [solvers = std::move(solvers), options = std::move(options)](const Scene& scene, const Model& model,
-                                                                      const Report& report) {
+std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order_of_runs(
+    SolverTable solvers, RunOptions options, FirstOrderOptions wanted) {
+  return [solvers = std::move(solvers), options = std::move(options), wanted](
+             const Scene& scene, const Model& model, const Report& report) {
     if (options.phase) options.phase({.name = "sliders of the page"});
     try {
-      return first_order(scene, solvers, options, model, report);
+      return first_order(scene, solvers, options, model, report, wanted);
     } catch (const std::exception& error) {  // the result is there, whatever its sliders are
       FirstOrder none;
       none.message = error.what();

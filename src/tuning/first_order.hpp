@@ -12,9 +12,10 @@
 namespace coapt {
 
 struct FirstOrderOptions {
-  size_t most = 8;            // parameters, or as many as a page has room for
-  double tolerance_mm = 0.1;  // greatest distance of a node of the sheet from a solve; of a sheet beyond
-                              // 100 mm as much more
+  size_t most = 8;                 // parameters, or as many as a page has room for
+  double tolerance_mm = 0.1;       // greatest distance of a node of the sheet from a solve; of a sheet beyond
+                                   // 100 mm as much more
+  Eigen::Index most_nodes = 2000;  // of the mesh: on larger ones they take a few times as long as the solve
 };
 
 // A model of its own is built from the report's shape, which stays as it is. Nothing is thrown for what lies
@@ -26,7 +27,7 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
 
 // For RunOptions::first_order: what first_order() finds of runs with these options. What it throws becomes
 // the message.
-std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order_of_runs(SolverTable solvers,
-                                                                                         RunOptions options);
+std::function<FirstOrder(const Scene&, const Model&, const Report&)> first_order_of_runs(
+    SolverTable solvers, RunOptions options, FirstOrderOptions wanted = {});
 
 }  // namespace coapt

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNoLength = 1e-6;  // of the median rest length
 constexpr size_t kNamed = 10;
+constexpr size_t kFewFans = 2;      // with strands that end together: one alone is a slip
 constexpr double kManyFans = 0.08;  // of all fans, that a coarse mesh makes end together
 constexpr double kAllSlack = 0.5;   // strain, below zero, of the tautest way; of valves at hand at most 0.13
 
@@ -97,7 +98,8 @@ std::set<int> fanned_together(const Valve& valve, const ChordGraph& graph, const
     many += repeats(fan) > 0 ? 1 : 0;
   }
   std::set<int> meant;
-  if (2 * together >= strands || static_cast<double>(many) < kManyFans * static_cast<double>(all.size()))
+  if (many < kFewFans || 2 * together >= strands ||
+      static_cast<double>(many) < kManyFans * static_cast<double>(all.size()))
     return meant;
   for (const auto& [from, fan] : all)
     if (sizes[fan.size()] > 1) meant.insert(fan.begin(), fan.end());

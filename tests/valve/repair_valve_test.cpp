@@ -173,6 +173,23 @@ TEST(ValveCheck, NamesCopiedChordsBesideFansThatEndTogether) {
   EXPECT_TRUE(says(chord_doubts(all), ": each joins the same two points"));
 }
 
+TEST(ValveCheck, NamesAStrandThatEndsWhereItsNeighbourDoesInANetworkOfFewFans) {
+  Valve valve = without_copies();
+  std::vector<Chord>& chords = valve.chords.chords;
+  std::erase_if(chords,
+                [](const Chord& c) { return c.from.kind == ChordEnd::Kind::Junction && c.from.index >= 6; });
+  EXPECT_FALSE(says(chord_doubts(valve), "the same two points"));
+  const auto is_strand = [](const Chord& c) {
+    return c.from.kind == ChordEnd::Kind::Junction && c.to.kind == ChordEnd::Kind::Leaflet;
+  };
+  size_t k = 0;
+  while (!is_strand(chords[k]) || !is_strand(chords[k + 1]) ||
+         chords[k].from.index != chords[k + 1].from.index)
+    ++k;
+  chords[k + 1].to = chords[k].to;
+  EXPECT_TRUE(says(chord_doubts(valve), "chord " + std::to_string(k + 1) + ": joins the same two points"));
+}
+
 TEST(ValveCheck, NamesChordsThatCannotBeMeant) {
   const Valve valve = without_copies();
   const std::string last = std::to_string(valve.chords.chords.size());

@@ -22,6 +22,7 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,7 +35,7 @@ struct SolveArguments {
   double tolerance = 0, max_seconds = 0;
   int modes = 0, frames = 0;
   std::optional<int> damped_steps, threads;
-  bool has_no_report = false, has_no_sliders = false;
+  bool has_no_report = false, has_sliders = false, has_no_sliders = false;
   BranchSearch branches = {.starts = 0};
   SolveCheckpointArguments checkpoint;
 };
@@ -255,7 +256,9 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   if (!arguments.accuracy.empty()) accuracy_mm = wanted_accuracy(arguments.accuracy);
   options.doubts = told_doubts;
   show_progress(session, options);
-  if (!arguments.has_no_sliders) options.first_order = first_order_of_runs(all_solvers(), options);
+  FirstOrderOptions sliders;
+  if (arguments.has_sliders) sliders.most_nodes = std::numeric_limits<Eigen::Index>::max();
+  if (!arguments.has_no_sliders) options.first_order = first_order_of_runs(all_solvers(), options, sliders);
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
@@ -279,6 +282,18 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   const Result& result = report.report.result;
   if (!is_reached || result.status != Status::Converged) return kNotConverged;
   return is_in_doubt(report.report) ? kInDoubt : kConverged;
+}
+
+void add_slider_flags(CLI::App& command, SolveArguments& arguments) {
+  CLI::Option* without =
+      command.add_flag("--no-sliders", arguments.has_no_sliders,
+                       "In report.html no sliders of the parameters that matter most, which move shape and "
+                       "figures by their first-order response");
+  command
+      .add_flag(
+          "--sliders", arguments.has_sliders,
+          "Sliders of a mesh of more than 2000 nodes too, where they take a few times as long as the solve")
+      ->excludes(without);
 }
 
 }  // namespace
@@ -319,9 +334,7 @@ void add_solve_command(CLI::App& app, Session& session) {
   add_branch_options(*command, arguments->branches);
   add_solve_checkpoint_arguments(*command, arguments->checkpoint);
   command->add_flag("--no-report", arguments->has_no_report, "Do not write report.html");
-  command->add_flag("--no-sliders", arguments->has_no_sliders,
-                    "In report.html no sliders of the parameters that matter most, which move shape and "
-                    "figures by their first-order response");
+  add_slider_flags(*command, *arguments);
   command->callback([arguments, tolerance, seconds, modes, frames, &session] {
     listen_for_interrupts();
     RunOptions options;

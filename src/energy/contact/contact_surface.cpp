@@ -48,10 +48,13 @@ bool overlap(const NearBox& a, const NearBox& b) { return all_of((a.low <= b.hig
 // Makes boxes around nodes.
 class NearBoxes {
  public:
-  NearBoxes(const Points& x, double reach) : x_(x) {
-    if (x.cols() == 0) return;
-    origin_ = x.rowwise().minCoeff();
-    const double extent = (x.rowwise().maxCoeff() - origin_).maxCoeff();
+  // around: the triangles around each node; the scene is as large as the nodes that have some.
+  NearBoxes(const Points& x, double reach, const std::vector<std::vector<int>>& around) : x_(x) {
+    Bounds all;
+    for (size_t node = 0; node < around.size(); ++node)
+      if (!around[node].empty()) all.include(Vec3(x.col(static_cast<Eigen::Index>(node))));
+    origin_ = all.low.matrix();
+    const double extent = (all.high - all.low).maxCoeff();
     scale_ =
         std::isfinite(extent) ? (extent > 0 ? 1 / extent : 0) : kNaN;  // nothing is near what is not finite
     half_ = static_cast<float>(std::min(0.5 * reach * scale_, 2.0)) + kRounding;
@@ -215,13 +218,13 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
-  const NearBoxes boxes(x, reach);
+  const NearBoxes boxes(x, reach, around_);
   visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
 }
 
 std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, ThreadTeam& team) const {
   constexpr size_t kShare = 256;  // pairs of triangles that a thread takes at once
-  const NearBoxes boxes(x, reach);
+  const NearBoxes boxes(x, reach, around_);
   const auto of = feature_bounds<NearBox>([&](int node) { return boxes.around(node, true); }, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
@@ -240,7 +243,7 @@ std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reac
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
                                 const Visit& visit) const {
-  const NearBoxes boxes(x, reach);
+  const NearBoxes boxes(x, reach, around_);
   visit_pairs<NearBox>([&](int node) { return boxes.around(node, moving.moves(node)); }, overlap, visit, {});
 }
 

@@ -154,6 +154,7 @@ Certificate certify(Objective& objective, const Vector& q, double tolerance, con
   const bool is_equilibrium = certificate.residual <= tolerance;
   if (!is_equilibrium) certificate.imbalance = largest_imbalance(objective, x);
   if (is_equilibrium && checks_stability && options.factorisation) {
+    if (options.begins) options.begins();
     certificate.stability = stability_at(objective, q, tolerance, options);
     certificate.free_nodes = nodes_of(certificate.stability.free_blocks, objective.fixed());
   }

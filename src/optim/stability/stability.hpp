@@ -5,6 +5,7 @@
 #include "optim/stability/free_directions.hpp"
 
 #include <complex>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct StabilityOptions {
   int modes = 0;                       // smallest eigenvalues wanted
   bool finds_descent = true;           // whether an unstable state gets its way out
   int most_unknowns = 30000;           // beyond these modes are not counted: that takes a slow factorisation
+  std::function<void()> begins = {};   // told when the certificate of a result sets about it
 };
 
 struct StabilityReport {
