@@ -129,7 +129,6 @@ void write_files(const std::filesystem::path& folder, const Model& model, const 
     WriteAttempts attempt;
     attempt([&] { write_results(folder, model, report); });
     if (report.has_page) {
-      std::filesystem::remove(page, ignored);  // of an earlier solve, should this one be ended here
       complete();
       attempt([&] { formats::write_whole(page, solve_page(model, report)); });
     } else {
