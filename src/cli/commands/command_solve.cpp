@@ -290,10 +290,12 @@ void add_slider_flags(CLI::App& command, SolveArguments& arguments) {
                        "In report.html no sliders of the parameters that matter most, which move shape and "
                        "figures by their first-order response");
   command
-      .add_flag(
-          "--sliders", arguments.has_sliders,
-          "Sliders of a mesh of more than 2000 nodes too, where they take a few times as long as the solve")
-      ->excludes(without);
+      .add_flag("--sliders", arguments.has_sliders,
+                "Sliders of a mesh of more than " + std::to_string(FirstOrderOptions{}.most_nodes) +
+                    " nodes too, where they take a few times as long as the solve")
+      ->excludes(without)
+      ->excludes("--no-report")
+      ->excludes("--accuracy");
 }
 
 }  // namespace

@@ -105,13 +105,19 @@ Volume image_with_chords(const Valve& valve, const PhantomOptions& options) {
       .image;
 }
 
+// Voxels of 0.5 mm, without gaps.
+PhantomOptions clear_phantom(unsigned seed) {
+  PhantomOptions options;
+  options.axial = options.lateral = 0.5;
+  options.dropout = 0;
+  options.shadows = 0;
+  options.seed = seed;
+  return options;
+}
+
 TEST(SegmentLeaflets, EndsWhereChordsFanOut) {
   const Valve valve = mitral_valve(MitralOptions{.triangles = 2500, .seed = 8});
-  PhantomOptions phantom;
-  phantom.axial = phantom.lateral = 0.5;
-  phantom.dropout = 0;
-  phantom.shadows = 0;
-  phantom.seed = 8;
+  const PhantomOptions phantom = clear_phantom(8);
   const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
   const Errors errors = errors_of(found, valve);
   EXPECT_LT(errors.there.p95, 0.8);
@@ -127,11 +133,7 @@ TEST(SegmentLeaflets, GoesOnWhereChordsOfTheRoughZoneLeave) {
   LeafletChordOptions chords;
   chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
   valve.chords = leaflet_chords(valve, chords);
-  PhantomOptions phantom;
-  phantom.axial = phantom.lateral = 0.5;
-  phantom.dropout = 0;
-  phantom.shadows = 0;
-  phantom.seed = 4;
+  const PhantomOptions phantom = clear_phantom(4);
   const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
   const Errors errors = errors_of(found, valve);
   EXPECT_LT(errors.back.mean, 0.35);
