@@ -2,12 +2,16 @@
 // of the library, the cord of Burlina and the neo-Hookean triangle.
 //   values < states   of each line of coordinates ("cord" and 6 of x; "rubber", 9 of X and 9 of x): energy,
 //                     gradient and Hessian of ours and of the generated kernel, a line each
-//   time              nanoseconds of an evaluation of each: value, with gradient, with Hessian; best of
-//   several
+//   projected < states  of each line the projected Hessian of the generated kernel, and in the next line what
+//                     an eigenvalue decomposition makes of its exact one
+//   time              nanoseconds of an evaluation of each: value, with gradient, with Hessian, with
+//   projected
+//                     Hessian; best of several
 // bench/kernels.py measures with it, tests/python/kernel_test.py compares.
 #include "cord.hpp"
 #include "energy/kernels/cst_isotropic.hpp"
 #include "energy/kernels/tether_cubic.hpp"
+#include "energy/project_psd.hpp"
 #include "rubber.hpp"
 
 #include <algorithm>
@@ -45,6 +49,19 @@ void print(const typename Kernel::Rest& rest, const Vector& x) {
   std::printf(" %.17g\n", Kernel::evaluate(rest, x, &alone, nullptr) + (alone - g).norm());
 }
 
+template <typename Kernel, typename Vector>
+void print_projected(const typename Kernel::Rest& rest, const Vector& x) {
+  Vector g;
+  Eigen::Matrix<double, Vector::RowsAtCompileTime, Vector::RowsAtCompileTime> H, decomposed;
+  Kernel::evaluate_projected(rest, x, &g, &H);
+  Kernel::evaluate(rest, x, &g, &decomposed);
+  project_psd(decomposed);
+  for (const auto& matrix : {H, decomposed}) {
+    for (const double value : matrix.reshaped()) std::printf(" %.17g", value);
+    std::printf("\n");
+  }
+}
+
 template <typename Vector>
 Vector read() {
   Vector x;
@@ -52,14 +69,22 @@ Vector read() {
   return x;
 }
 
-void values() {
+void values(bool projects) {
   for (std::string kind; std::cin >> kind;) {
     if (kind == "cord") {
       const auto x = read<Eigen::Vector<double, 6>>();
+      if (projects) {
+        print_projected<Cord>(Cord::rest(kStrength, kLength, kScale), x);
+        continue;
+      }
       print<TetherCubic>(cord(), x);
       print<Cord>(Cord::rest(kStrength, kLength, kScale), x);
     } else {
       const auto X = read<CstVector>(), x = read<CstVector>();
+      if (projects) {
+        print_projected<Rubber>(rubber(X), x);
+        continue;
+      }
       print<CstNeoHookean>(triangle(X), x);
       print<Rubber>(rubber(X), x);
     }
@@ -78,7 +103,8 @@ double nanoseconds(const std::vector<typename Kernel::Rest>& rest, const std::ve
   for (int pass = 0; pass < kPasses; ++pass) {
     const auto start = Clock::now();
     for (size_t e = 0; e < x.size(); ++e) {
-      sum += Kernel::evaluate(rest[e], x[e], what > 0 ? &g : nullptr, what > 1 ? &H : nullptr);
+      sum += what == 3 ? Kernel::evaluate_projected(rest[e], x[e], &g, &H)
+                       : Kernel::evaluate(rest[e], x[e], what > 0 ? &g : nullptr, what > 1 ? &H : nullptr);
       sum += g[0] + H(0, 0);
     }
     best = std::min(best, std::chrono::duration<double, std::nano>(Clock::now() - start).count());
@@ -89,17 +115,18 @@ double nanoseconds(const std::vector<typename Kernel::Rest>& rest, const std::ve
 
 template <typename Kernel, typename Vector>
 void report(const char* name, const std::vector<typename Kernel::Rest>& rest, const std::vector<Vector>& x) {
-  std::printf("%s", name);
-  for (int what = 0; what < 3; ++what) std::printf(" %.2f", nanoseconds<Kernel>(rest, x, what));
+  std::printf("%s:", name);
+  for (int what = 0; what < 4; ++what) std::printf(" %.2f", nanoseconds<Kernel>(rest, x, what));
   std::printf("\n");
 }
 
-// Cords, half of them taut, and triangles that are stretched both ways.
+// Cords, half of them taut, and triangles: stretched both ways, and a third each of those, of such as are
+// stretched along and narrowed more than the stretch does it, and of such as are compressed both ways.
 void times() {
   constexpr int kElements = 2000;
   std::srand(1);
   std::vector<Eigen::Vector<double, 6>> ends;
-  std::vector<CstVector> corners;
+  std::vector<CstVector> corners, mixed;
   std::vector<CstNeoHookean::Rest> ours;
   std::vector<Rubber::Rest> generated;
   for (int e = 0; e < kElements; ++e) {
@@ -108,7 +135,12 @@ void times() {
     ends.push_back(cord_ends);
     CstVector X;
     X << 0, 0, 0, 1, 0, 0, 0, 1, 0;
-    corners.push_back(1.2 * X + 0.05 * CstVector::Random());
+    const CstVector noise = 0.05 * CstVector::Random();
+    corners.push_back(1.2 * X + noise);
+    CstVector x = X;
+    x[3] *= e % 3 == 2 ? 0.85 : 1.2;
+    x[7] *= std::vector<double>{1.2, 0.7, 0.9}[e % 3];
+    mixed.push_back(x + noise);
     ours.push_back(triangle(X));
     generated.push_back(rubber(X));
   }
@@ -116,6 +148,8 @@ void times() {
   report<Cord>("Cord", std::vector<Cord::Rest>(kElements, Cord::rest(kStrength, kLength, kScale)), ends);
   report<CstNeoHookean>("CstNeoHookean", ours, corners);
   report<Rubber>("Rubber", generated, corners);
+  report<CstNeoHookean>("CstNeoHookean mixed", ours, mixed);
+  report<Rubber>("Rubber mixed", generated, mixed);
 }
 
 }  // namespace
@@ -124,5 +158,5 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string(argv[1]) == "time")
     times();
   else
-    values();
+    values(argc > 1 && std::string(argv[1]) == "projected");
 }

@@ -2,10 +2,12 @@
 #include "energy/element_term.hpp"
 #include "energy/kernels/bending.hpp"
 #include "energy/kernels/cable.hpp"
+#include "energy/kernels/cst_isotropic.hpp"
 #include "energy/kernels/cst_tension_field.hpp"
 #include "energy/kernels/link.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/kernels/tether_cubic.hpp"
+#include "energy/project_element.hpp"
 #include "membrane_patch.hpp"
 
 #include <gtest/gtest.h>
@@ -160,6 +162,107 @@ TEST(ClosedFormProjection, HoldsForHingesAndLines) {
     Both<Link>({3, 1}, ends).expect_sound("link");
     Both<Link>({3, 0}, ends).expect_sound("suture");
   }
+}
+
+// A symmetric matrix of the eigenvalues.
+template <int kSize>
+Eigen::Matrix<double, kSize, kSize> with_eigenvalues(const Eigen::Vector<double, kSize>& values) {
+  Eigen::Matrix<double, kSize, kSize> q = Eigen::Matrix<double, kSize, kSize>::Identity();
+  for (int k = 0; k < kSize; ++k) {
+    const Eigen::Vector<double, kSize> u = Eigen::Vector<double, kSize>::Random().normalized();
+    q -= 2 * u * (u.transpose() * q).eval();
+  }
+  const Eigen::Matrix<double, kSize, kSize> m = q * values.asDiagonal() * q.transpose();
+  return 0.5 * (m + m.transpose());
+}
+
+template <int kNodes>
+void expect_projected_as_decomposed(const Eigen::Matrix<double, 3 * kNodes, 3 * kNodes>& h,
+                                    const std::string& what) {
+  const Eigen::Vector<double, 3 * kNodes> x = Eigen::Vector<double, 3 * kNodes>::Random();
+  Eigen::Matrix<double, 3 * kNodes, 3 *kNodes> projected = h, decomposed = h;
+  project_element<kNodes>(x, projected);
+  project_psd(decomposed);
+  EXPECT_LE((projected - decomposed).norm(), 1e-13 * h.norm()) << what;
+}
+
+// The element's matrix of what is given for the nodes but the first.
+template <int kNodes>
+Eigen::Matrix<double, 3 * kNodes, 3 * kNodes> invariant(
+    const Eigen::Matrix<double, 3 * (kNodes - 1), 3 * (kNodes - 1)>& k) {
+  Eigen::Matrix<double, 3 * (kNodes - 1), 3 * kNodes> difference;
+  difference.setZero();
+  for (int a = 1; a < kNodes; ++a) {
+    difference.template block<3, 3>(3 * a - 3, 3 * a).setIdentity();
+    difference.template block<3, 3>(3 * a - 3, 0) = -Eigen::Matrix3d::Identity();
+  }
+  return difference.transpose() * k * difference;
+}
+
+template <int kNodes>
+void expect_any_matrix_projected() {
+  constexpr int kSize = 3 * kNodes, kLeft = 3 * (kNodes - 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    Eigen::Vector<double, kSize> values = Eigen::Vector<double, kSize>::Random();
+    if (trial % 4 == 1) values.tail(3).setConstant(values[0]);                   // several alike
+    if (trial % 4 == 2) values.head(kSize / 2).setZero();                        // singular
+    if (trial % 4 == 3) values.array() *= std::pow(10.0, trial % 9 * 30 - 120);  // small and great
+    const std::string what = std::to_string(kNodes) + " nodes, " + std::to_string(trial);
+    expect_projected_as_decomposed<kNodes>(with_eigenvalues<kSize>(values), what);
+    expect_projected_as_decomposed<kNodes>(
+        invariant<kNodes>(with_eigenvalues<kLeft>(values.template head<kLeft>())), what + " invariant");
+  }
+}
+
+TEST(ProjectElement, IsTheEigenvalueDecompositionOfAnyMatrix) {
+  std::srand(11);
+  expect_any_matrix_projected<2>();
+  expect_any_matrix_projected<3>();
+  expect_any_matrix_projected<4>();
+}
+
+// With a direction of their own: the normal of a triangle, the line of two nodes.
+TEST(ProjectElement, IsTheEigenvalueDecompositionOfMembranesAndLines) {
+  const Points X = rest_triangle();
+  const NeoHookeanLaw law{{0.33}, 0};
+  int untouched = 0;
+  for (const double along : {0.4, 0.9, 1.0, 1.3})
+    for (const double shear : {0.0, 0.2})
+      for (const double across : {0.4, 0.9, 1.0, 1.3}) {
+        const Eigen::Vector<double, 9> x = strained(along, shear, across).reshaped();
+        Eigen::Vector<double, 9> g;
+        Eigen::Matrix<double, 9, 9> exact;
+        CstNeoHookean::evaluate(CstNeoHookean::rest(X.col(0), X.col(1), X.col(2), law, 0.8, false), x, &g,
+                                &exact);
+        Eigen::Matrix<double, 9, 9> projected = exact, decomposed = exact;
+        project_element<3>(x, projected);
+        project_psd(decomposed);
+        EXPECT_LE((projected - decomposed).norm(), 1e-13 * exact.norm()) << along << ' ' << across;
+        untouched += projected == exact;
+      }
+  EXPECT_GE(untouched, 2);
+  EXPECT_LE(untouched, 20);
+  for (const double length : {0.5, 1.5}) {
+    Eigen::Vector<double, 6> x = Eigen::Vector<double, 6>::Zero(), g;
+    x.tail<3>() = length * Vec3(1, 2, -2) / 3;
+    Eigen::Matrix<double, 6, 6> projected, decomposed;
+    expand_axial({0, length - 1, 1}, x.tail<3>(), length, &g, &decomposed);  // a spring of the length 1
+    projected = decomposed;
+    project_element<2>(x, projected);
+    project_psd(decomposed);
+    EXPECT_LE((projected - decomposed).norm(), 1e-14);
+  }
+}
+
+// Nothing to project, and nothing to project with.
+TEST(ProjectElement, LeavesZeroAndWhatIsNotFinite) {
+  const Eigen::Vector<double, 6> x = Eigen::Vector<double, 6>::Unit(3);
+  Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Zero();
+  project_element<2>(x, h);
+  EXPECT_TRUE(h.isZero(0));
+  h(4, 4) = std::numeric_limits<double>::infinity();
+  project_element<2>(x, h);
+  EXPECT_FALSE(h.allFinite());
 }
 
 }  // namespace

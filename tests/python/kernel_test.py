@@ -13,7 +13,7 @@ from meshes import ROOT
 
 pytest.importorskip("sympy", reason="python3-sympy is not installed: C++ kernels from expressions are not tested")
 
-CORE = os.environ.get("COAPT_CORE", "-lcoapt_core")  # knows the alignment that the headers ask for
+LIBRARIES = os.environ.get("COAPT_LIBRARIES", "-lcoapt_energy -lcoapt_mesh -lcoapt_core").split(" ")
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +25,7 @@ def program(tmp_path_factory):
     compiler = [os.environ.get("COAPT_CXX", "c++"), "-std=c++20", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
     done = subprocess.run([*compiler, f"-I{folder}", f"-I{ROOT / 'src'}", "-isystem",
                            os.environ.get("COAPT_EIGEN", "/usr/include/eigen3"), ROOT / "bench/generated_kernels.cpp",
-                           CORE, "-o", folder / "program"], capture_output=True, text=True)
+                           *LIBRARIES, "-o", folder / "program"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return folder / "program"
 
@@ -70,6 +70,21 @@ def test_the_neo_hookean_triangle_of_the_library(program):
         assert np.abs(compared(row, term, x) - row).max() <= 1e-10 * size
 
 
+def test_the_projected_hessian_is_that_of_an_eigenvalue_decomposition(program):
+    generator = np.random.default_rng(5)
+    X = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    lines = [f"cord {' '.join(map(str, length * u))} 0 0 0" for length, u in zip([0.5, 1.5, 3], np.eye(3))]
+    for stretches in ([1.2, 1.2, 1], [1.2, 0.7, 1], [0.85, 0.9, 1], [0.3, 0.3, 1]):
+        for _ in range(5):
+            x = X * stretches + 0.05 * generator.standard_normal(X.shape)
+            lines.append(f"rubber {' '.join(map(str, X.ravel()))} {' '.join(map(str, x.ravel()))}")
+    done = subprocess.run([program, "projected"], input="\n".join(lines), capture_output=True, text=True, check=True)
+    rows = [np.array(line.split(), float) for line in done.stdout.splitlines()]
+    assert len(rows) == 2 * len(lines) and np.any(rows[2])
+    for projected, decomposed in zip(rows[::2], rows[1::2]):
+        assert np.abs(projected - decomposed).max() <= 1e-13 * np.abs(decomposed).max()
+
+
 def test_every_kind_of_data_and_of_condition_compiles(tmp_path):
     text = ("u = transpose(columns(x1 - x0, x2 - x0)) * a; where(norm(u) < k and x0[0] > pi, dot(u, B * u), "
             "exp(-k) * sin(x0[2])) + min(x0[1], 0)**2 + max(x1[1], k)**3 + abs(x2[2] + a[0])**3")
@@ -90,7 +105,7 @@ def test_every_kind_of_data_and_of_condition_compiles(tmp_path):
         }""")
     subprocess.run([os.environ.get("COAPT_CXX", "c++"), "-std=c++20", "-O0", "-Wall", "-Wextra", "-Werror",
                     f"-I{ROOT / 'src'}", "-isystem", os.environ.get("COAPT_EIGEN", "/usr/include/eigen3"),
-                    tmp_path / "main.cpp", CORE, "-o", tmp_path / "program"], check=True)
+                    tmp_path / "main.cpp", *LIBRARIES, "-o", tmp_path / "program"], check=True)
     found = np.array(subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout.split(), float)
     x = np.array([[4, -1, 2], [1, 3, 2.5], [-2, 1, 0.5]])
     assert found[:10] == pytest.approx([term.value(x), *term.gradient(x).ravel()], rel=1e-12)

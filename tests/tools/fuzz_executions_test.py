@@ -7,7 +7,7 @@ import unittest
 
 TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "fuzz_executions.py"
 sys.path.insert(0, str(TOOL.parent))
-from fuzz_executions import executions  # noqa: E402
+from fuzz_executions import executions, record  # noqa: E402
 
 LOG = """Start testing: Nov 26 13:00 UTC
 1/2 Testing: fuzz_mesh
@@ -51,6 +51,20 @@ class FuzzExecutions(unittest.TestCase):
         self.assertEqual(run.returncode, 1)
         self.assertIn("fuzz_scene: no count", run.stdout)
         self.assertEqual(self.run_tool("nothing ran").returncode, 1)
+
+    def test_what_is_recorded_stands_on_the_page_once(self):
+        folder = pathlib.Path(self.folder.name)
+        kept, page = folder / "kept.csv", folder / "page.md"
+        page.write_text("before\n<!-- executions -->\nold\n<!-- end -->\nafter\n", encoding="utf-8")
+        for _ in range(2):
+            self.run_tool(LOG)
+            record(self.table, "a desk, two cores", kept, page)
+            self.assertFalse(self.table.exists())
+        text = page.read_text(encoding="utf-8")
+        self.assertRegex(text, r"^before\n<!-- executions -->\n(\|.*\n)+<!-- end -->\nafter\n$")
+        self.assertRegex(text, r"\| a desk, two cores \| `fuzz_mesh` \| 2,468 \|")
+        self.assertIn("| all | | | | 2,600 |", text)
+        self.assertNotIn("old", text)
 
 
 if __name__ == "__main__":

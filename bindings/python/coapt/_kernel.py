@@ -24,7 +24,7 @@ _HEADER = """\
 #pragma once
 
 #include "energy/element_term.hpp"
-
+{include}
 #include <cmath>
 #include <limits>
 
@@ -51,7 +51,7 @@ struct {type_name} {{
     Vector unused;
     return with_hessian(rest, x, g == nullptr ? unused : *g, *H);
   }}
-
+{projection}
  private:
   static double square(double a) {{ return a * a; }}
   static double cube(double a) {{ return a * a * a; }}
@@ -69,6 +69,15 @@ struct {type_name} {{
 {hessian}
   }}
 }};
+"""
+
+_PROJECTION = """
+  // The same, all derivatives wanted, with the negative eigenvalues of the Hessian set to zero.
+  static double evaluate_projected(const Rest& rest, const Vector& x, Vector* g, Matrix* H) {{
+    const double energy = with_hessian(rest, x, *g, *H);
+    coapt::{project}<{count}>(x, *H);
+    return energy;
+  }}
 """
 
 
@@ -113,7 +122,11 @@ class _Writer:
 
     def text(self, type_name: str, role: str, source: str) -> str:
         fields = [*self.kept, *(name for name, _ in self.law.constants)]
+        projects = 2 <= self.nodes <= 4  # those that energy/project_element.hpp knows
         return _HEADER.format(
+            include='#include "energy/project_element.hpp"\n' if projects else "",
+            projection=_PROJECTION.format(
+                count=self.nodes, project="project_invariant_element" if self.law.is_relative else "project_element") if projects else "",
             type_name=type_name, nodes=f"{self.nodes} node{'s' if self.nodes > 1 else ''}", version=_core.version(),
             source="\n".join(f"//   {line.strip()}" for line in source.strip().splitlines()), count=self.nodes,
             scene_name=re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", type_name).lower(), role=_ROLES[role], size=3 * self.nodes,
