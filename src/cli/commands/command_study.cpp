@@ -166,7 +166,9 @@ void run_study(const ParameterStudyArguments& arguments, Session& session) {
   write_parameter_study(folder, study);
   session.document = parameter_study_json(study);
   print_study(study, folder);
-  session.exit_code = study.has_converged() ? kConverged : kNotConverged;
+  std::vector<std::vector<std::string>> doubts;
+  for (const PointResult& result : study.results) doubts.push_back(result.doubts);
+  session.exit_code = exit_code_of(study.has_converged(), doubts);
 }
 
 }  // namespace
