@@ -1,5 +1,5 @@
 // Sliders of a page against solves: what they cost, how many there are, and what a warm solve finds at both
-// ends of each range. Arguments: scene files.
+// ends of each range. Arguments: scene files; --cost first: without those solves.
 #include "tuning/first_order.hpp"
 
 #include "core/error.hpp"
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 
 namespace {
 
@@ -20,7 +21,7 @@ double greatest(const Points& apart, const std::vector<int>& nodes) {
 }
 
 // One line for the valve, and one for each end where a solve is not where the page says.
-void compare(const char* file) {
+void compare(const char* file, bool count_only) {
   const Scene scene = load_scene(file);
   RunOptions options;
   options.writes = false;
@@ -32,7 +33,7 @@ void compare(const char* file) {
   std::printf("%s: %d triangles, solve %.2f s, sliders %.2f s, %zu of %d %s\n", file,
               run.model.mesh.triangle_count(), solved - start, sliders - solved, found.parameters.size(),
               found.candidates, found.message.c_str());
-  if (found.parameters.empty()) return;
+  if (found.parameters.empty() || count_only) return;
 
   const Points x = run.report.fields.x;
   std::vector<int> nodes;
@@ -73,8 +74,9 @@ void compare(const char* file) {
 }  // namespace
 
 int main(int count, char** files) {
-  for (int k = 1; k < count; ++k) try {
-      compare(files[k]);
+  const bool count_only = count > 1 && std::string_view(files[1]) == "--cost";
+  for (int k = count_only ? 2 : 1; k < count; ++k) try {
+      compare(files[k], count_only);
     } catch (const std::exception& error) {
       std::printf("%s: %s\n", files[k], error.what());
     }
