@@ -60,7 +60,8 @@ double TrackedEquilibrium::step_by_solved_factor(const Vector& numbers, const Po
 
 // Successive corrections by one tangent tell whether they close in: each is below its predecessor by the
 // same factor, or worse (the natural monotonicity test of Deuflhard 2011, Newton Methods for Nonlinear
-// Problems, section 2.1). Where they do not, or the tangent is not definite, the start is taken for too far.
+// Problems, section 2.1). Where they do not, or the tangent has other signs than that of the solved
+// shape, the start is taken for too far.
 CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points& start,
                                              const std::vector<int>& nodes, double until, double most,
                                              const std::function<void(const CorrectedShape&)>& look) {
@@ -80,15 +81,29 @@ void TrackedEquilibrium::close_in(CorrectedShape& found, const std::vector<int>&
   const Points start = found.x;
   Vector q = objective_.unknowns(start), g, step;
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
-  if (!near_.assemble(objective_, q, g) || !near_.factorise_definite()) return;
+  if (!near_.assemble(objective_, q, g)) return;
+  const int negative = system_.negative_modes();
+  const bool is_definite = near_.factorise_definite();
+  if (!is_definite &&
+      (negative == 0 || !near_.factorise(objective_, q) || near_.negative_modes() != negative))
+    return;
   double before = kInfinity;
+  bool is_exact = !is_definite;  // else by the factor alone, without the skew part of the tangent
   while (found.steps < kMostSteps && found.distance <= most) {
     if (found.steps > 0 && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return;
     ++found.steps;
-    const bool is_solved = near_.solve(-g, step, kLinear) < 2 * kLinear;
+    if (!is_exact)
+      near_.apply_factor(-g, step);
+    else if (!(near_.solve(-g, step, kLinear) < 2 * kLinear))
+      return;
     const Points x = objective_.positions(q + step);
     const double length = greatest(x - found.x, nodes), ratio = length / before;
-    if (!is_solved || !std::isfinite(length) || !(ratio <= kClosingIn || length <= until)) return;
+    if (!std::isfinite(length)) return;
+    if (!(ratio <= kClosingIn || length <= until)) {
+      if (is_exact || !objective_.has_skew_tangent()) return;
+      is_exact = true;
+      continue;
+    }
     q += step;
     found.x = x;
     found.distance = greatest(x - start, nodes);

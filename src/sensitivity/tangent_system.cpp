@@ -33,9 +33,7 @@ bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
   return std::isfinite(energy) && g.allFinite() && std::isfinite(h_.sum());
 }
 
-double TangentSystem::mean_stiffness() const {
-  return h_.rows() == 0 ? 1 : h_.diagonal().cwiseAbs().mean();
-}
+double TangentSystem::mean_stiffness() const { return h_.rows() == 0 ? 1 : h_.diagonal().cwiseAbs().mean(); }
 
 bool TangentSystem::factorise_definite() {
   if (objective_->pattern_version() != analysed_) {

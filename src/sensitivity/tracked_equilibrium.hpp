@@ -156,15 +156,16 @@ class TrackedEquilibrium {
   // The shape of other numbers, from a start near it, without a solve: Newton steps with the tangent of the
   // start, as long as they close in on something. They end once the last one and its predecessor say that
   // less than `until` is left, or once the shape is `most` from the start. Not found: also where that tangent
-  // is not positive definite. Lengths are of `nodes`. start: 3 x node_count, the prescribed nodes as they are
-  // now: they go where the numbers want them. Neither shape nor numbers of this object change. look: called
-  // where the shape was found, while the terms have the numbers. Throws InputError as set() does.
+  // has another number of negative eigenvalues than that of the solved shape. Lengths are of `nodes`. start:
+  // 3 x node_count, the prescribed nodes as they are now: they go where the numbers want them. Neither shape
+  // nor numbers of this object change. look: called where the shape was found, while the terms have the
+  // numbers. Throws InputError as set() does.
   CorrectedShape corrected(const Vector& numbers, const Points& start, const std::vector<int>& nodes,
                            double until, double most = kInfinity,
                            const std::function<void(const CorrectedShape&)>& look = {});
 
-  // How far a first such step would go, by the factor of the solved shape: no new one, and a first guess where
-  // stiffness hardly changes on the way. Infinity where forces are not finite. Throws as corrected().
+  // How far a first such step would go, by the factor of the solved shape: no new one, and a first guess
+  // where stiffness hardly changes on the way. Infinity where forces are not finite. Throws as corrected().
   double step_by_solved_factor(const Vector& numbers, const Points& start, const std::vector<int>& nodes);
   Vector pull_back(const Eigen::Ref<const Points>& weights);
 

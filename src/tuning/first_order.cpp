@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <map>
 #include <numbers>
@@ -17,19 +16,23 @@
 namespace coapt {
 namespace {
 
-constexpr double kShare = 0.1;           // of a factor or a number, that is tried first
-constexpr double kShift = 0.05;          // of the extent of the sheet, of a displacement
-constexpr double kTilt = 0.1;            // [rad]
-constexpr double kUsualExtent = 100;     // [mm], beyond which the tolerance grows with the sheet
-constexpr double kKept = 0.8;            // of the tolerance: the rest is for rounding in a page
-constexpr double kSmaller = 0.3;         // of a range at whose end nothing was found
-constexpr double kLeft = 0.02;           // of the tolerance, that corrections leave
-constexpr double kResponse = 1e-6;       // residual of the linear system of a response
-constexpr double kRanking = 1e-2;        // the same where it only tells which move the sheet most
-constexpr ViewDetail kFigureView = {.cells = 256, .refinement = 2};  // of figures whose changes are told
+constexpr double kShare = 0.1;        // of a factor or a number, that is tried first
+constexpr double kShift = 0.05;       // of the extent of the sheet, of a displacement
+constexpr double kTilt = 0.1;         // [rad]
+constexpr double kUsualExtent = 100;  // [mm], beyond which the tolerance grows with the sheet
+constexpr double kKept = 0.8;         // of the tolerance: the rest is for rounding in a page
+constexpr double kFigureReach = 0;    // of gaps beyond twice the contact distance [mean edges]: none counts
+constexpr double kSmaller = 0.3;      // of a range at whose end nothing was found
+constexpr double kLikely = 0.3;  // of the tolerance: a first step by the result's stiffness that may hold
+constexpr double kLeastShare = 0.05;  // of the change that such a step leaves at once
+constexpr double kLeft = 0.02;        // of the tolerance, that corrections leave
+constexpr double kResponse = 1e-4;    // residual of the linear system of a response
+constexpr double kRanking = 1e-1;     // the same where it only tells which move the sheet most
+constexpr ViewDetail kFigureView = {.cells = 256, .refinement = 1};  // of figures whose changes are told
 constexpr double kSameShape = 1e-2;      // of the tolerance, that a shape may miss the report's by
 constexpr double kMostMovement = 6;      // of the tolerance, of a node by the change that is tried first
 constexpr int kMostTrials = 6;           // for one end of a range
+constexpr double kLeastCpu = 0.5;        // [s] that ranges may take whatever the solve took
 constexpr double kLeastMovement = 0.05;  // of the tolerance: what moves the sheet less says nothing
 
 // One number, or one direction among the numbers of a parameter.
@@ -96,6 +99,16 @@ int order(const std::string& key, const Model& model) {
   return 5;
 }
 
+// Those of a result, and what a healthy closure asks for besides.
+std::vector<MetricRow> figure_rows(const Metrics& metrics) {
+  std::vector<MetricRow> rows = metric_rows(metrics);
+  for (const HealthyCriterion& criterion : metrics.healthy_closure)
+    if (std::none_of(rows.begin(), rows.end(),
+                     [&](const MetricRow& row) { return row.name == criterion.name; }))
+      rows.push_back({criterion.name, criterion.unit, "", false, criterion.value});
+  return rows;
+}
+
 class Responses {
  public:
   Responses(const Model& model, const Report& report, TrackedScene&& tracked, const FirstOrderOptions& wanted)
@@ -106,7 +119,7 @@ class Responses {
         nodes_.push_back(node);
     const Points& x = report.fields.x;
     extent_ = (x.leftCols(sheet).rowwise().maxCoeff() - x.leftCols(sheet).rowwise().minCoeff()).norm();
-    for (const MetricRow& row : metric_rows(report.metrics))
+    for (const MetricRow& row : figure_rows(report.metrics))
       if (row.value) now_[row.name] = *row.value;
     found_.tolerance_mm = wanted.tolerance_mm * std::max(1.0, extent_ / kUsualExtent);
   }
@@ -131,7 +144,11 @@ class Responses {
         const Eigen::Index number = equilibrium_.first_number(index) + static_cast<Eigen::Index>(k);
         Vector own = Vector::Zero(equilibrium_.parameter(index).value().size());
         own[static_cast<Eigen::Index>(k)] = all[k].per_unit;
-        directions_.push_back({{.name = all[k].name, .key = key, .unit = all[k].unit, .unit_change = own},
+        directions_.push_back({{.name = all[k].name,
+                                .key = key,
+                                .unit = all[k].unit,
+                                .unit_change = own,
+                                .usual_change = all[k].step},
                                all[k].per_unit * Vector::Unit(equilibrium_.number_count(), number),
                                all[k].step});
       }
@@ -150,8 +167,8 @@ class Responses {
     return "";
   }
 
-  // The derivative of the shape by each, those that move the sheet most first; the first `most` as they are to
-  // be shown.
+  // The derivative of the shape by each, those that move the sheet most first; the first `most` as they are
+  // to be shown.
   void rank(size_t most) {
     for (Direction& direction : directions_) respond(direction, kRanking);
     drop_idle();
@@ -207,50 +224,60 @@ class Responses {
     const double furthest = std::sqrt(moved.colwise().squaredNorm().maxCoeff());
     double change = std::min(direction.step, kMostMovement * found_.tolerance_mm / furthest);
     if (side == 0) change = -change;
+    change *= likely_share(direction, change);
     for (int trial = 0; trial < kMostTrials; ++trial) {
       if (std::abs(change) * furthest < kLeastMovement * found_.tolerance_mm) return;
       std::vector<MetricRow> figures;
       CorrectedShape shape;
-      double guess = 0;
       try {
-        const double b = cpu_seconds();
-        guess = equilibrium_.step_by_solved_factor(numbers_at(direction, change), x_ + change * motion, nodes_);
-        t_[0] += cpu_seconds() - b;
-        const double c = cpu_seconds();
-        shape = equilibrium_.corrected(numbers_at(direction, change), x_ + change * motion, nodes_,
-                                       kLeft * found_.tolerance_mm, 2 * kept,
-                                       [&](const CorrectedShape& found) {
-                                         const double d = cpu_seconds();
-                                         if (found.distance + found.left <= kept) figures = figures_at(found.x);
-                                         t_[1] += cpu_seconds() - d;
-                                       });
-        t_[2] += cpu_seconds() - c;
+        shape =
+            equilibrium_.corrected(numbers_at(direction, change), x_ + change * motion, nodes_,
+                                   kLeft * found_.tolerance_mm, 2 * kept, [&](const CorrectedShape& found) {
+                                     if (found.distance + found.left <= kept) figures = figures_at(found.x);
+                                   });
       } catch (const InputError&) {  // beyond a limit of the parameter
       }
       const double error = shape.distance + shape.left;
-      std::printf("    %-40s %d trial %d change %.4g far %.3f found %d dist %.4f left %.4f steps %d e0 %.4f\n",
-                  direction.response.name.c_str(), (int)side, trial, change, std::abs(change) * furthest,
-                  shape.is_found, shape.distance, shape.left, shape.steps, guess);
       if (shape.is_found && error <= kept) {
-        direction.response.ends[side] = {change, error, std::move(figures)};
+        direction.response.ends[side] = {change, error, changed(std::move(figures))};
         return;
       }
       // By the square where the shape is smooth, at least by a tenth.
       change *= shape.distance > kept ? std::clamp(0.9 * std::sqrt(kept / error), 0.1, 0.9) : kSmaller;
     }
   }
- public:
-  double t_[3] = {};
- private:
+
+  // Of a change, that a first step by the result's own stiffness lets expect to hold: its length grows with
+  // the square of the change, and more where contact stiffens on the way.
+  double likely_share(const Direction& direction, double change) {
+    try {
+      const double step = equilibrium_.step_by_solved_factor(numbers_at(direction, change),
+                                                             x_ + change * direction.response.motion, nodes_);
+      return std::clamp(std::sqrt(kLikely * found_.tolerance_mm / step), kLeastShare, 1.0);
+    } catch (const InputError&) {  // beyond a limit of the parameter
+      return kSmaller;
+    }
+  }
+
+  // Figures of the result as it was measured, plus what changes by a coarser measure of both.
+  std::vector<MetricRow> changed(std::vector<MetricRow> figures) {
+    if (here_.empty())
+      for (const MetricRow& row : figures_at(x_))
+        if (row.value) here_[row.name] = *row.value;
+    for (MetricRow& row : figures)
+      if (row.value && here_.contains(row.name) && now_.contains(row.name))
+        *row.value = now_[row.name] + (*row.value - here_[row.name]);
+    return figures;
+  }
 
   std::vector<MetricRow> figures_at(const Points& x) {
     const Model& model = tracked_.model;
     take_rest_lengths(tracked_.model);
-    const Fields fields = compute_fields(model, x);
+    const Fields fields = compute_fields(model, x, kFigureReach);
     const IntersectionChecker none = {
         "nobody", [](const Points&, const Triangles&) { return std::vector<std::array<int, 2>>(); }};
-    std::vector<MetricRow> rows =
-        metric_rows(measure(model, model.objective->unknowns(x), fields, none, kFigureView));
+    const Metrics metrics = measure(model, model.objective->unknowns(x), fields, none, kFigureView);
+    std::vector<MetricRow> rows = figure_rows(metrics);
     std::erase_if(rows, [](const MetricRow& row) { return row.name == "intersections"; });
     return rows;
   }
@@ -259,11 +286,12 @@ class Responses {
   TrackedEquilibrium& equilibrium_;
   FirstOrder found_;
   std::vector<Direction> directions_;
-  std::vector<int> nodes_;             // of the sheet, whose places are determined
-  double extent_ = 0;                  // [mm]
-  Points x_;                           // of the result
-  Vector value_;                       // numbers there
-  std::map<std::string, double> now_;  // figures there
+  std::vector<int> nodes_;              // of the sheet, whose places are determined
+  double extent_ = 0;                   // [mm]
+  Points x_;                            // of the result
+  Vector value_;                        // numbers there
+  std::map<std::string, double> now_;   // figures there
+  std::map<std::string, double> here_;  // the same by the coarser measure
 };
 
 }  // namespace
@@ -278,10 +306,8 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   const size_t most = std::min(wanted.most, most_sliders(static_cast<size_t>(model.X.cols())));
   none.message = "a page has no room for the displacements of so many nodes";
   if (most == 0) return none;
-  none.message = "they take a few times as long as the solve of a mesh of more than " +
-                 std::to_string(wanted.most_nodes) + " nodes; coapt solve --sliders makes them";
-  if (model.X.cols() > wanted.most_nodes && !getenv("W13")) return none;
-  const double begin = wall_seconds(), c0 = cpu_seconds();
+  const double begin = wall_seconds(), cpu_begin = cpu_seconds();
+  const double most_cpu = std::max(kLeastCpu, wanted.share * report.result.cpu_s);
   const double left = options.max_seconds ? *options.max_seconds - report.result.wall_s : kInfinity;
   none.message = "the solve left no time for them";
   if (!(left > 0)) return none;
@@ -301,18 +327,25 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   none.message = responses.solve_first(report.fields.x);
   if (!none.message.empty()) return none;
   responses.rank(most);
-  std::printf("ranked %.3f\n", cpu_seconds() - c0);
   FirstOrder& found = responses.found();
   bool is_ended = false;
+  const double cpu_ready = cpu_seconds();
+  int checked = 0;
   for (Direction& direction : responses.directions()) {
     is_ended =
         wall_seconds() - begin > left || (options.observer && !options.observer({}, responses.unknowns()));
     if (is_ended || found.parameters.size() == most) break;
+    const double now = cpu_seconds(), usual = checked == 0 ? 0 : (now - cpu_ready) / checked;
+    if (now - cpu_begin + usual > most_cpu && !found.parameters.empty()) {
+      const auto wanting = responses.directions().size() - static_cast<size_t>(checked);
+      found.left_out = static_cast<int>(std::min(most - found.parameters.size(), wanting));
+      break;
+    }
+    ++checked;
     responses.check(direction);
     if (const auto& ends = direction.response.ends; ends[0].change != 0 || ends[1].change != 0)
       found.parameters.push_back(std::move(direction.response));
   }
-  std::printf("all %.3f guess %.3f figures %.3f corrected+figures %.3f\n", cpu_seconds() - c0, responses.t_[0], responses.t_[1], responses.t_[2]);
   if (!found.parameters.empty())
     found.message.clear();
   else if (is_ended)

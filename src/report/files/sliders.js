@@ -66,7 +66,7 @@ const changeText = (value, unit) => (value > 0 ? "+" : value < 0 ? "−" : "") +
 function rangesText({ parameters, left_out: leftOut }) {
   const narrow = parameters.filter(({ range, usual }) => Math.max(...range.map(Math.abs)) < usual / 10).length;
   return (narrow === 0 ? "" : ` ${narrow === 1 ? "One range is" : narrow + " ranges are"} narrow: contacts, folds, or chords between slack and taut change near by, beyond which another straight line holds.`) +
-      (leftOut === 0 ? "" : ` Ranges were looked for within a quarter of the time of the solve: ${leftOut} more wait for coapt solve --sliders.`);
+      (leftOut === 0 ? "" : ` Ranges were looked for within half the time of the solve: ${leftOut} more wait for coapt solve --sliders.`);
 }
 
 function noteText(sliders, values) {
