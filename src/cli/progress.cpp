@@ -95,7 +95,8 @@ void show_progress(const Session& session, RunOptions& options) {
   options.observer = [=](const Iteration& now, const Vector& q) {
     const bool is_question = now.evaluations == 0 && now.residual == 0;
     if (is_question) {
-      if (!shown->other.empty() && wall_seconds() - shown->last >= std::max(pause, kTerminalPause)) show_other(*shown, is_terminal);
+      if (!shown->other.empty() && wall_seconds() - shown->last >= std::max(pause, kTerminalPause))
+        show_other(*shown, is_terminal);
       return !is_interrupted();
     }
     shown->estimate.see(now);

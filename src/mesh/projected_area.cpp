@@ -27,7 +27,7 @@ struct Interval {
   }
 };
 
-constexpr int kCoarsest = 512;  // rows over the polygon's extent
+constexpr int kCoarsest = 512;       // rows over the polygon's extent
 constexpr double kTolerance = 1e-6;  // of the polygon's area
 constexpr int kGradientRefinement = 8;
 

@@ -62,8 +62,7 @@ ViewFrame along_its_width(ViewFrame frame, const Points& loop) {
   return frame;
 }
 
-ClosedShape closed_shape(const Model& model, const Fields& fields, const ContactMeasure& contact,
-                         int cells) {
+ClosedShape closed_shape(const Model& model, const Fields& fields, const ContactMeasure& contact, int cells) {
   const std::vector<int>& loop = *annulus_of(model);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
   const ViewFrame frame = along_its_width(annulus_frame(model, fields, loop), annulus);

@@ -146,8 +146,8 @@ std::vector<MetricRow> strength_rows(const Metrics& m) {
 
 }  // namespace
 
-Metrics measure(const Model& model, const Vector& q, const Fields& fields,
-                const IntersectionChecker& checker, const ViewDetail& detail) {
+Metrics measure(const Model& model, const Vector& q, const Fields& fields, const IntersectionChecker& checker,
+                const ViewDetail& detail) {
   Metrics metrics;
   metrics.intersection_checker = checker.name;
   const Triangles& triangles = model.mesh.triangles;

@@ -27,7 +27,8 @@ std::optional<OrificeArea> orifice_area(const Model& model, const Points& x, int
   if (annulus_of(model) == nullptr) return std::nullopt;
   try {
     const OrificeView view = orifice_view(model, x);
-    const UncoveredArea area = uncovered_area(view.surface, model.mesh.triangles, view.rim, view.up, refinement);
+    const UncoveredArea area =
+        uncovered_area(view.surface, model.mesh.triangles, view.rim, view.up, refinement);
     return OrificeArea{area.area, area.polygon_area};
   } catch (const InputError&) {
     return std::nullopt;

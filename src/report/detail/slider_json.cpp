@@ -79,9 +79,8 @@ OrderedJson sliders_json(const FirstOrder& first_order) {
   count = std::min(count, std::max<size_t>(1, most_sliders(nodes)));
   OrderedJson parameters = OrderedJson::array();
   for (size_t k = 0; k < count; ++k) parameters.push_back(response_json(first_order.parameters[k], is_short));
-  return {{"candidates", first_order.candidates},
-          {"left_out", first_order.left_out},
-          {"parameters", parameters}};
+  return {
+      {"candidates", first_order.candidates}, {"left_out", first_order.left_out}, {"parameters", parameters}};
 }
 
 }  // namespace coapt

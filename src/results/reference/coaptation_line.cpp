@@ -12,10 +12,10 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostRadius = 1024;  // of the closing, in cells
-constexpr int kCoarsest = 128;     // cells over the extent of the annulus
-constexpr int kPieces = 400;                    // of the shorter line, whose middles are compared
-constexpr int kMostPieces = 100 * kPieces;      // of one stretch of a line that is far longer than the other
+constexpr int kMostRadius = 1024;           // of the closing, in cells
+constexpr int kCoarsest = 128;              // cells over the extent of the annulus
+constexpr int kPieces = 400;                // of the shorter line, whose middles are compared
+constexpr int kMostPieces = 100 * kPieces;  // of one stretch of a line that is far longer than the other
 
 // Eight cells to an edge, four to the contact distance, within bounds that keep the view cheap and useful.
 double cell_size(double extent, double mean_edge, double contact_distance, int finest) {

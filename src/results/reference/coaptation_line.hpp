@@ -19,8 +19,8 @@ struct SeenSurface {
   int radius = 0;  // of the closing, in cells
 };
 
-// x: 3 x n; annulus: its points in order, which the view covers; finest: cells over its extent, at most. Throws InputError for fewer than three.
-// Pre: contact_distance > 0 [length].
+// x: 3 x n; annulus: its points in order, which the view covers; finest: cells over its extent, at most.
+// Throws InputError for fewer than three. Pre: contact_distance > 0 [length].
 SeenSurface seen_surface(const Points& x, const Triangles& triangles, const Points& annulus,
                          const ViewFrame& frame, double contact_distance, int finest = 1024);
 
