@@ -1,5 +1,6 @@
 // Sliders of a page against solves: what they cost, how many there are, and what a warm solve finds at both
-// ends of each range. Arguments: scene files.
+// ends of each range. Arguments: scene files; --cost first: without those solves,
+// --limited: and within the share of the solve's time that a page gives them.
 #include "tuning/first_order.hpp"
 
 #include "core/error.hpp"
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 
 namespace {
 
@@ -20,19 +22,20 @@ double greatest(const Points& apart, const std::vector<int>& nodes) {
 }
 
 // One line for the valve, and one for each end where a solve is not where the page says.
-void compare(const char* file) {
+void compare(const char* file, bool count_only, bool is_limited) {
   const Scene scene = load_scene(file);
   RunOptions options;
   options.writes = false;
   const double start = cpu_seconds();
   const RunReport run = coapt::run(scene, scene_solvers(), options);
   const double solved = cpu_seconds();
-  const FirstOrder found = first_order(scene, scene_solvers(), options, run.model, run.report);
+  const FirstOrder found = first_order(scene, scene_solvers(), options, run.model, run.report,
+                                       {.share = is_limited ? FirstOrderOptions{}.share : kInfinity});
   const double sliders = cpu_seconds();
   std::printf("%s: %d triangles, solve %.2f s, sliders %.2f s, %zu of %d %s\n", file,
               run.model.mesh.triangle_count(), solved - start, sliders - solved, found.parameters.size(),
               found.candidates, found.message.c_str());
-  if (found.parameters.empty()) return;
+  if (found.parameters.empty() || count_only) return;
 
   const Points x = run.report.fields.x;
   std::vector<int> nodes;
@@ -73,8 +76,10 @@ void compare(const char* file) {
 }  // namespace
 
 int main(int count, char** files) {
-  for (int k = 1; k < count; ++k) try {
-      compare(files[k]);
+  const std::string_view first = count > 1 ? files[1] : "";
+  const bool count_only = first == "--cost" || first == "--limited", is_limited = first == "--limited";
+  for (int k = count_only ? 2 : 1; k < count; ++k) try {
+      compare(files[k], count_only, is_limited);
     } catch (const std::exception& error) {
       std::printf("%s: %s\n", files[k], error.what());
     }

@@ -67,10 +67,9 @@ std::unique_ptr<CLI::App, void (*)(CLI::App*)> application(Session& session, Tex
     if (parts.empty()) add_session_options(*command, session, text);
   }
   app->footer(
-      "Exit codes: 0 converged, 1 not converged (result written), 2 bad input, 3 internal error or too "
-      "little memory, "
-      "4 converged (result written) but its stability is in doubt, 5 what was computed could not be "
-      "written.");
+      "Exit codes: 0 converged, or done what was asked; 1 not converged (result written), or a check did not "
+      "hold; 2 bad input; 3 internal error or too little memory; 4 converged (result written) but the "
+      "stability of a result is in doubt; 5 what was computed could not be written.");
   return app;
 }
 

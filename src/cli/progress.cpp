@@ -4,6 +4,7 @@
 #include "core/number_text.hpp"
 #include "core/timing.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -18,13 +19,15 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 volatile std::sig_atomic_t interrupted = 0;
 
-constexpr double kLogPause = 5;  // [s] between lines where nobody watches
+constexpr double kLogPause = 5;         // [s] between lines where nobody watches
+constexpr double kTerminalPause = 0.1;  // [s] on a terminal
 
 // What show_progress() has shown.
 struct ShownProgress {
   double start = wall_seconds(), last = start;
   ProgressEstimate estimate;
-  RunPhase phase;  // the last that is a solve
+  RunPhase phase;     // the last that is a solve
+  std::string other;  // what goes on since then that is none; empty: nothing
 };
 
 constexpr unsigned kIterateTime = 120;  // [s] that an iterate may still take after a signal
@@ -64,6 +67,12 @@ void show_line(const std::string& line, bool is_terminal) {
   std::fflush(stderr);
 }
 
+// What is no solve has no figures of its own.
+void show_other(ShownProgress& shown, bool is_terminal) {
+  shown.last = wall_seconds();
+  show_line(shown.other + ", " + fixed_text(shown.last - shown.start, 1) + " s", is_terminal);
+}
+
 }  // namespace
 
 void show_progress(const Session& session, RunOptions& options) {
@@ -72,21 +81,24 @@ void show_progress(const Session& session, RunOptions& options) {
     return;
   }
   const bool is_terminal = isatty(STDERR_FILENO) == 1 && !session.is_verbose;
-  const double pause = session.is_verbose ? 0 : is_terminal ? 0.1 : kLogPause;
+  const double pause = session.is_verbose ? 0 : is_terminal ? kTerminalPause : kLogPause;
   const auto shown = std::make_shared<ShownProgress>();
   options.phase = [=](const RunPhase& phase) {
+    shown->other.clear();
     if (phase.tolerance > 0) {
       shown->phase = phase;
       return;
     }
-    const double now = wall_seconds();
-    if (now - shown->last < pause && !is_terminal) return;
-    shown->last = now;
-    show_line(phase.name + ", " + fixed_text(now - shown->start, 1) + " s", is_terminal);
+    shown->other = phase.name;
+    if (is_terminal || wall_seconds() - shown->last >= pause) show_other(*shown, is_terminal);
   };
   options.observer = [=](const Iteration& now, const Vector& q) {
     const bool is_question = now.evaluations == 0 && now.residual == 0;
-    if (is_question) return !is_interrupted();
+    if (is_question) {
+      if (!shown->other.empty() && wall_seconds() - shown->last >= std::max(pause, kTerminalPause))
+        show_other(*shown, is_terminal);
+      return !is_interrupted();
+    }
     shown->estimate.see(now);
     if (wall_seconds() - shown->last >= pause) {
       shown->last = wall_seconds();

@@ -27,8 +27,7 @@ struct Interval {
   }
 };
 
-constexpr int kCoarsest = 512;  // rows over the polygon's extent
-constexpr int kFinestRefinement = 32;
+constexpr int kCoarsest = 512;       // rows over the polygon's extent
 constexpr double kTolerance = 1e-6;  // of the polygon's area
 constexpr int kGradientRefinement = 8;
 
@@ -258,7 +257,7 @@ Plane best_fit_plane(const Points& points) {
 }
 
 UncoveredArea uncovered_area(const Points& points, const Triangles& triangles, const Points& polygon,
-                             const Vec3& normal) {
+                             const Vec3& normal, int finest) {
   check_view(polygon, normal);
   // Seen from the polygon's first corner, so that a mesh far from the origin keeps its digits.
   const Vec3 origin = polygon.col(0);
@@ -268,7 +267,7 @@ UncoveredArea uncovered_area(const Points& points, const Triangles& triangles, c
   Sweep sweep(plan, triangles, outline);
   UncoveredArea result = sweep.areas(1);
   if (!(result.polygon_area > 0)) throw InputError("the polygon has no area along the normal");
-  for (int refinement = 2; refinement <= kFinestRefinement; refinement *= 2) {
+  for (int refinement = 2; refinement <= finest; refinement *= 2) {
     const double before = result.area;
     result = sweep.areas(refinement);
     result.error = std::abs(result.area - before);

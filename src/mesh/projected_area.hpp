@@ -24,12 +24,12 @@ struct UncoveredArea {
 
 // Projects along `normal` and integrates over rows; in each, the intervals that the triangles cover are
 // united exactly. Rows end where an edge runs along them. From 512 rows over the polygon's extent, they are
-// halved one to five times, until `area` changes by less than 1e-6 of the polygon's area. The polygon is
-// closed, given by its corners in order; its inside follows the even-odd rule.
-// Throws InputError when the polygon has fewer than three corners or its projection no area, or when the
-// normal is zero. Pre: positions are finite, corner indices in range.
+// halved one to five times (`refinement`: into so many at most), until `area` changes by less than 1e-6 of
+// the polygon's area. The polygon is closed, given by its corners in order; its inside follows the even-odd
+// rule. Throws InputError when the polygon has fewer than three corners or its projection no area, or when
+// the normal is zero. Pre: positions are finite, corner indices in range.
 UncoveredArea uncovered_area(const Points& points, const Triangles& triangles, const Points& polygon,
-                             const Vec3& normal);
+                             const Vec3& normal, int refinement = 32);
 
 // The derivatives of that area by what it is made of, with the view held; of a size with each [length].
 struct UncoveredAreaGradient {

@@ -62,7 +62,7 @@ ViewFrame along_its_width(ViewFrame frame, const Points& loop) {
   return frame;
 }
 
-ClosedShape closed_shape(const Model& model, const Fields& fields, const ContactMeasure& contact) {
+ClosedShape closed_shape(const Model& model, const Fields& fields, const ContactMeasure& contact, int cells) {
   const std::vector<int>& loop = *annulus_of(model);
   const Points surface = fields.x.leftCols(model.mesh.vertex_count()), annulus = fields.x(Eigen::all, loop);
   const ViewFrame frame = along_its_width(annulus_frame(model, fields, loop), annulus);
@@ -70,7 +70,7 @@ ClosedShape closed_shape(const Model& model, const Fields& fields, const Contact
           .fields = fields,
           .surface = surface,
           .annulus = annulus,
-          .seen = seen_surface(surface, model.mesh.triangles, annulus, frame, fields.contact_distance),
+          .seen = seen_surface(surface, model.mesh.triangles, annulus, frame, fields.contact_distance, cells),
           .spanned = SpanningSurface(in_frame(annulus, frame)),
           .contact = contact};
 }
@@ -152,6 +152,7 @@ void measure_prolapse(const ClosedShape& shape, Closure& closure) {
   const TopView& view = shape.view;
   const Points plan = in_frame(shape.surface, view.frame);
   const Points annulus = thinned(in_frame(shape.annulus, view.frame), 128);
+  std::vector<double> chords(static_cast<size_t>(plan.cols()), kNaN);  // of vertices that were asked for
   for (int t = 0; t < shape.model.mesh.triangle_count(); ++t) {
     double& highest = closure.leaflets[static_cast<size_t>(shape.region(t))].prolapse_height_mm;
     for (const int v : shape.model.mesh.triangles.col(t)) {
@@ -161,7 +162,8 @@ void measure_prolapse(const ClosedShape& shape, Closure& closure) {
       if (!view.is_inside[static_cast<size_t>(j * view.columns + i)]) continue;
       // The highest chord is nowhere below the spanned surface, which is quick to ask.
       if (p[2] - shape.spanned.height(p[0], p[1]) <= highest) continue;
-      const double chord = highest_chord(annulus, p[0], p[1]);
+      double& chord = chords[static_cast<size_t>(v)];
+      if (std::isnan(chord)) chord = highest_chord(annulus, p[0], p[1]);
       if (std::isfinite(chord)) highest = std::max(highest, p[2] - chord);
     }
     closure.prolapse_height_mm = std::max(closure.prolapse_height_mm, highest);
@@ -285,8 +287,9 @@ ViewFrame annulus_frame(const Model& model, const Fields& fields, const std::vec
   return view_frame(plane.centre, hang.dot(plane.normal) > 0 ? Vec3(-plane.normal) : plane.normal);
 }
 
-Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact) {
-  const ClosedShape shape = closed_shape(model, fields, contact);
+Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact,
+                   const ViewDetail& detail) {
+  const ClosedShape shape = closed_shape(model, fields, contact, detail.cells);
   Closure closure;
   closure.cell = shape.view.cell;
   closure.leaflets.resize(shape.region_count());

@@ -53,8 +53,15 @@ struct Closure {
   std::vector<LeafletMetrics> leaflets;  // by region; empty for a mesh without regions
 };
 
+// How finely figures of the closure are read off what is seen of the valve.
+struct ViewDetail {
+  int cells = 1024;     // over the extent of the annulus, at most
+  int refinement = 32;  // of the 512 rows by which the orifice is measured, at most
+};
+
 // contact: of the same fields. Pre: the model has an annulus whose points are not on one line.
-Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact);
+Closure closure_of(const Model& model, const Fields& fields, const ContactMeasure& contact,
+                   const ViewDetail& detail = {});
 
 // Plane of the annulus in the state of the fields; up is the side on which the open leaflets do not hang.
 // Throws InputError when the annulus lies on one line.

@@ -122,11 +122,11 @@ void add_line_forces(const Model& model, Fields& fields) {
   }
 }
 
-void add_contact(const Model& model, Fields& fields) {
+void add_contact(const Model& model, double reach, Fields& fields) {
   const Triangles& triangles = model.mesh.triangles;
   const Points surface = fields.x.leftCols(model.mesh.vertex_count());
   fields.contact_distance = contact_distance(model);
-  fields.gap_reach = std::max(2 * fields.contact_distance, 3 * mean_edge_length(fields.x, triangles));
+  fields.gap_reach = std::max(2 * fields.contact_distance, reach * mean_edge_length(fields.x, triangles));
   fields.gap = vertex_gaps(surface, triangles, fields.gap_reach);
   fields.is_contact.resize(static_cast<size_t>(fields.gap.size()));
   for (Eigen::Index v = 0; v < fields.gap.size(); ++v)
@@ -165,14 +165,14 @@ double contact_distance(const Model& model) {
   return 0.5 * mean_edge_length(model.X, model.mesh.triangles);
 }
 
-Fields compute_fields(const Model& model, const Points& x) {
+Fields compute_fields(const Model& model, const Points& x, double reach) {
   Fields fields;
   fields.x = x;
   fields.displacement = x - model.X;
   add_strain_and_stress(model, fields);
   add_line_forces(model, fields);
   add_yield(model, fields);
-  if (looks_for_contact(model)) add_contact(model, fields);
+  if (looks_for_contact(model)) add_contact(model, reach, fields);
   return fields;
 }
 

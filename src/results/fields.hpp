@@ -45,8 +45,9 @@ struct Fields {
 
 // Strains are those of the constant-strain triangle from X to x; stresses are those of the membrane term that
 // covers the triangle, the prestress included (energy/kernels/cst_state.hpp), zero where none does. The
-// regime of a membrane that resists compression is that in which a tension field would be.
-Fields compute_fields(const Model& model, const Points& x);
+// regime of a membrane that resists compression is that in which a tension field would be. reach: in
+// mean edges, how far gaps are looked for, at least over twice the contact distance.
+Fields compute_fields(const Model& model, const Points& x, double reach = 3);
 
 // Length of a line at positions x over its rest length, less 1; empty for a constant-force cable, which has
 // no rest length.

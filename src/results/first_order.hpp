@@ -19,12 +19,13 @@ struct CheckedEnd {
 };
 
 struct ParameterResponse {
-  std::string name = {};    // in words: "rest length of the chords of tip_0"
-  std::string key = {};     // as make_named_parameter() knows it
-  std::string unit = {};    // of changes: "%" of the value, "mm" or "°"
-  Vector unit_change = {};  // of the parameter's numbers, per unit
-  Points motion = {};       // displacement of each node per unit, 3 x node_count [mm]
-  double movement_mm = 0;   // of the sheet, root of the mean square, by the change that was tried first
+  std::string name = {};             // in words: "rest length of the chords of tip_0"
+  std::string key = {};              // as make_named_parameter() knows it
+  std::string unit = {};             // of changes: "%" of the value, "mm" or "°"
+  Vector unit_change = {};           // of the parameter's numbers, per unit
+  Points motion = {};                // displacement of each node per unit, 3 x node_count [mm]
+  double usual_change = 0;           // in the unit, that the range has where nothing ends it before
+  double movement_mm = 0;            // of the sheet, root of the mean square, by that change
   std::array<CheckedEnd, 2> ends{};  // lower, upper; a change of 0: nothing could be checked that way
 };
 
@@ -32,7 +33,9 @@ struct FirstOrder {
   std::vector<ParameterResponse> parameters = {};  // that moves the sheet most first
   double tolerance_mm = 0;                         // that every error is within
   int candidates = 0;                              // of parameters, of which these are
-  std::string message = {};                        // why there are none; empty where there are
+  int left_out =
+      0;  // of those that move the sheet: their turn had not come when the time for ranges was over
+  std::string message = {};  // why there are none; empty where there are
 };
 
 }  // namespace coapt

@@ -15,13 +15,13 @@ namespace coapt {
 namespace {
 
 void measure_annulus(const Model& model, const Fields& fields, const ContactMeasure& contact,
-                     Metrics& metrics) {
-  const std::optional<OrificeArea> area = orifice_area(model, fields.x);
+                     const ViewDetail& detail, Metrics& metrics) {
+  const std::optional<OrificeArea> area = orifice_area(model, fields.x, detail.refinement);
   if (!area) return;  // an annulus on one line encloses nothing: its metrics stay undefined
   metrics.orifice_area_mm2 = area->open;
   metrics.annulus_area_mm2 = area->annulus;
   metrics.orifice_area_percent = 100 * area->open / area->annulus;
-  Closure closure = closure_of(model, fields, contact);
+  Closure closure = closure_of(model, fields, contact, detail);
   metrics.regurgitant_area_mm2 = std::min(closure.regurgitant_area_mm2, area->open);
   metrics.orifice_film_area_mm2 = closure.orifice_film_area_mm2;
   metrics.coaptation_length_mm = closure.coaptation_length_mm;
@@ -146,8 +146,8 @@ std::vector<MetricRow> strength_rows(const Metrics& m) {
 
 }  // namespace
 
-Metrics measure(const Model& model, const Vector& q, const Fields& fields,
-                const IntersectionChecker& checker) {
+Metrics measure(const Model& model, const Vector& q, const Fields& fields, const IntersectionChecker& checker,
+                const ViewDetail& detail) {
   Metrics metrics;
   metrics.intersection_checker = checker.name;
   const Triangles& triangles = model.mesh.triangles;
@@ -169,7 +169,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields,
   if (looks_for_contact(model)) {
     const ContactMeasure contact = measure_contact(model, fields);
     if (is_finite) try {
-        measure_annulus(model, fields, contact, metrics);
+        measure_annulus(model, fields, contact, detail, metrics);
       } catch (const InputError&) {  // of what cannot be measured of it, nothing is said
       }
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);

@@ -53,10 +53,11 @@ struct Metrics {
   std::vector<HealthyCriterion> healthy_closure;  // of a mitral valve; empty for any other scene
 };
 
-// Measures the state q. fields: those of the same state. checker: counts the intersections.
-// Pre: the set "annulus" of the model, where there is one, is an ordered loop of at least three vertices.
+// Measures the state q. fields: those of the same state. checker: counts the intersections. detail: coarser
+// for changes of figures, of which both sides are measured so. Pre: the set "annulus" of the model, where
+// there is one, is an ordered loop of at least three vertices.
 Metrics measure(const Model& model, const Vector& q, const Fields& fields,
-                const IntersectionChecker& checker = {});
+                const IntersectionChecker& checker = {}, const ViewDetail& detail = {});
 
 // The same as a table, for files and summaries: one row per metric, in the order of the struct.
 struct MetricRow {

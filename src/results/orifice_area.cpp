@@ -23,11 +23,12 @@ OrificeView orifice_view(const Model& model, const Points& x) {
 
 }  // namespace
 
-std::optional<OrificeArea> orifice_area(const Model& model, const Points& x) {
+std::optional<OrificeArea> orifice_area(const Model& model, const Points& x, int refinement) {
   if (annulus_of(model) == nullptr) return std::nullopt;
   try {
     const OrificeView view = orifice_view(model, x);
-    const UncoveredArea area = uncovered_area(view.surface, model.mesh.triangles, view.rim, view.up);
+    const UncoveredArea area =
+        uncovered_area(view.surface, model.mesh.triangles, view.rim, view.up, refinement);
     return OrificeArea{area.area, area.polygon_area};
   } catch (const InputError&) {
     return std::nullopt;

@@ -13,7 +13,8 @@ struct OrificeArea {
 };
 
 // x: 3 x node_count. Empty for a model without an annulus, or one on a line, that encloses nothing.
-std::optional<OrificeArea> orifice_area(const Model& model, const Points& x);
+// refinement: of the rows, at most, see uncovered_area().
+std::optional<OrificeArea> orifice_area(const Model& model, const Points& x, int refinement = 32);
 
 // Pre: orifice_area() is not empty. Derivative of the open area by the nodes, 3 x node_count [mm], with the
 // view held: it is, where the annulus is prescribed.

@@ -8,6 +8,7 @@
 namespace coapt {
 namespace {
 
+constexpr const char* kStabilityDoubt = "its stability is in doubt (";
 constexpr double kSevereOrifice = 40;                          // effective, of severe regurgitation [mm2]
 constexpr double kMostFacetStrain = 1, kMostLineStrain = 0.2;  // beyond which they are named
 
@@ -140,9 +141,13 @@ std::vector<std::string> doubts(const Report& report) {
   if (report.result.status != Status::Converged) return {};
   std::vector<std::string> list = further_doubts(report);
   if (is_in_doubt(report))
-    list.insert(list.begin(),
-                "its stability is in doubt (" + stability_doubt(report.result.certificate) + ")");
+    list.insert(list.begin(), kStabilityDoubt + stability_doubt(report.result.certificate) + ")");
   return list;
+}
+
+bool are_about_stability(const std::vector<std::string>& doubts) {
+  return std::any_of(doubts.begin(), doubts.end(),
+                     [](const std::string& doubt) { return doubt.starts_with(kStabilityDoubt); });
 }
 
 Headline headline(const Report& report) {

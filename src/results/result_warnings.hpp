@@ -37,6 +37,9 @@ bool is_in_doubt(const Report& report);
 // are slack, its surface is doubtful, it may not be the only one. None where the run did not converge.
 std::vector<std::string> doubts(const Report& report);
 
+// Whether one of these doubts() is that of is_in_doubt(), where no report is kept.
+bool are_about_stability(const std::vector<std::string>& doubts);
+
 // A state at rest in which facets pass through each other that collisions were to keep apart is not
 // converged, whatever its residual: its status becomes Stalled, and its message says why.
 void withdraw_penetrated(Report& report);

@@ -120,7 +120,8 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
 
 namespace {
 
-// complete: what the report gets for its page, once all else is written.
+// complete: what the report gets for its page, once all else is written; empty: nothing. The page is written
+// before as well, so that no earlier one stands beside the new result for as long as that takes.
 void write_files(const std::filesystem::path& folder, const Model& model, const Report& report,
                  const std::function<void()>& complete) {
   const std::filesystem::path page = folder / "report.html";
@@ -129,8 +130,15 @@ void write_files(const std::filesystem::path& folder, const Model& model, const 
     WriteAttempts attempt;
     attempt([&] { write_results(folder, model, report); });
     if (report.has_page) {
-      complete();
-      attempt([&] { formats::write_whole(page, solve_page(model, report)); });
+      bool is_written = false;
+      attempt([&] {
+        formats::write_whole(page, solve_page(model, report));
+        is_written = true;
+      });
+      if (complete && is_written) {
+        complete();
+        attempt([&] { formats::write_whole(page, solve_page(model, report)); });
+      }
     } else {
       std::filesystem::remove(page, ignored);  // of an earlier solve
     }
@@ -143,7 +151,7 @@ void write_files(const std::filesystem::path& folder, const Model& model, const 
 }  // namespace
 
 void write_run(const std::filesystem::path& folder, const Model& model, const Report& report) {
-  write_files(folder, model, report, [] {});
+  write_files(folder, model, report, {});
 }
 
 std::filesystem::path open_result_folder(const Scene& scene, const RunOptions& options) {
@@ -159,10 +167,13 @@ Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& mo
                     const RunNotes& notes, const IntersectionChecker& checker,
                     const std::filesystem::path& folder) {
   Report report = measure_run(scene, setup, model, std::move(solved), notes, checker);
-  if (!folder.empty())
-    write_files(folder, model, report, [&] {
-      if (notes.first_order && has_shape_view()) report.first_order = notes.first_order(report);
-    });
+  if (folder.empty()) return report;
+  std::function<void()> complete;
+  if (notes.first_order && has_shape_view()) {
+    report.first_order = FirstOrder{.message = "the run was ended while they were looked for"};
+    complete = [&] { report.first_order = notes.first_order(report); };
+  }
+  write_files(folder, model, report, complete);
   return report;
 }
 

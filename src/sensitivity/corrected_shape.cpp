@@ -10,7 +10,6 @@ namespace {
 constexpr double kLinear = 1e-2;    // residual of the linear system of a correction, relative
 constexpr double kClosingIn = 0.5;  // of the correction before by the same tangent; more leads nowhere
 constexpr int kMostSteps = 12;      // corrections of one shape
-constexpr int kMostTangents = 2;    // of one shape
 
 double greatest(const Points& motion, const std::vector<int>& nodes) {
   double most = 0;
@@ -20,34 +19,59 @@ double greatest(const Points& motion, const std::vector<int>& nodes) {
 
 }  // namespace
 
-// Successive corrections by one tangent tell whether they close in: each is below its predecessor by the
-// same factor, or worse (the natural monotonicity test of Deuflhard 2011, Newton Methods for Nonlinear
-// Problems, section 2.1). Where they do not, the tangent is taken anew.
-CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points& start,
-                                             const std::vector<int>& nodes, double until, double most,
-                                             const std::function<void(const CorrectedShape&)>& look) {
+// The numbers are put into the terms, and taken out again, without measuring the reference state anew: no
+// residual is asked for between.
+template <typename Work>
+void TrackedEquilibrium::with_numbers(const Vector& numbers, Points& start, const Work& work) {
   require_solved();
   require_sound(numbers);
   const Points home = positions();
   const auto back = [&] {
-    assign(solved_value_);
+    assign_numbers(solved_value_);
     objective_.prescribe(home);
     is_tangent_ready_ = false;  // the objective knows the skew part of one tangent alone
   };
-  CorrectedShape found;
   try {
-    assign(numbers);
-    found.x = start;
-    for (const auto& parameter : parameters_) parameter->place(found.x);
-    objective_.prescribe(found.x);
-    close_in(found, nodes, until, most);
-    found.is_found = found.is_found && objective_.step_limit(home, found.x - home, 1) == 1;
-    if (found.is_found && look) look(found);
+    assign_numbers(numbers);
+    for (const auto& parameter : parameters_) parameter->place(start);
+    objective_.prescribe(start);
+    work(home);
   } catch (...) {
     back();
     throw;
   }
   back();
+}
+
+double TrackedEquilibrium::step_by_solved_factor(const Vector& numbers, const Points& start,
+                                                 const std::vector<int>& nodes) {
+  double length = kInfinity;
+  Points x = start;
+  with_numbers(numbers, x, [&](const Points&) {
+    const Vector q = objective_.unknowns(x);
+    Vector g, step;
+    if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
+    if (!system_.has_factor() || !std::isfinite(objective_.gradient(q, g)) || !g.allFinite()) return;
+    system_.apply_factor(g, step);
+    length = greatest(objective_.positions(q + step) - x, nodes);
+  });
+  return length;
+}
+
+// Successive corrections by one tangent tell whether they close in: each is below its predecessor by the
+// same factor, or worse (the natural monotonicity test of Deuflhard 2011, Newton Methods for Nonlinear
+// Problems, section 2.1). Where they do not, or the tangent has other signs than that of the solved
+// shape, the start is taken for too far.
+CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points& start,
+                                             const std::vector<int>& nodes, double until, double most,
+                                             const std::function<void(const CorrectedShape&)>& look) {
+  CorrectedShape found;
+  found.x = start;
+  with_numbers(numbers, found.x, [&](const Points& home) {
+    close_in(found, nodes, until, most);
+    found.is_found = found.is_found && objective_.step_limit(home, found.x - home, 1) == 1;
+    if (found.is_found && look) look(found);
+  });
   return found;
 }
 
@@ -55,43 +79,37 @@ CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points
 void TrackedEquilibrium::close_in(CorrectedShape& found, const std::vector<int>& nodes, double until,
                                   double most) {
   const Points start = found.x;
+  Vector q = objective_.unknowns(start), g, step;
+  if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
+  if (!near_.assemble(objective_, q, g)) return;
   const int negative = system_.negative_modes();
-  TangentSystem tangent(options_.factorisation);
-  Vector q = objective_.unknowns(start), last_q = q, g, step;
+  const bool is_definite = near_.factorise_definite();
+  if (!is_definite &&
+      (negative == 0 || !near_.factorise(objective_, q) || near_.negative_modes() != negative))
+    return;
   double before = kInfinity;
-  bool is_new = true;  // the tangent is to be taken here
-  while (found.steps < kMostSteps && !found.is_found && found.distance <= most) {
-    if (is_new) {
-      if (found.tangents++ == kMostTangents) return;
-      if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
-      if (!tangent.assemble(objective_, q, g) || !tangent.factorise(objective_, q)) return;
-      before = kInfinity;
-    } else if (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite()) {
-      return;
-    }
+  bool is_exact = !is_definite;  // else by the factor alone, without the skew part of the tangent
+  while (found.steps < kMostSteps && found.distance <= most) {
+    if (found.steps > 0 && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return;
     ++found.steps;
-    const bool is_solved = tangent.solve(-g, step, kLinear) < 2 * kLinear;
+    if (!is_exact)
+      near_.apply_factor(-g, step);
+    else if (!(near_.solve(-g, step, kLinear) < 2 * kLinear))
+      return;
     const Points x = objective_.positions(q + step);
     const double length = greatest(x - found.x, nodes), ratio = length / before;
-    const bool closes_in = is_solved && std::isfinite(length) && (ratio <= kClosingIn || length <= until);
-    if (!closes_in && is_new) return;
-    is_new = !closes_in;
-    if (is_new) {
-      if (!(ratio <= 1)) q = last_q;  // the step that led here was none
-      found.x = objective_.positions(q);
+    if (!std::isfinite(length)) return;
+    if (!(ratio <= kClosingIn || length <= until)) {
+      if (is_exact || !objective_.has_skew_tangent()) return;
+      is_exact = true;
       continue;
     }
-    last_q = q;
     q += step;
     found.x = x;
     found.distance = greatest(x - start, nodes);
     found.left = std::isfinite(before) ? length * std::min(ratio / (1 - ratio), 1.0) : length;
     found.is_found = found.left <= until;
-    // Another number of negative eigenvalues: it may be a saddle, unless they were those of the way.
-    if (found.is_found && tangent.negative_modes() != negative) {
-      found.is_found = false;
-      is_new = true;
-    }
+    if (found.is_found) return;
     before = length;
   }
 }

@@ -18,6 +18,12 @@ void shift_diagonal(SparseMatrix& h, double shift) {
       if (entry.row() == c) entry.valueRef() += shift;
 }
 
+void set_diagonal(SparseMatrix& h, const Vector& diagonal) {
+  for (int c = 0; c < h.outerSize(); ++c)
+    for (SparseMatrix::InnerIterator entry(h, c); entry; ++entry)
+      if (entry.row() == c) entry.valueRef() = diagonal[c];
+}
+
 }  // namespace
 
 bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
@@ -27,18 +33,26 @@ bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
   return std::isfinite(energy) && g.allFinite() && std::isfinite(h_.sum());
 }
 
-bool TangentSystem::factorise(Objective& objective, const Vector& q) {
-  if (objective.pattern_version() != analysed_) {
+double TangentSystem::mean_stiffness() const { return h_.rows() == 0 ? 1 : h_.diagonal().cwiseAbs().mean(); }
+
+bool TangentSystem::factorise_definite() {
+  if (objective_->pattern_version() != analysed_) {
     factor_->analyse(h_);
-    analysed_ = objective.pattern_version();
+    analysed_ = objective_->pattern_version();
   }
-  const double mean = h_.rows() == 0 ? 1 : h_.diagonal().cwiseAbs().mean();
+  const Vector diagonal = h_.diagonal();
+  shift_diagonal(h_, kLeastShift * mean_stiffness());
+  negative_modes_ = 0;
+  has_factor_ = factor_->factorise(h_);
+  set_diagonal(h_, diagonal);
+  return has_factor_;
+}
+
+bool TangentSystem::factorise(Objective& objective, const Vector& q) {
+  if (factorise_definite()) return true;
+  const double mean = mean_stiffness();
   SparseMatrix shifted = h_;
   shift_diagonal(shifted, kLeastShift * mean);
-  negative_modes_ = 0;
-  has_factor_ = factor_->factorise(shifted);
-  if (has_factor_) return true;
-
   const std::unique_ptr<Factorisation> counter = make_();
   counter->analyse(shifted);
   negative_modes_ = counter->inertia(shifted).negative;

@@ -21,6 +21,12 @@ class TangentSystem {
   // Makes a factor for the last K. Returns false when that fails. Evaluates projected elements where needed.
   bool factorise(Objective& objective, const Vector& q);
 
+  // The same for a K that is positive definite: returns false for any other, which costs no second assembly.
+  bool factorise_definite();
+
+  // H^-1 b by the factor alone. Pre: has_factor().
+  void apply_factor(const Vector& b, Vector& x) { factor_->solve(b, x); }
+
   // Whether there is a factor, of this K or of an earlier one on the same pattern.
   bool has_factor() const { return has_factor_; }
 
@@ -42,6 +48,7 @@ class TangentSystem {
   static constexpr int kVectors = 40;  // of GMRES
 
   double solve(const Vector& b, Vector& x, double tolerance, double skew_sign);
+  double mean_stiffness() const;
   void multiply(const Vector& v, double skew_sign, Vector& product);
 
   FactorisationFactory make_;

@@ -29,7 +29,8 @@ TrackedEquilibrium::TrackedEquilibrium(Objective& objective, Vector q, TrackingO
     : objective_(objective),
       options_(std::move(options)),
       q_(std::move(q)),
-      system_(options_.factorisation) {}
+      system_(options_.factorisation),
+      near_(options_.factorisation) {}
 
 size_t TrackedEquilibrium::add(std::unique_ptr<Parameter> parameter) {
   std::vector<std::string> defects;
@@ -85,10 +86,14 @@ void TrackedEquilibrium::set(const Vector& value) {
 }
 
 void TrackedEquilibrium::assign(const Vector& value) {
+  assign_numbers(value);
+  objective_.remeasure_reference();
+}
+
+void TrackedEquilibrium::assign_numbers(const Vector& value) {
   for (size_t k = 0; k < parameters_.size(); ++k)
     if (const Vector numbers = numbers_of(*parameters_[k], k, value); numbers != parameters_[k]->value())
       parameters_[k]->set(numbers);
-  objective_.remeasure_reference();
 }
 
 void TrackedEquilibrium::resume_at(const Vector& value, const Vector& q) {

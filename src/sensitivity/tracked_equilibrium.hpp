@@ -89,8 +89,7 @@ struct CorrectedShape {
   Points x;               // as far as they went
   double distance = 0;    // from where they began, greatest of the nodes that count [length]
   double left = 0;        // estimate of the distance from the equilibrium, likewise
-  int steps = 0;          // each one evaluation of the forces and one linear system
-  int tangents = 0;       // that were taken for these
+  int steps = 0;          // each one evaluation of the forces and one linear system, all by one tangent
 };
 
 struct Derivatives {
@@ -154,15 +153,20 @@ class TrackedEquilibrium {
   // tolerance: on the relative residual of the linear system.
   Points response(const Vector& change, double tolerance = kExactResponse);
 
-  // The shape of other numbers, from a start near it, without a solve: Newton steps with one tangent as long
-  // as they close in on something, and else with the next. They end once the last one and
-  // its predecessor say that less than `until` is left, or once the shape is `most` from the start. Lengths
-  // are of `nodes`. start: 3 x node_count, the prescribed nodes as they are now: they go where the numbers
-  // want them. Neither shape nor numbers of this object change. look: called where the shape was found, while
-  // the terms have the numbers. Throws InputError as set() does.
+  // The shape of other numbers, from a start near it, without a solve: Newton steps with the tangent of the
+  // start, as long as they close in on something. They end once the last one and its predecessor say that
+  // less than `until` is left, or once the shape is `most` from the start. Not found: also where that tangent
+  // has another number of negative eigenvalues than that of the solved shape. Lengths are of `nodes`. start:
+  // 3 x node_count, the prescribed nodes as they are now: they go where the numbers want them. Neither shape
+  // nor numbers of this object change. look: called where the shape was found, while the terms have the
+  // numbers. Throws InputError as set() does.
   CorrectedShape corrected(const Vector& numbers, const Points& start, const std::vector<int>& nodes,
                            double until, double most = kInfinity,
                            const std::function<void(const CorrectedShape&)>& look = {});
+
+  // How far a first such step would go, by the factor of the solved shape: no new one, and a first guess
+  // where stiffness hardly changes on the way. Infinity where forces are not finite. Throws as corrected().
+  double step_by_solved_factor(const Vector& numbers, const Points& start, const std::vector<int>& nodes);
   Vector pull_back(const Eigen::Ref<const Points>& weights);
 
   // One row for each metric, by as many linear systems as there are metrics or numbers, whichever are fewer.
@@ -195,6 +199,9 @@ class TrackedEquilibrium {
 
   Vector numbers_of(const Parameter& parameter, size_t index, const Vector& all) const;
   void assign(const Vector& value);
+  void assign_numbers(const Vector& value);  // and nothing else
+  template <typename Work>
+  void with_numbers(const Vector& numbers, Points& start, const Work& work);
   Points prescribed() const;  // positions with prescribed nodes where the parameters want them
   void ready_tangent();       // assembled at q_, with a factor that will do
   void require_sound(const Vector& value) const;
@@ -228,7 +235,7 @@ class TrackedEquilibrium {
   int steps_since_anchor_check_ = 0;
   double adjoint_residual_ = 0;
   bool is_solved_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;
-  TangentSystem system_;
+  TangentSystem system_, near_;  // of the solved shape; of one near it
   NodalTangent nodal_;
   Vector g_;
 };

@@ -16,24 +16,31 @@
 namespace coapt {
 namespace {
 
-constexpr double kShare = 0.1;           // of a factor or a number, that is tried first
-constexpr double kShift = 0.05;          // of the extent of the sheet, of a displacement
-constexpr double kTilt = 0.1;            // [rad]
-constexpr double kUsualExtent = 100;     // [mm], beyond which the tolerance grows with the sheet
-constexpr double kKept = 0.8;            // of the tolerance: the rest is for rounding in a page
-constexpr double kSmaller = 0.3;         // of a range at whose end nothing was found
-constexpr double kLeft = 0.02;           // of the tolerance, that corrections leave
-constexpr double kResponse = 1e-6;       // residual of the linear system of a response
+constexpr double kShare = 0.1;        // of a factor or a number, that is tried first
+constexpr double kShift = 0.05;       // of the extent of the sheet, of a displacement
+constexpr double kTilt = 0.1;         // [rad]
+constexpr double kUsualExtent = 100;  // [mm], beyond which the tolerance grows with the sheet
+constexpr double kKept = 0.8;         // of the tolerance: the rest is for rounding in a page
+constexpr double kFigureReach = 0;    // of gaps beyond twice the contact distance [mean edges]: none counts
+constexpr double kSmaller = 0.3;      // of a range at whose end nothing was found
+constexpr double kLikely = 0.3;  // of the tolerance: a first step by the result's stiffness that may hold
+constexpr double kLeastShare = 0.05;  // of the change that such a step leaves at once
+constexpr double kLeft = 0.02;        // of the tolerance, that corrections leave
+constexpr double kResponse = 1e-4;    // residual of the linear system of a response
+constexpr double kRanking = 1e-1;     // the same where it only tells which move the sheet most
+constexpr ViewDetail kFigureView = {.cells = 256, .refinement = 1};  // of figures whose changes are told
 constexpr double kSameShape = 1e-2;      // of the tolerance, that a shape may miss the report's by
 constexpr double kMostMovement = 6;      // of the tolerance, of a node by the change that is tried first
 constexpr int kMostTrials = 6;           // for one end of a range
+constexpr double kLeastCpu = 0.5;        // [s] that ranges may take whatever the solve took
 constexpr double kLeastMovement = 0.05;  // of the tolerance: what moves the sheet less says nothing
 
 // One number, or one direction among the numbers of a parameter.
 struct Direction {
   ParameterResponse response;
-  Vector change;    // of all numbers of the equilibrium, per unit
-  double step = 0;  // that is tried first, in units
+  Vector change;          // of all numbers of the equilibrium, per unit
+  double step = 0;        // that is tried first, in units
+  bool is_exact = false;  // its motion, as a page shows it
 };
 
 struct Meaning {
@@ -47,6 +54,12 @@ std::string in_words(const std::string& what) {
   std::string words = what;
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
+}
+
+// Groups of chords are named by their tissue or tip, terms by whatever they are.
+std::string chords_in_words(const std::string& object) {
+  if (object.find("chord") != std::string::npos || object.find("cable") != std::string::npos) return object;
+  return object.starts_with("tip_") ? "chords of " + object : object + " chords";
 }
 
 // What each number of a parameter means; none: this kind is not for sliders.
@@ -68,7 +81,7 @@ std::vector<Meaning> meanings(const std::string& key, const Vector& value, doubl
             share(object + ": height of the saddle", 1),
             {object + ": tilt", "°", kTilt * 180 / std::numbers::pi, std::numbers::pi / 180}};
   if (value.size() != 1 || value[0] == 0) return {};
-  return {share(object + ": " + in_words(what), value[0])};
+  return {share((what == "length" ? chords_in_words(object) : object) + ": " + in_words(what), value[0])};
 }
 
 // Lower is asked first; of two that change the same, the one that comes later is left out.
@@ -86,6 +99,16 @@ int order(const std::string& key, const Model& model) {
   return 5;
 }
 
+// Those of a result, and what a healthy closure asks for besides.
+std::vector<MetricRow> figure_rows(const Metrics& metrics) {
+  std::vector<MetricRow> rows = metric_rows(metrics);
+  for (const HealthyCriterion& criterion : metrics.healthy_closure)
+    if (std::none_of(rows.begin(), rows.end(),
+                     [&](const MetricRow& row) { return row.name == criterion.name; }))
+      rows.push_back({criterion.name, criterion.unit, "", false, criterion.value});
+  return rows;
+}
+
 class Responses {
  public:
   Responses(const Model& model, const Report& report, TrackedScene&& tracked, const FirstOrderOptions& wanted)
@@ -96,7 +119,7 @@ class Responses {
         nodes_.push_back(node);
     const Points& x = report.fields.x;
     extent_ = (x.leftCols(sheet).rowwise().maxCoeff() - x.leftCols(sheet).rowwise().minCoeff()).norm();
-    for (const MetricRow& row : metric_rows(report.metrics))
+    for (const MetricRow& row : figure_rows(report.metrics))
       if (row.value) now_[row.name] = *row.value;
     found_.tolerance_mm = wanted.tolerance_mm * std::max(1.0, extent_ / kUsualExtent);
   }
@@ -121,7 +144,11 @@ class Responses {
         const Eigen::Index number = equilibrium_.first_number(index) + static_cast<Eigen::Index>(k);
         Vector own = Vector::Zero(equilibrium_.parameter(index).value().size());
         own[static_cast<Eigen::Index>(k)] = all[k].per_unit;
-        directions_.push_back({{.name = all[k].name, .key = key, .unit = all[k].unit, .unit_change = own},
+        directions_.push_back({{.name = all[k].name,
+                                .key = key,
+                                .unit = all[k].unit,
+                                .unit_change = own,
+                                .usual_change = all[k].step},
                                all[k].per_unit * Vector::Unit(equilibrium_.number_count(), number),
                                all[k].step});
       }
@@ -140,30 +167,18 @@ class Responses {
     return "";
   }
 
-  // The derivative of the shape by each, those that move the sheet most first.
-  void rank() {
-    for (Direction& direction : directions_) try {
-        direction.response.motion = equilibrium_.response(direction.change, kResponse);
-        const Points moved = direction.response.motion(Eigen::all, nodes_);
-        direction.response.movement_mm = direction.step * std::sqrt(moved.colwise().squaredNorm().mean());
-      } catch (const InputError& error) {
-        found_.message = error.defects().front();
-      }
-    std::erase_if(directions_, [this](const Direction& each) {
-      return !(each.response.movement_mm > kLeastMovement * found_.tolerance_mm);
-    });
-    std::stable_sort(directions_.begin(), directions_.end(), [](const Direction& a, const Direction& b) {
-      return a.response.movement_mm > b.response.movement_mm;
-    });
+  // The derivative of the shape by each, those that move the sheet most first; the first `most` as they are
+  // to be shown.
+  void rank(size_t most) {
+    for (Direction& direction : directions_) respond(direction, kRanking);
+    drop_idle();
+    for (size_t k = 0; k < directions_.size() && k < most; ++k) respond(directions_[k], kResponse);
+    drop_idle();
   }
 
   // Both ends of the range of a direction.
   void check(Direction& direction) {
-    // Contact looks for its pairs anew from far away, so that only the last digits depend on what was checked
-    // before.
-    Objective& objective = *tracked_.model.objective;
-    const Vector& q = equilibrium_.unknowns();
-    objective.value(q.array() + 2 * objective.extent(q));
+    if (!direction.is_exact) respond(direction, kResponse);
     for (const size_t side : {size_t{0}, size_t{1}}) check(direction, side);
   }
 
@@ -178,6 +193,29 @@ class Responses {
     return apart.cols() == 0 ? 0 : std::sqrt(apart.colwise().squaredNorm().maxCoeff());
   }
 
+  void respond(Direction& direction, double tolerance) try {
+    direction.response.motion = equilibrium_.response(direction.change, tolerance);
+    const Points moved = direction.response.motion(Eigen::all, nodes_);
+    direction.response.movement_mm = direction.step * std::sqrt(moved.colwise().squaredNorm().mean());
+    direction.is_exact = tolerance == kResponse;
+  } catch (const InputError& error) {
+    direction.response.movement_mm = 0;
+    found_.message = error.defects().front();
+  }
+
+  void drop_idle() {
+    std::erase_if(directions_, [this](const Direction& each) {
+      return !(each.response.movement_mm > kLeastMovement * found_.tolerance_mm);
+    });
+    std::stable_sort(directions_.begin(), directions_.end(), [](const Direction& a, const Direction& b) {
+      return a.response.movement_mm > b.response.movement_mm;
+    });
+  }
+
+  Vector numbers_at(const Direction& direction, double change) const {
+    return value_ + change * direction.change;
+  }
+
   // The length of the corrections that lead from the first order's shape to the equilibrium is its error.
   void check(Direction& direction, size_t side) {
     const double kept = kKept * found_.tolerance_mm;
@@ -186,13 +224,14 @@ class Responses {
     const double furthest = std::sqrt(moved.colwise().squaredNorm().maxCoeff());
     double change = std::min(direction.step, kMostMovement * found_.tolerance_mm / furthest);
     if (side == 0) change = -change;
+    change *= likely_share(direction, change);
     for (int trial = 0; trial < kMostTrials; ++trial) {
       if (std::abs(change) * furthest < kLeastMovement * found_.tolerance_mm) return;
       std::vector<MetricRow> figures;
       CorrectedShape shape;
       try {
         shape =
-            equilibrium_.corrected(value_ + change * direction.change, x_ + change * motion, nodes_,
+            equilibrium_.corrected(numbers_at(direction, change), x_ + change * motion, nodes_,
                                    kLeft * found_.tolerance_mm, 2 * kept, [&](const CorrectedShape& found) {
                                      if (found.distance + found.left <= kept) figures = figures_at(found.x);
                                    });
@@ -200,7 +239,7 @@ class Responses {
       }
       const double error = shape.distance + shape.left;
       if (shape.is_found && error <= kept) {
-        direction.response.ends[side] = {change, error, std::move(figures)};
+        direction.response.ends[side] = {change, error, changed(std::move(figures))};
         return;
       }
       // By the square where the shape is smooth, at least by a tenth.
@@ -208,13 +247,37 @@ class Responses {
     }
   }
 
+  // Of a change, that a first step by the result's own stiffness lets expect to hold: its length grows with
+  // the square of the change, and more where contact stiffens on the way.
+  double likely_share(const Direction& direction, double change) {
+    try {
+      const double step = equilibrium_.step_by_solved_factor(numbers_at(direction, change),
+                                                             x_ + change * direction.response.motion, nodes_);
+      return std::clamp(std::sqrt(kLikely * found_.tolerance_mm / step), kLeastShare, 1.0);
+    } catch (const InputError&) {  // beyond a limit of the parameter
+      return kSmaller;
+    }
+  }
+
+  // Figures of the result as it was measured, plus what changes by a coarser measure of both.
+  std::vector<MetricRow> changed(std::vector<MetricRow> figures) {
+    if (here_.empty())
+      for (const MetricRow& row : figures_at(x_))
+        if (row.value) here_[row.name] = *row.value;
+    for (MetricRow& row : figures)
+      if (row.value && here_.contains(row.name) && now_.contains(row.name))
+        *row.value = now_[row.name] + (*row.value - here_[row.name]);
+    return figures;
+  }
+
   std::vector<MetricRow> figures_at(const Points& x) {
     const Model& model = tracked_.model;
     take_rest_lengths(tracked_.model);
-    const Fields fields = compute_fields(model, x);
+    const Fields fields = compute_fields(model, x, kFigureReach);
     const IntersectionChecker none = {
         "nobody", [](const Points&, const Triangles&) { return std::vector<std::array<int, 2>>(); }};
-    std::vector<MetricRow> rows = metric_rows(measure(model, model.objective->unknowns(x), fields, none));
+    const Metrics metrics = measure(model, model.objective->unknowns(x), fields, none, kFigureView);
+    std::vector<MetricRow> rows = figure_rows(metrics);
     std::erase_if(rows, [](const MetricRow& row) { return row.name == "intersections"; });
     return rows;
   }
@@ -223,11 +286,12 @@ class Responses {
   TrackedEquilibrium& equilibrium_;
   FirstOrder found_;
   std::vector<Direction> directions_;
-  std::vector<int> nodes_;             // of the sheet, whose places are determined
-  double extent_ = 0;                  // [mm]
-  Points x_;                           // of the result
-  Vector value_;                       // numbers there
-  std::map<std::string, double> now_;  // figures there
+  std::vector<int> nodes_;              // of the sheet, whose places are determined
+  double extent_ = 0;                   // [mm]
+  Points x_;                            // of the result
+  Vector value_;                        // numbers there
+  std::map<std::string, double> now_;   // figures there
+  std::map<std::string, double> here_;  // the same by the coarser measure
 };
 
 }  // namespace
@@ -242,10 +306,8 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   const size_t most = std::min(wanted.most, most_sliders(static_cast<size_t>(model.X.cols())));
   none.message = "a page has no room for the displacements of so many nodes";
   if (most == 0) return none;
-  none.message = "they take a few times as long as the solve of a mesh of more than " +
-                 std::to_string(wanted.most_nodes) + " nodes; coapt solve --sliders makes them";
-  if (model.X.cols() > wanted.most_nodes) return none;
-  const double begin = wall_seconds();
+  const double begin = wall_seconds(), cpu_begin = cpu_seconds();
+  const double most_cpu = std::max(kLeastCpu, wanted.share * report.result.cpu_s);
   const double left = options.max_seconds ? *options.max_seconds - report.result.wall_s : kInfinity;
   none.message = "the solve left no time for them";
   if (!(left > 0)) return none;
@@ -264,13 +326,22 @@ FirstOrder first_order(const Scene& scene, const SolverTable& solvers, const Run
   responses.take_parameters(scene);
   none.message = responses.solve_first(report.fields.x);
   if (!none.message.empty()) return none;
-  responses.rank();
+  responses.rank(most);
   FirstOrder& found = responses.found();
   bool is_ended = false;
+  const double cpu_ready = cpu_seconds();
+  int checked = 0;
   for (Direction& direction : responses.directions()) {
     is_ended =
         wall_seconds() - begin > left || (options.observer && !options.observer({}, responses.unknowns()));
     if (is_ended || found.parameters.size() == most) break;
+    const double now = cpu_seconds(), usual = checked == 0 ? 0 : (now - cpu_ready) / checked;
+    if (now - cpu_begin + usual > most_cpu && !found.parameters.empty()) {
+      const auto wanting = responses.directions().size() - static_cast<size_t>(checked);
+      found.left_out = static_cast<int>(std::min(most - found.parameters.size(), wanting));
+      break;
+    }
+    ++checked;
     responses.check(direction);
     if (const auto& ends = direction.response.ends; ends[0].change != 0 || ends[1].change != 0)
       found.parameters.push_back(std::move(direction.response));

@@ -12,10 +12,10 @@
 namespace coapt {
 
 struct FirstOrderOptions {
-  size_t most = 8;                 // parameters, or as many as a page has room for
-  double tolerance_mm = 0.1;       // greatest distance of a node of the sheet from a solve; of a sheet beyond
-                                   // 100 mm as much more
-  Eigen::Index most_nodes = 2000;  // of the mesh: on larger ones they take a few times as long as the solve
+  size_t most = 8;            // parameters, or as many as a page has room for
+  double tolerance_mm = 0.1;  // greatest distance of a node of the sheet from a solve; of a sheet beyond
+                              // 100 mm as much more
+  double share = 0.5;         // of the CPU time of the solve, that they may take; but for the first of them
 };
 
 // A model of its own is built from the report's shape, which stays as it is. Nothing is thrown for what lies

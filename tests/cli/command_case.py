@@ -37,6 +37,26 @@ class CommandCase(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stderr)
         return self.folder / "scene.json"
 
+    def strips(self):
+        """A scene of twelve strips pushed together in their plane: more saddles than one run leaves, if it ends beside each,
+        as lbfgs does with a tolerance of 0.1."""
+        points, triangles, held, pushed = [], [], [], []
+        for strip in range(12):
+            first = len(points)
+            points += [((10 + strip) * i / 12, 3 * strip + j, 0) for i in range(13) for j in (0, 1)]
+            for a in range(first, first + 24, 2):
+                triangles += [(a, a + 2, a + 1), (a + 1, a + 2, a + 3)]
+            held += range(first, first + 4)
+            pushed += range(first + 22, first + 26)
+        (self.folder / "strips.obj").write_text("".join(f"v {x:.9g} {y} {z}\n" for x, y, z in points) + "".join(
+            f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in triangles))
+        scene = self.folder / "scene.json"
+        sheet = {"type": "cst_stvk", "young": "1 MPa", "poisson": 0.3, "thickness": "0.1 mm"}
+        scene.write_text(json.dumps({
+            "mesh": {"file": "strips.obj"}, "terms": [sheet, {"type": "bending"}],
+            "boundary": [{"nodes": held, "fix": True}, {"nodes": pushed, "move_to": {"translate": [-0.1, 0, 0]}}]}))
+        return scene
+
     def result(self, folder=None):
         text = ((folder or self.folder / "result") / "result.json").read_text()
         self.assertNotIn("NaN", text)

@@ -119,6 +119,24 @@ class DoubtTest(CommandCase):
         page = (self.folder / "result/report.html").read_text()
         self.assertEqual(re.search(r'<p class="lead (\w+)">', page)[1], "caution")
 
+    def test_a_stability_in_doubt_is_exit_code_4_of_every_command(self):
+        scene, loose = self.strips(), ("--tolerance", "0.1")
+        for command in [("solve", scene, "--solver", "lbfgs"), ("compare", scene, "--methods", "lbfgs"),
+                        ("study", scene, "--solver", "lbfgs", "--sweep", "cst_stvk.young=1,1.1MPa", "-j", 1),
+                        ("mesh-study", scene, "--solver", "lbfgs", "--levels", 1),
+                        ("sensitivity", scene, "--solver", "lbfgs", "--from-start", "--parameters", "cst_stvk.young"),
+                        ("bench", scene, "--methods", "lbfgs", "--tolerances", "0.1", "--levels", 0, "--repeats", 1)]:
+            run = coapt(*command, *(() if command[0] == "bench" else loose), "-o", self.out / command[0], timeout=300)
+            self.assertEqual(run.returncode, 4, f"{command}: {run.stdout}{run.stderr}")
+            self.assertIn("its stability is in doubt (a saddle", run.stdout, command[0])
+
+    def test_a_valve_that_stands_open_is_no_exit_code_of_any_command(self):
+        scene = self.open_valve()
+        for command in [("solve",), ("intervene", "--edit", RING), ("mesh-study", "--levels", 1)]:
+            run = coapt(command[0], scene, *command[1:], "-o", self.out / command[0], timeout=300)
+            self.assertEqual(run.returncode, 0, f"{command}: {run.stdout}{run.stderr}")
+            self.assertIn(OPEN, run.stdout, command[0])
+
     def test_a_plain_result_has_no_doubts(self):
         scene = self.generate("mitral", "--triangles", 200, "--preset", "closed")
         run = coapt("study", scene, "--sweep", "load_pressure.value=100,120mmHg", "-j", 1, "-o", self.out, timeout=300)

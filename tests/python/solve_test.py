@@ -137,6 +137,27 @@ def test_ctrl_c_ends_a_run_at_once():
     assert time.monotonic() - start < 15
 
 
+def test_ctrl_c_while_sliders_are_made_ends_the_run_with_its_files(tmp_path):
+    coapt.generate_mitral(tmp_path, triangles=10000)
+    page, stop = tmp_path / "out" / "report.html", threading.Event()
+
+    def interrupt():
+        while not page.exists() and not stop.is_set():  # at first without them
+            time.sleep(0.005)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    watcher = threading.Thread(target=interrupt)
+    watcher.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            coapt.solve(tmp_path / "scene.json", folder=tmp_path / "out")
+    finally:
+        stop.set()
+        watcher.join()
+    assert page.read_text().endswith("</html>\n")
+    assert json.loads((tmp_path / "out" / "result.json").read_text())["converged"]
+
+
 def test_other_threads_run_during_a_solve():
     results = []
     threads = [threading.Thread(target=lambda: results.append(slow(0.5))) for _ in range(2)]

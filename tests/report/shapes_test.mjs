@@ -130,7 +130,7 @@ await run("sliders move shape and figures to what a solve of the other scene fin
   const { page, closed } = await opened(place, { viewport: { width: 1280, height: 900 } });
   const group = page.getByRole("group", { name: "What if · first order" }), sliders = group.getByRole("slider");
   assert.equal(await sliders.count(), 8);
-  const names = await group.locator("label").allTextContents(), k = names.indexOf("primary: rest length");
+  const names = await group.locator("label").allTextContents(), k = names.indexOf("primary chords: rest length");
   assert.ok(k >= 0, names.join("; "));
   const before = await picture(page), vtp = readVtp(join(place, "closed.vtp"));
   const tile = name => page.locator(`.tiles [data-figure="${name}"] [data-value]`);

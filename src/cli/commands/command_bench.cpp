@@ -93,7 +93,8 @@ void bench_scene(const BenchArguments& arguments, Session& session) {
   session.document = benchmark_json(found);
   print_summary(found);
   std::printf("written to %s (bench.json, bench.csv, bench.html)\n", found.folder.string().c_str());
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.exit_code = exit_code_of(found.has_converged(),
+                                   {found.shown ? found.shown->standing.doubts : std::vector<std::string>()});
 }
 
 }  // namespace

@@ -72,7 +72,9 @@ void compare(const CompareArguments& arguments, Session& session) {
       "distances in mm to %s, of surfaces\n"
       "written: %s: compare.json, compare.csv, compare.html and a folder for each method\n",
       found.reference().name.c_str(), found.folder.string().c_str());
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  std::vector<std::vector<std::string>> doubts;
+  for (const ComparedMethod& method : found.methods) doubts.push_back(standing(method).doubts);
+  session.exit_code = exit_code_of(found.has_converged(), doubts);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "cli/session.hpp"
 #include "cli/solvers.hpp"
 #include "cli/study_options.hpp"
+#include "results/result_warnings.hpp"
 #include "results/standing.hpp"
 #include "study/intervene.hpp"
 
@@ -49,7 +50,10 @@ void run_command(const InterveneArguments& arguments, Session& session) {
   std::printf(
       "written to %s (intervene.json, intervene.csv, intervene.html and the folders before and after)\n",
       found.folder.string().c_str());
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  std::vector<std::vector<std::string>> doubted;
+  for (const auto* state : {&found.before, &found.after})
+    if (*state) doubted.push_back(doubts((*state)->report));
+  session.exit_code = exit_code_of(found.has_converged(), doubted);
 }
 
 }  // namespace

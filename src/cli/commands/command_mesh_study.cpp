@@ -39,7 +39,9 @@ void study(const MeshStudyArguments& arguments, Session& session) {
   write_mesh_study(folder, found);
   session.document = formats::read_whole(folder / "mesh_study.json");
   std::printf("written to %s (mesh_study.json, mesh_study.csv, closed_*.obj)\n", folder.string().c_str());
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  std::vector<std::vector<std::string>> doubts;
+  for (const MeshLevel& level : found.levels) doubts.push_back(level.doubts);
+  session.exit_code = exit_code_of(found.has_converged(), doubts);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ void study(const SensitivityArguments& arguments, Session& session) {
   write_sensitivity(folder, found);
   session.document = formats::read_whole(folder / "sensitivity.json");
   std::printf("written to %s (sensitivity.json, sensitivity.csv)\n", folder.string().c_str());
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  session.exit_code = exit_code_of(found.has_converged(), {found.doubts});
 }
 
 }  // namespace

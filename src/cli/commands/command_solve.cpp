@@ -22,7 +22,6 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -257,7 +256,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   options.doubts = told_doubts;
   show_progress(session, options);
   FirstOrderOptions sliders;
-  if (arguments.has_sliders) sliders.most_nodes = std::numeric_limits<Eigen::Index>::max();
+  if (arguments.has_sliders) sliders.share = kInfinity;
   if (!arguments.has_no_sliders) options.first_order = first_order_of_runs(all_solvers(), options, sliders);
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
@@ -291,8 +290,8 @@ void add_slider_flags(CLI::App& command, SolveArguments& arguments) {
                        "figures by their first-order response");
   command
       .add_flag("--sliders", arguments.has_sliders,
-                "Sliders of a mesh of more than " + std::to_string(FirstOrderOptions{}.most_nodes) +
-                    " nodes too, where they take a few times as long as the solve")
+                "All eight sliders in report.html, also where they take more than half the time of the "
+                "solve")
       ->excludes(without)
       ->excludes("--no-report")
       ->excludes("--accuracy");

@@ -101,6 +101,12 @@ void print_study(const ParameterStudy& study, const std::filesystem::path& folde
               folder.string().c_str());
 }
 
+std::vector<std::vector<std::string>> doubts_of(const ParameterStudy& study) {
+  std::vector<std::vector<std::string>> doubts;
+  for (const PointResult& result : study.results) doubts.push_back(result.doubts);
+  return doubts;
+}
+
 std::filesystem::path study_folder(const ParameterStudyArguments& arguments, const Scene& first) {
   std::filesystem::path folder =
       arguments.folder.empty() ? result_folder(first) / "study" : std::filesystem::path(arguments.folder);
@@ -166,7 +172,7 @@ void run_study(const ParameterStudyArguments& arguments, Session& session) {
   write_parameter_study(folder, study);
   session.document = parameter_study_json(study);
   print_study(study, folder);
-  session.exit_code = study.has_converged() ? kConverged : kNotConverged;
+  session.exit_code = exit_code_of(study.has_converged(), doubts_of(study));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/timing.hpp"
 #include "formats/json/units.hpp"
 #include "formats/text.hpp"
+#include "results/result_warnings.hpp"
 #include "results/standing.hpp"
 #include "tuning/chord_tuning.hpp"
 
@@ -223,7 +224,8 @@ void run_command(const TuneArguments& arguments, Session& session) {
   session.document = chord_tuning_json(found);
   print_found(found);
   checkpoint.finish(found, arguments.scene);
-  session.exit_code = found.has_converged() ? kConverged : kNotConverged;
+  const Report& result = found.after ? found.after->report : found.before.report;
+  session.exit_code = exit_code_of(found.has_converged(), {doubts(result)});
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ void tune(const TuneRegionsArguments& arguments, Session& session) {
   session.document = formats::read_whole(folder / "region_tuning.json");
   std::printf("written to %s (region_tuning.json, region_tuning.csv, triangle_factors.csv)\n",
               folder.string().c_str());
-  session.exit_code = found.is_reached ? kConverged : kNotConverged;
+  session.exit_code = exit_code_of(found.is_reached, {found.after.doubts});
 }
 
 std::string regions_defect(const std::string& text) {

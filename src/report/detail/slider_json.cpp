@@ -57,6 +57,7 @@ OrderedJson response_json(const ParameterResponse& response, bool is_short) {
   }
   return {{"name", response.name},
           {"unit", response.unit},
+          {"usual", response.usual_change},
           {"range", range},
           {"errors", errors},
           {"figures", figures_json(response)},
@@ -78,7 +79,8 @@ OrderedJson sliders_json(const FirstOrder& first_order) {
   count = std::min(count, std::max<size_t>(1, most_sliders(nodes)));
   OrderedJson parameters = OrderedJson::array();
   for (size_t k = 0; k < count; ++k) parameters.push_back(response_json(first_order.parameters[k], is_short));
-  return {{"candidates", first_order.candidates}, {"parameters", parameters}};
+  return {
+      {"candidates", first_order.candidates}, {"left_out", first_order.left_out}, {"parameters", parameters}};
 }
 
 }  // namespace coapt

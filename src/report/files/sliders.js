@@ -62,11 +62,19 @@ const errorOf = (parameters, values) => values.reduce((sum, value, p) => {
 
 const changeText = (value, unit) => (value > 0 ? "+" : value < 0 ? "−" : "") + figure(Math.abs(value), 3) + (unit === "%" || unit === "°" ? "" : " ") + unit;
 
-function noteText({ parameters, candidates }, values) {
+// Ranges of less than a tenth of the usual change, and parameters whose range nobody looked for.
+function rangesText({ parameters, left_out: leftOut }) {
+  const narrow = parameters.filter(({ range, usual }) => Math.max(...range.map(Math.abs)) < usual / 10).length;
+  return (narrow === 0 ? "" : ` ${narrow === 1 ? "One range is" : narrow + " ranges are"} narrow: contacts, folds, or chords between slack and taut change near by, beyond which another straight line holds.`) +
+      (leftOut === 0 ? "" : ` Ranges were looked for within half the time of the solve: ${leftOut} more wait for coapt solve --sliders.`);
+}
+
+function noteText(sliders, values) {
+  const { parameters, candidates } = sliders;
   const moved = values.filter(value => value !== 0).length, error = figure(errorOf(parameters, values), 2) + " mm";
   if (moved === 0)
     return `The ${parameters.length} of ${candidates} parameters that move the sheet most. At both ends of each range, of one at a time, the equilibrium has the sheet within ` +
-        figure(Math.max(...parameters.flatMap(parameter => parameter.errors)), 2) + " mm of its first-order place; figures lie on straight lines to those there.";
+        figure(Math.max(...parameters.flatMap(parameter => parameter.errors)), 2) + " mm of its first-order place; figures lie on straight lines to those there." + rangesText(sliders);
   if (moved === 1) return "First order: within about " + error + " of a solve. Colours and outlines are those of the result, carried along with the sheet.";
   return "First order of several at once, which nobody has checked: about " + error + " from one. Colours and outlines are carried along.";
 }
@@ -78,6 +86,7 @@ function showFigures(sliders, values) {
     place.dataset.given ??= place.textContent;
     const isChanged = isMoved && sliders.parameters.some(parameter => parameter.figures[name]);
     tile.classList.toggle("moved", isChanged);
+    tile.classList.toggle("still", isMoved && !isChanged);
     let then = sliders.parameters.reduce((sum, parameter, p) => sum + changeOf(parameter, name, values[p], now), now);
     if (now >= 0) then = Math.max(0, then);
     place.textContent = isChanged ? "≈ " + figure(then, 3) : place.dataset.given;

@@ -12,13 +12,14 @@
 namespace coapt {
 namespace {
 
-constexpr int kFinest = 1024, kCoarsest = 128;  // cells over the extent of the annulus
-constexpr int kPieces = 400;                    // of the shorter line, whose middles are compared
-constexpr int kMostPieces = 100 * kPieces;      // of one stretch of a line that is far longer than the other
+constexpr int kMostRadius = 1024;           // of the closing, in cells
+constexpr int kCoarsest = 128;              // cells over the extent of the annulus
+constexpr int kPieces = 400;                // of the shorter line, whose middles are compared
+constexpr int kMostPieces = 100 * kPieces;  // of one stretch of a line that is far longer than the other
 
 // Eight cells to an edge, four to the contact distance, within bounds that keep the view cheap and useful.
-double cell_size(double extent, double mean_edge, double contact_distance) {
-  return std::clamp(std::min(mean_edge / 8, contact_distance / 4), extent / kFinest, extent / kCoarsest);
+double cell_size(double extent, double mean_edge, double contact_distance, int finest) {
+  return std::clamp(std::min(mean_edge / 8, contact_distance / 4), extent / finest, extent / kCoarsest);
 }
 
 // Nodes near which, seen from above, a vertex is in contact: a bulge may hide where contact begins.
@@ -91,12 +92,12 @@ DistanceFigures figures(const std::vector<Seam>& from, const std::vector<Seam>& 
 }  // namespace
 
 SeenSurface seen_surface(const Points& x, const Triangles& triangles, const Points& annulus,
-                         const ViewFrame& frame, double contact_distance) {
+                         const ViewFrame& frame, double contact_distance, int finest) {
   const Points outline = in_frame(annulus, frame);
   const double extent = (outline.rowwise().maxCoeff() - outline.rowwise().minCoeff()).head<2>().maxCoeff();
-  const double cell = cell_size(extent, mean_edge_length(x, triangles), contact_distance);
+  const double cell = cell_size(extent, mean_edge_length(x, triangles), contact_distance, finest);
   SeenSurface seen;
-  seen.radius = bounded_int(std::round(contact_distance / 2 / cell), 1, kFinest);
+  seen.radius = bounded_int(std::round(contact_distance / 2 / cell), 1, kMostRadius);
   seen.view = top_view(x, triangles, annulus, frame, cell, seen.radius + 1);
   seen.closed = closed_view(seen.view, seen.radius);
   return seen;

@@ -19,10 +19,10 @@ struct SeenSurface {
   int radius = 0;  // of the closing, in cells
 };
 
-// x: 3 x n; annulus: its points in order, which the view covers. Throws InputError for fewer than three.
-// Pre: contact_distance > 0 [length].
+// x: 3 x n; annulus: its points in order, which the view covers; finest: cells over its extent, at most.
+// Throws InputError for fewer than three. Pre: contact_distance > 0 [length].
 SeenSurface seen_surface(const Points& x, const Triangles& triangles, const Points& annulus,
-                         const ViewFrame& frame, double contact_distance);
+                         const ViewFrame& frame, double contact_distance, int finest = 1024);
 
 // Its seams (mesh/seams.hpp) near which, seen from above, a vertex is in contact, by vertex of x.
 std::vector<Seam> coaptation_line(const SeenSurface& seen, const Points& x, const Triangles& triangles,
