@@ -147,7 +147,7 @@ class DampedPath {
     if (taken_shares_ == 0) return false;
     if (drag_ < kFollows) return true;
     const auto is_easy = is_convex(kConvex, make_multifrontal_factorisation);
-    if (is_easy) monitor_.count_factorisation();
+    if (is_easy) monitor_.count_certificate(1);
     return is_easy.value_or(false);
   }
 

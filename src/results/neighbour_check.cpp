@@ -33,11 +33,10 @@ NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
 std::string neighbour_warning(const NeighbourCheck& check) {
   if (!check.is_suspected) return "";
   if (check.unstable_steps > 0)
-    return "This shape may be one of several: the damped path to it is unstable in " +
+    return "The shape may be one of several: its damped path is unstable in " +
            std::to_string(check.unstable_steps) + (check.unstable_steps == 1 ? " step" : " steps") +
-           " under the full load, where small changes may lead to other equilibria, with other figures. Look "
-           "for them with --branches 5.";
-  return "This shape may be one of several: the solve took " + std::to_string(check.iterates) +
+           " under the full load. Look for others with --branches 5.";
+  return "The shape may be one of several: the solve took " + std::to_string(check.iterates) +
          " iterations, and most valves that take so many have other equilibria near by, with other figures. "
          "Look for them with --branches 5.";
 }
