@@ -7,7 +7,6 @@
 #include <cmath>
 #include <exception>
 #include <memory>
-#include <optional>
 
 namespace coapt {
 namespace {
@@ -16,8 +15,7 @@ constexpr double kTravel = 0.2;  // of the extent, by which its share of the loa
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
 constexpr double kFollows = 1e-3;        // drag of the dampers on a shape that all but follows its loads
-constexpr double kConvex = 0.1;    // of the damping: with so little the shape of an easy step is a minimum
-constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, after such a step
+constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, while it does
 constexpr int kMostShares = 8;     // in one step
 constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;  // of the damping, from one step to the next at the full problem
@@ -111,44 +109,28 @@ class DampedPath {
 
   // Counts the step if its shape is unstable without dampers: the Hessian has a negative eigenvalue.
   void ask_for_stability() {
-    const auto is_stable = is_convex(kHold, problem_.stability.factorisation);
-    if (!is_stable) return;
-    monitor_.count_certificate(1);
-    result_.unstable_steps = std::max(result_.unstable_steps, 0) + (*is_stable ? 0 : 1);
-  }
-
-  // Whether the Hessian at the shape of the last step is positive definite with a share of its damping;
-  // nothing where it cannot be evaluated.
-  std::optional<bool> is_convex(double share, const FactorisationFactory& make) {
     Objective& objective = problem_.objective;
     Vector g;
     SparseMatrix hessian;
-    objective.damp(Vector::Constant(result_.q.size(), share * damping_), result_.q);
+    objective.damp(Vector::Constant(result_.q.size(), kHold * damping_), result_.q);
     const double energy = monitor_.hessian(result_.q, g, hessian, Projection::None);
     objective.damp({}, {});
-    if (!std::isfinite(energy)) return std::nullopt;
+    if (!std::isfinite(energy)) return;
     PhaseTimer timer(monitor_.phases(), "certificate");
-    const auto factor = make();
+    const auto factor = problem_.stability.factorisation();
     factor->analyse(hessian);
-    return factor->factorise(hessian);
+    monitor_.count_certificate(1);
+    result_.unstable_steps = std::max(result_.unstable_steps, 0);
+    if (!factor->factorise(hessian)) ++result_.unstable_steps;
   }
 
-  // One share of the loads a step as long as the shape moves through what is not convex; more after an easy
-  // step. What decides is the shape, not how a method came to it, so that all take the same steps.
+  // One share of the loads a step as long as the shape moves; more where it has all but come to rest under
+  // those that it has, so that the dampers hardly pull.
   void raise_load() {
     if (load() == 1) return;
-    shares_ = std::clamp(was_easy() ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
+    const bool follows = taken_shares_ > 0 && drag_ < kFollows;
+    shares_ = std::clamp(follows ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
     taken_shares_ += shares_;
-  }
-
-  // Whether the shape of the last step all but rests under its loads, or has a convex neighbourhood almost
-  // without dampers.
-  bool was_easy() {
-    if (taken_shares_ == 0) return false;
-    if (drag_ < kFollows) return true;
-    const auto is_easy = is_convex(kConvex, make_multifrontal_factorisation);
-    if (is_easy) monitor_.count_certificate(1);
-    return is_easy.value_or(false);
   }
 
   // What is pressed together or overstretched gives way in the next steps, up to a limit.

@@ -50,7 +50,7 @@ TEST(DampedPath, LeadsToOneShapeByEveryMethodAndInEveryFrame) {
   const DampedValve valve;
   const Equilibrium given = valve.solve({}, "newton");
   ASSERT_EQ(given.result.status, Status::Converged) << given.result.message;
-  EXPECT_LT(given.result.damped_steps, kSteps) << "steps grow where the shape is a minimum almost by itself";
+  EXPECT_GT(given.result.damped_steps, kSteps) << "it goes on at the full problem until it is at rest";
   const std::vector<int> held = valve.scene.held_nodes(given.x);
   ASSERT_GT(held.size(), 100u);
   const Frame renumbered = renumbered_frame(static_cast<int>(valve.scene.X.cols()));
