@@ -7,9 +7,11 @@
 namespace coapt {
 namespace {
 
-constexpr double kLinear = 1e-2;    // residual of the linear system of a correction, relative
-constexpr double kClosingIn = 0.5;  // of the correction before by the same tangent; more leads nowhere
-constexpr int kMostSteps = 12;      // corrections of one shape
+constexpr double kLinear = 1e-2;     // residual of the linear system of a correction, relative
+constexpr double kClosingIn = 0.5;   // of the correction before by the same tangent; more leads nowhere
+constexpr double kLeastRate = 0.25;  // that is believed: what is soft comes in late, and creeps
+constexpr int kMostSteps = 12;       // corrections of one shape
+constexpr int kMostTangents = 2;     // of one shape
 
 double greatest(const Points& motion, const std::vector<int>& nodes) {
   double most = 0;
@@ -60,8 +62,8 @@ double TrackedEquilibrium::step_by_solved_factor(const Vector& numbers, const Po
 
 // Successive corrections by one tangent tell whether they close in: each is below its predecessor by the
 // same factor, or worse (the natural monotonicity test of Deuflhard 2011, Newton Methods for Nonlinear
-// Problems, section 2.1). Where they do not, or the tangent has other signs than that of the solved
-// shape, the start is taken for too far.
+// Problems, section 2.1). Where they do not the tangent is taken anew, once; where it has other signs than
+// that of the solved shape, the start is taken for too far.
 CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points& start,
                                              const std::vector<int>& nodes, double until, double most,
                                              const std::function<void(const CorrectedShape&)>& look) {
@@ -79,39 +81,49 @@ CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points
 void TrackedEquilibrium::close_in(CorrectedShape& found, const std::vector<int>& nodes, double until,
                                   double most) {
   const Points start = found.x;
-  Vector q = objective_.unknowns(start), g, step;
+  for (int tangent = 0; tangent < kMostTangents && !found.is_found && found.distance <= most; ++tangent)
+    if (!close_in_by_one_tangent(found, start, nodes, until, most)) return;
+}
+
+// With the tangent at found.x. Returns whether another one may lead on: they were the ratios of corrections
+// that did not.
+bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Points& start,
+                                                 const std::vector<int>& nodes, double until, double most) {
+  Vector q = objective_.unknowns(found.x), g, step;
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
-  if (!near_.assemble(objective_, q, g)) return;
+  if (!near_.assemble(objective_, q, g)) return false;
   const int negative = system_.negative_modes();
   const bool is_definite = near_.factorise_definite();
   if (!is_definite &&
       (negative == 0 || !near_.factorise(objective_, q) || near_.negative_modes() != negative))
-    return;
+    return false;
   double before = kInfinity;
   bool is_exact = !is_definite;  // else by the factor alone, without the skew part of the tangent
-  while (found.steps < kMostSteps && found.distance <= most) {
-    if (found.steps > 0 && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return;
+  for (bool is_first = true; found.steps < kMostSteps && found.distance <= most; is_first = false) {
+    if (!is_first && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return false;
     ++found.steps;
     if (!is_exact)
       near_.apply_factor(-g, step);
     else if (!(near_.solve(-g, step, kLinear) < 2 * kLinear))
-      return;
+      return false;
     const Points x = objective_.positions(q + step);
     const double length = greatest(x - found.x, nodes), ratio = length / before;
-    if (!std::isfinite(length)) return;
+    if (!std::isfinite(length)) return false;
     if (!(ratio <= kClosingIn || length <= until)) {
-      if (is_exact || !objective_.has_skew_tangent()) return;
+      if (is_exact || !objective_.has_skew_tangent()) return true;
       is_exact = true;
       continue;
     }
     q += step;
     found.x = x;
     found.distance = greatest(x - start, nodes);
-    found.left = std::isfinite(before) ? length * std::min(ratio / (1 - ratio), 1.0) : length;
+    const double rate = std::max(ratio, kLeastRate);
+    found.left = std::isfinite(before) ? length * std::min(rate / (1 - rate), 1.0) : length;
     found.is_found = found.left <= until;
-    if (found.is_found) return;
+    if (found.is_found) return false;
     before = length;
   }
+  return false;
 }
 
 }  // namespace coapt

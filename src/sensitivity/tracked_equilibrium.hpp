@@ -215,6 +215,8 @@ class TrackedEquilibrium {
   WarmSolve move_to(const Place& from, const Points& predicted);
   bool move_quickly(const Points& predicted, WarmSolve& report);
   void close_in(CorrectedShape& found, const std::vector<int>& nodes, double until, double most);
+  bool close_in_by_one_tangent(CorrectedShape& found, const Points& start, const std::vector<int>& nodes,
+                               double until, double most);
   std::optional<LostBranch> check_branch(const Place& from, const WarmSolve& report);
   void check_anchor_in_time(WarmSolve& report);
   Points predicted_change(const Place& from, const Vector& to);

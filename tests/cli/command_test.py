@@ -127,14 +127,11 @@ class CommandTest(CommandCase):
         self.assertEqual(branches["equilibria"][0]["metrics"], result["metrics"])
         self.assertEqual("(other equilibria: " in run.stdout, len(branches["equilibria"]) > 1)
         # A damped path is judged by its steps, a solve at once by its iterations.
-        unstable = result["neighbours"]["unstable_steps"]
-        self.assertLess(unstable, result["damped_steps"])
-        self.assertEqual(result["neighbours"], {"judged": True, "suspected": unstable > 0, "iterates": 0,
-                                                "unstable_steps": unstable})
+        self.assertEqual(result["neighbours"], {"judged": True, "suspected": False, "iterates": 0, "unstable_steps": 0})
         self.assertEqual(coapt("solve", scene, "--no-report", "--damped-steps", 0).returncode, 0)
         direct = self.result()
         self.assertEqual(direct["damped_steps"], 0)
-        self.assertGreater(result["damped_steps"], 4)  # at most eight of the scene's twenty in one
+        self.assertGreater(result["damped_steps"], 20)
         self.assertEqual(direct["neighbours"], {"judged": True, "suspected": False, "iterates": direct["iterations"],
                                                 "unstable_steps": 0})
         nodes = result["undetermined_nodes"]
@@ -291,7 +288,7 @@ class CommandTest(CommandCase):
             self.assertLessEqual(FILES, written)
 
     def test_a_signal_while_sliders_are_made_keeps_result_and_page(self):
-        scene = self.generate("mitral", "--triangles", 10000, "--preset", "closed")
+        scene = self.generate("mitral", "--triangles", 2500, "--preset", "closed")
         page = self.folder / "result" / "report.html"
         for number in [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]:
             shutil.rmtree(self.folder / "result", ignore_errors=True)
@@ -309,11 +306,11 @@ class CommandTest(CommandCase):
 
     def test_SIGTERM_during_a_solve_by_several_threads_never_crashes(self):
         # METIS catches it for the whole process while it orders: 10 of 25 such runs once ended in a segmentation fault.
-        scene = self.generate("mitral", "--triangles", 10000)
-        for k in range(8):
+        scene = self.generate("mitral", "--triangles", 3000)
+        for k in range(6):
             shutil.rmtree(self.folder / "result", ignore_errors=True)
             process = self.start(scene, "--tolerance", "1e-14", "--threads", "2")
-            time.sleep(0.15 * k)
+            time.sleep(0.1 * k)
             process.send_signal(signal.SIGTERM)
             output = process.communicate(timeout=100)
             self.assertEqual(process.returncode, 1, output)

@@ -138,7 +138,7 @@ def test_ctrl_c_ends_a_run_at_once():
 
 
 def test_ctrl_c_while_sliders_are_made_ends_the_run_with_its_files(tmp_path):
-    coapt.generate_mitral(tmp_path, triangles=10000)
+    coapt.generate_mitral(tmp_path, triangles=2500)
     page, stop = tmp_path / "out" / "report.html", threading.Event()
 
     def interrupt():

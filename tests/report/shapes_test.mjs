@@ -8,8 +8,7 @@ import { assertFitsEveryScreen, browser, finish, finished, near, opened, pick, p
 import { difference } from "./pictures.mjs";
 import { readVtp } from "./vtp.mjs";
 
-// Of a valve without doubts, which would stand above.
-const folder = solved("mitral", ["mitral", "--triangles", "450"]), scene = join(scratch, "mitral", "scene.json");
+const folder = solved("mitral", ["mitral", "--triangles", "400"]), scene = join(scratch, "mitral", "scene.json");
 const text = locator => locator.evaluate(element => element.textContent);
 const chosen = page => page.getByLabel("Colour by").evaluate(select => select.selectedOptions[0].textContent);
 const settled = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));

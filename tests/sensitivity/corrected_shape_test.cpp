@@ -39,9 +39,8 @@ TEST(CorrectedShape, IsThatOfASolve) {
       const WarmSolve solved = tracked.solve();
       ASSERT_EQ(solved.status, Status::Converged) << solved.message;
       const Points x = tracked.positions();
-      // What is left is told by the last corrections; along soft directions more of them would follow.
-      EXPECT_LT(greatest(shape.x - x, held), 20 * kLeft) << tracked.parameter(p).name() << " " << size;
-      EXPECT_NEAR(shape.distance, greatest(x - predicted, held), 20 * kLeft);
+      EXPECT_LT(greatest(shape.x - x, held), 10 * kLeft) << tracked.parameter(p).name() << " " << size;
+      EXPECT_NEAR(shape.distance, greatest(x - predicted, held), 10 * kLeft);
       tracked.resume_at(value, q);
       ASSERT_EQ(tracked.solve().status, Status::Converged);
     }
