@@ -185,7 +185,7 @@ class DebianPackages(unittest.TestCase):
         flags = run("pkg-config", "--cflags", "--libs", "coapt-shared", env=environment).split()
         program = pathlib.Path(self.folder.name) / "consumer_shared"
         run(COMPILER, "-std=c++20", "-O1", CONSUMER, "-o", program, *flags)
-        library, = self.root.glob("usr/lib/*/libcoapt.so")
+        library, = self.root.glob("usr/lib/**/libcoapt.so")
         owners = [package for package, file in self.files.items() if "/libcoapt.so.0" in run("dpkg-deb", "-c", file)]
         self.assertEqual(len(owners), 1)
         self.assertRegex(owners[0], r"^libcoapt\d+\.\d+$")
