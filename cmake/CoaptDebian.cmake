@@ -46,6 +46,16 @@ endif()
 if("METIS" IN_LIST coapt_finds_core)
   list(APPEND coapt_core_depends libmetis-dev)
 endif()
+if(COAPT_SHARED_LIBRARY)
+  set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  list(APPEND coapt_core_depends "libcoapt${soversion} (= ${PROJECT_VERSION})")
+  coapt_debian_package(shared libcoapt${soversion} libs "The library as programs load it, without adapters"
+                       LICENCE "BSD-3-Clause" LINKED NANOFLANN JSON PUGIXML ZLIB REPORT UPLOT SPECTRA METIS)
+  set(CPACK_DEBIAN_SHARED_PACKAGE_SHLIBDEPS ON)
+  # CPack adds the scripts that call ldconfig.
+  file(WRITE ${PROJECT_BINARY_DIR}/debian/shlibs "libcoapt ${soversion} libcoapt${soversion} (>= ${PROJECT_VERSION})\n")
+  set(CPACK_DEBIAN_SHARED_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/shlibs)
+endif()
 coapt_debian_package(core libcoapt-dev libdevel "The library with its headers, for CMake and pkg-config"
                      LICENCE "BSD-3-Clause" DEPENDS ${coapt_core_depends}
                      LINKED NANOFLANN JSON PUGIXML ZLIB REPORT UPLOT SPECTRA METIS)

@@ -42,8 +42,13 @@ def depends(file: pathlib.Path) -> str:
 
 def install(root: pathlib.Path, *files: pathlib.Path) -> None:
     as_user = [] if IS_ROOT else ["--force-not-root"]
-    environment = os.environ | {"PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
-    run("dpkg", f"--root={root}", "--log=/dev/null", *as_user, "--install", *files, env=environment)
+    # The root has no shell, and the machine's cache of libraries is not ours: packages' scripts call an ldconfig that does nothing.
+    scripts = root.parent / "scripts"
+    scripts.mkdir(exist_ok=True)
+    (scripts / "ldconfig").write_text(f"#!/bin/sh\necho called >> {scripts}/log\n")
+    (scripts / "ldconfig").chmod(0o755)
+    environment = os.environ | {"PATH": f"{scripts}:{os.environ['PATH']}:/usr/sbin:/sbin"}
+    run("dpkg", f"--root={root}", "--log=/dev/null", "--force-script-chrootless", *as_user, "--install", *files, env=environment)
 
 
 class DebianPackages(unittest.TestCase):
@@ -74,7 +79,7 @@ class DebianPackages(unittest.TestCase):
             copyright_text = (self.root / "usr/share/doc" / package / "copyright").read_text()
             licence = re.search(r"Licence of this package: (.*)\.", copyright_text)[1]
             self.assertIn("Redistribution and use in source and binary forms", copyright_text)
-            if package == "libcoapt-dev":
+            if package == "libcoapt-dev" or re.fullmatch(r"libcoapt[\d.]+", package):
                 self.assertEqual(licence, "BSD-3-Clause")
                 self.assertIsNone(re.search("ceres|cgal|nlopt|suitesparse|cholmod", needs), needs)
             elif package == "coapt":
@@ -170,10 +175,23 @@ class DebianPackages(unittest.TestCase):
         program = pathlib.Path(self.folder.name) / "consumer"
         run(COMPILER, "-std=c++20", "-O1", CONSUMER, "-o", program, *flags)
         self.assertIn("theory", run(program))
+        self.serves_the_shared_library(environment)
         for package in self.files:
             if match := re.fullmatch(r"lib(coapt-\w+)-dev", package):
                 libraries = run("pkg-config", "--libs", match[1], env=environment).split()
                 self.assertLess(libraries.index(f"-l{match[1].replace('-', '_')}"), libraries.index("-lcoapt_optim"))
+
+    def serves_the_shared_library(self, environment: dict):
+        flags = run("pkg-config", "--cflags", "--libs", "coapt-shared", env=environment).split()
+        program = pathlib.Path(self.folder.name) / "consumer_shared"
+        run(COMPILER, "-std=c++20", "-O1", CONSUMER, "-o", program, *flags)
+        library, = self.root.glob("usr/lib/**/libcoapt.so")
+        owners = [package for package, file in self.files.items() if "/libcoapt.so.0" in run("dpkg-deb", "-c", file)]
+        self.assertEqual(len(owners), 1)
+        self.assertRegex(owners[0], r"^libcoapt\d+\.\d+$")
+        self.assertIn("theory", run(program, env=environment | {"LD_LIBRARY_PATH": str(library.parent)}))
+        self.assert_libraries_come_from_dependencies(owners[0], str(library.relative_to(self.root)))
+        self.assertTrue((self.root.parent / "scripts/log").exists(), "no script has called ldconfig")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 import portable_build
-from portable_build import BUILD, CPACK, IS_ROOT, LIMIT, NEWEST_GLIBC, NOT_ROOT, SOURCE
+from portable_build import BUILD, CPACK, IS_ROOT, NEWEST_GLIBC, NOT_ROOT, SOURCE, TARBALL_LIMIT
 
 import clean_root
 import portability
@@ -47,7 +47,7 @@ class Tarball(unittest.TestCase):
 
     def test_is_small_and_named_after_its_system(self):
         self.assertRegex(self.file.name, r"^coapt-\d+\.\d+\.\d+-linux-\w+\.tar\.gz$")
-        self.assertLess(self.file.stat().st_size, LIMIT)
+        self.assertLess(self.file.stat().st_size, TARBALL_LIMIT)
 
     def test_no_file_names_a_place_of_the_build(self):
         place = self.folder / "looked at"
@@ -91,6 +91,13 @@ class Tarball(unittest.TestCase):
         start("cmake", "--build", "/by-cmake")
         self.assertIn("theory", start("/by-cmake/consumer"))
         start("/by-cmake/closed", "/disc/scene.json")
+        self.assertIn("theory", start("/by-cmake/consumer_shared"))
+        start("/by-cmake/closed_shared", "/disc/scene.json")
+        shared = root / "moved/coapt/lib/libcoapt.so"
+        self.assertNotRegex(" ".join(portability.needed(shared)), "pugixml|libz")
+        flags = start("pkg-config", "--cflags", "--libs", "coapt-shared").split()
+        start("c++", "-std=c++20", "-O1", "/consumer/closed.cpp", "-o", "/by-shared", *flags, "-Wl,-rpath,/moved/coapt/lib")
+        start("/by-shared", "/disc/scene.json")
         flags = start("pkg-config", "--cflags", "--libs", "coapt-scene").split()
         start("c++", "-std=c++20", "-O1", "/consumer/closed.cpp", "-o", "/by-pkg-config", *flags)
         start("/by-pkg-config", "/disc/scene.json")
