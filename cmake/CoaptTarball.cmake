@@ -1,4 +1,4 @@
-# A portable build as one archive that works wherever it is unpacked: `cpack -G TGZ --config BUILD/CPackConfig.cmake`.
+# A portable build as one archive that works wherever it is unpacked: `cpack -G TXZ --config BUILD/CPackConfig.cmake`.
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coapt COMPONENT core)
 install(DIRECTORY ${COAPT_NOTICES} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/coapt COMPONENT core)
 
@@ -6,7 +6,7 @@ string(TOLOWER ${CMAKE_SYSTEM_NAME} coapt_system)
 set(CPACK_PACKAGE_NAME coapt)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_FILE_NAME coapt-${PROJECT_VERSION}-${coapt_system}-${CMAKE_SYSTEM_PROCESSOR})
-set(CPACK_GENERATOR TGZ)
+set(CPACK_GENERATOR TXZ)
 set(CPACK_COMPONENTS_ALL core command)
 if(COAPT_SHARED_LIBRARY)
   list(APPEND CPACK_COMPONENTS_ALL shared)

@@ -11,8 +11,7 @@ sys.path[:0] = [str(SOURCE / "tests/package"), str(SOURCE / "bindings/python")]
 IS_ROOT = os.geteuid() == 0
 NOT_ROOT = "a root that holds nothing else: only root can make it and chroot into it"
 NEWEST_GLIBC = "2.35"  # that of Ubuntu 22.04
-LIMIT = 15e6  # bytes of the wheel
-TARBALL_LIMIT = 20e6  # it has the library twice, as archives and shared, and the command
+LIMIT = 15e6  # bytes
 
 
 def assert_closed(test, result: pathlib.Path) -> None:

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 import portable_build
-from portable_build import BUILD, CPACK, IS_ROOT, NEWEST_GLIBC, NOT_ROOT, SOURCE, TARBALL_LIMIT
+from portable_build import BUILD, CPACK, IS_ROOT, LIMIT, NEWEST_GLIBC, NOT_ROOT, SOURCE
 
 import clean_root
 import portability
@@ -28,8 +28,8 @@ class Tarball(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory(prefix="coapt-tarball-")
         cls.folder = pathlib.Path(cls.temporary.name)
-        clean_root.run(CPACK, "-G", "TGZ", "--config", BUILD / "CPackConfig.cmake", "-B", cls.folder / "packages")
-        cls.file, = (cls.folder / "packages").glob("*.tar.gz")
+        clean_root.run(CPACK, "-G", "TXZ", "--config", BUILD / "CPackConfig.cmake", "-B", cls.folder / "packages")
+        cls.file, = (cls.folder / "packages").glob("*.tar.xz")
 
     @classmethod
     def tearDownClass(cls):
@@ -41,13 +41,13 @@ class Tarball(unittest.TestCase):
         with tarfile.open(self.file) as tarball:
             tarball.extractall(first)
         tree, = first.iterdir()
-        self.assertEqual(tree.name + ".tar.gz", self.file.name)
+        self.assertEqual(tree.name + ".tar.xz", self.file.name)
         place.parent.mkdir(parents=True, exist_ok=True)
         tree.rename(place)
 
     def test_is_small_and_named_after_its_system(self):
-        self.assertRegex(self.file.name, r"^coapt-\d+\.\d+\.\d+-linux-\w+\.tar\.gz$")
-        self.assertLess(self.file.stat().st_size, TARBALL_LIMIT)
+        self.assertRegex(self.file.name, r"^coapt-\d+\.\d+\.\d+-linux-\w+\.tar\.xz$")
+        self.assertLess(self.file.stat().st_size, LIMIT)
 
     def test_no_file_names_a_place_of_the_build(self):
         place = self.folder / "looked at"
