@@ -85,8 +85,8 @@ void TrackedEquilibrium::close_in(CorrectedShape& found, const std::vector<int>&
     if (!close_in_by_one_tangent(found, start, nodes, until, most)) return;
 }
 
-// With the tangent at found.x. Returns whether another one may lead on: they were the ratios of corrections
-// that did not.
+// With the tangent at found.x. Returns whether another one may lead on: this one's corrections did not shrink
+// fast enough.
 bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Points& start,
                                                  const std::vector<int>& nodes, double until, double most) {
   Vector q = objective_.unknowns(found.x), g, step;

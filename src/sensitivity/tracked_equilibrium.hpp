@@ -89,7 +89,7 @@ struct CorrectedShape {
   Points x;               // as far as they went
   double distance = 0;    // from where they began, greatest of the nodes that count [length]
   double left = 0;        // estimate of the distance from the equilibrium, likewise
-  int steps = 0;          // each one evaluation of the forces and one linear system, all by one tangent
+  int steps = 0;          // each one evaluation of the forces and one linear system
 };
 
 struct Derivatives {
@@ -154,12 +154,12 @@ class TrackedEquilibrium {
   Points response(const Vector& change, double tolerance = kExactResponse);
 
   // The shape of other numbers, from a start near it, without a solve: Newton steps with the tangent of the
-  // start, as long as they close in on something. They end once the last one and its predecessor say that
-  // less than `until` is left, or once the shape is `most` from the start. Not found: also where that tangent
-  // has another number of negative eigenvalues than that of the solved shape. Lengths are of `nodes`. start:
-  // 3 x node_count, the prescribed nodes as they are now: they go where the numbers want them. Neither shape
-  // nor numbers of this object change. look: called where the shape was found, while the terms have the
-  // numbers. Throws InputError as set() does.
+  // start as long as they close in on something, and with one more where they do not. They end once the last
+  // one and its predecessor say that less than `until` is left, or once the shape is `most` from the start.
+  // Not found: also where a tangent has another number of negative eigenvalues than that of the solved shape.
+  // Lengths are of `nodes`. start: 3 x node_count, the prescribed nodes as they are now: they go where the
+  // numbers want them. Neither shape nor numbers of this object change. look: called where the shape was
+  // found, while the terms have the numbers. Throws InputError as set() does.
   CorrectedShape corrected(const Vector& numbers, const Points& start, const std::vector<int>& nodes,
                            double until, double most = kInfinity,
                            const std::function<void(const CorrectedShape&)>& look = {});
