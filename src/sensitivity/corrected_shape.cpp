@@ -10,6 +10,7 @@ namespace {
 constexpr double kLinear = 1e-2;     // residual of the linear system of a correction, relative
 constexpr double kClosingIn = 0.5;   // of the correction before by the same tangent; more leads nowhere
 constexpr double kLeastRate = 0.25;  // that is believed: what is soft comes in late, and creeps
+constexpr double kNothing = 0.01;    // of what may be left: rounding, which need not shrink
 constexpr int kMostSteps = 12;       // corrections of one shape
 constexpr int kMostTangents = 2;     // of one shape
 
@@ -62,8 +63,9 @@ double TrackedEquilibrium::step_by_solved_factor(const Vector& numbers, const Po
 
 // Successive corrections by one tangent tell whether they close in: each is below its predecessor by the
 // same factor, or worse (the natural monotonicity test of Deuflhard 2011, Newton Methods for Nonlinear
-// Problems, section 2.1). Where they do not the tangent is taken anew, once; where it has other signs than
-// that of the solved shape, the start is taken for too far.
+// Problems, section 2.1). A long first one hides what is soft and creeps, so that two have to say it. Where
+// they do not the tangent is taken anew, once; where it has other signs than that of the solved shape, the
+// start is taken for too far.
 CorrectedShape TrackedEquilibrium::corrected(const Vector& numbers, const Points& start,
                                              const std::vector<int>& nodes, double until, double most,
                                              const std::function<void(const CorrectedShape&)>& look) {
@@ -98,6 +100,7 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
       (negative == 0 || !near_.factorise(objective_, q) || near_.negative_modes() != negative))
     return false;
   double before = kInfinity;
+  bool was_near = false;
   bool is_exact = !is_definite;  // else by the factor alone, without the skew part of the tangent
   for (bool is_first = true; found.steps < kMostSteps && found.distance <= most; is_first = false) {
     if (!is_first && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return false;
@@ -109,9 +112,11 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
     const Points x = objective_.positions(q + step);
     const double length = greatest(x - found.x, nodes), ratio = length / before;
     if (!std::isfinite(length)) return false;
-    if (!(ratio <= kClosingIn || length <= until)) {
+    if (!(ratio <= kClosingIn || length <= kNothing * until)) {
       if (is_exact || !objective_.has_skew_tangent()) return true;
-      is_exact = true;
+      is_exact = true;  // what the skew part moves has not come in yet: counted anew
+      before = kInfinity;
+      was_near = false;
       continue;
     }
     q += step;
@@ -119,8 +124,10 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
     found.distance = greatest(x - start, nodes);
     const double rate = std::max(ratio, kLeastRate);
     found.left = std::isfinite(before) ? length * std::min(rate / (1 - rate), 1.0) : length;
-    found.is_found = found.left <= until;
+    const bool is_near = found.left <= until;
+    found.is_found = is_near && was_near;
     if (found.is_found) return false;
+    was_near = is_near;
     before = length;
   }
   return false;

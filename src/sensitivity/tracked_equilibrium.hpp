@@ -154,8 +154,9 @@ class TrackedEquilibrium {
   Points response(const Vector& change, double tolerance = kExactResponse);
 
   // The shape of other numbers, from a start near it, without a solve: Newton steps with the tangent of the
-  // start as long as they close in on something, and with one more where they do not. They end once the last
-  // one and its predecessor say that less than `until` is left, or once the shape is `most` from the start.
+  // start as long as they close in on something, and with one more where they do not. They end once two in
+  // turn say, each with its predecessor, that less than `until` is left, or once the shape is `most` from
+  // the start.
   // Not found: also where a tangent has another number of negative eigenvalues than that of the solved shape.
   // Lengths are of `nodes`. start: 3 x node_count, the prescribed nodes as they are now: they go where the
   // numbers want them. Neither shape nor numbers of this object change. look: called where the shape was

@@ -92,5 +92,29 @@ TEST(CorrectedShape, IsNotFoundBeyondASnap) {
   }
 }
 
+// The first correction brings a stiff node home from far off, and the second is short beside it, whether the
+// apex closes in or creeps towards its snap.
+TEST(CorrectedShape, IsNotFoundByALongFirstStepBesideWhatCreeps) {
+  constexpr double kLeft = 0.01;
+  int found = 0, lost = 0;
+  for (const double span : {1.001, 1.004, 1.006, 1.007, 1.0075, 1.008, 1.0085, 1.009, 1.0095, 1.01}) {
+    Truss truss(0.0015);
+    TrackedEquilibrium& tracked = truss.equilibrium;
+    ASSERT_EQ(tracked.solve().status, Status::Converged);
+    const Vector value = Vector::Constant(1, span);
+    Points start = tracked.positions() + tracked.response(value - tracked.value());
+    start(0, 3) += 0.1;
+    const CorrectedShape shape = tracked.corrected(value, start, {2, 3}, kLeft, 0.3);
+    tracked.set(value);
+    ASSERT_EQ(tracked.solve().status, Status::Converged);
+    const bool is_near = greatest(tracked.positions() - start, {2}) < 0.1;
+    (is_near ? found : lost) += 1;
+    const double off = greatest(tracked.positions() - shape.x, {2, 3});
+    EXPECT_TRUE(!shape.is_found || off < 2 * kLeft) << span << ": off by " << off;
+  }
+  EXPECT_GE(found, 2);
+  EXPECT_GE(lost, 2);
+}
+
 }  // namespace
 }  // namespace coapt

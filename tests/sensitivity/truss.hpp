@@ -9,7 +9,8 @@
 
 namespace coapt {
 
-// An apex between two supports, on springs that resist compression, under a dead load: von Mises' truss.
+// An apex between two supports, on springs that resist compression, under a dead load: von Mises' truss. Node
+// 3 hangs by a spring of its own on a support, and slides along x.
 struct Truss {
   explicit Truss(double load, TrackingOptions options = {})
       : objective(positions(), fixed(), terms(load)),
@@ -30,24 +31,26 @@ struct Truss {
     return options;
   }
   static FixedMask fixed() {
-    FixedMask mask = fixed_nodes(3, {0, 1});
-    mask(1, 2) = true;  // or the compressed springs would swing sideways
+    FixedMask mask = fixed_nodes(4, {0, 1});
+    mask(1, 2) = mask(1, 3) = mask(2, 3) = true;  // or the compressed springs would swing sideways
     return mask;
   }
   static Points positions() {
-    Points x(3, 3);
-    x << -1, 1, 0, 0, 0, 0, 0, 0, 0.2;
+    Points x(3, 4);
+    x << -1, 1, 0, 2, 0, 0, 0, 0, 0, 0, 0.2, 0;
     return x;
   }
   static Terms terms(double load) {
-    Points forces = Points::Zero(3, 3);
+    Points forces = Points::Zero(3, 4);
     forces(2, 2) = -load;
     BlendedLine law;
     law.young = 1;
     const double length = std::sqrt(1.04);
     std::vector<Spring::Rest> springs(2, Spring::Rest{length, 1, 0, true, law});
-    return terms_of(std::make_unique<ElementTerm<Spring>>("arms", std::vector<int>{0, 2, 1, 2}, springs),
-                    std::make_unique<LoadDead>("load", "load_field", forces, positions()));
+    springs.push_back({1, 1, 0, true, law});
+    return terms_of(
+        std::make_unique<ElementTerm<Spring>>("arms", std::vector<int>{0, 2, 1, 2, 1, 3}, springs),
+        std::make_unique<LoadDead>("load", "load_field", forces, positions()));
   }
   Objective objective;
   TrackedEquilibrium equilibrium;
