@@ -273,10 +273,12 @@ def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path) -> dict[str
     _, megabytes = command(coapt, "segment", str(truth / "image.nrrd"), "--annulus", str(truth / "annulus.mrk.json"), "--dynamic-range",
                            "50", "-o", str(found))
     apart = distances(coapt, found / "leaflets.obj", truth / "surface.obj", folder / "registered")
-    command(coapt, "import", str(found / "valve.json"), "-o", str(folder / "scene"))
-    command(coapt, "phantom", str(folder / "scene/scene.json"), "--voxel", case.voxel, "--thickness", f"{TRUE_THICKNESS}mm", "-o",
-            str(folder / "again"))
-    dice = cavity_dice(labels(truth / "labels.nrrd"), labels(folder / "again/open/labels.nrrd"))
+    code, _ = command(coapt, "import", str(found / "valve.json"), "-o", str(folder / "scene"), may_fail=True)
+    dice = [math.nan, math.nan]  # where what was found passes through itself, which is refused
+    if code == 0:
+        command(coapt, "phantom", str(folder / "scene/scene.json"), "--voxel", case.voxel, "--thickness", f"{TRUE_THICKNESS}mm",
+                "-o", str(folder / "again"))
+        dice = cavity_dice(labels(truth / "labels.nrrd"), labels(folder / "again/open/labels.nrrd"))
     figures = json.loads((found / "segmentation.json").read_text())
     valve = json.loads((found / "valve.json").read_text())
     points, triangles = obj(found / "leaflets.obj")
