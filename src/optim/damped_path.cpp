@@ -15,11 +15,13 @@ constexpr double kTravel = 0.2;  // of the extent, by which its share of the loa
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
 constexpr double kFollows = 1e-3;        // drag of the dampers on a shape that all but follows its loads
-constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, while it does
+constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, after such a step
 constexpr int kMostShares = 8;     // in one step
 constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;  // of the damping, from one step to the next at the full problem
+constexpr double kStableFall = 0.1;  // the same where the shape is stable without dampers
 constexpr double kHold = 1e-4;     // of the damping: holds free nodes where a step is asked for its stability
+constexpr double kLate = 0.5;      // of the loads: from there on unstable steps are counted
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
 constexpr int kMostInStep =
@@ -60,18 +62,21 @@ class DampedPath {
   bool has_ended() const { return is_blocked_ || has_failed_ || ends_the_run(outcome_.status); }
   double load() const {
     if (is_loaded()) return 1;
-    return std::min(1.0, static_cast<double>(taken_shares_) / problem_.continuation.damped_steps);
+    return static_cast<double>(taken_shares_) / problem_.continuation.damped_steps;
   }
   bool is_at_full_problem() const { return load() == 1 && moved_ == 1; }
 
-  // Whether the dampers may go; weakens them by what the residual fell by.
+  // Whether the dampers may go; weakens them by what the residual fell by, and more where the shape is stable.
   bool is_at_rest() {
     if (!is_at_full_problem()) return false;
     const double residual = true_residual();
     if (!std::isfinite(residual)) outcome_.status = Status::NonFinite;
     if (residual <= std::max(kAtRest, stop_.tolerance) || damping_ == 0) return true;
     if (++steps_at_full_problem_ > kMostStepsAtRest) return true;
-    if (residual_ < kInfinity) damping_ *= std::clamp(residual / residual_, kMostFall, 1.0);
+    if (is_stable_)
+      damping_ *= kStableFall;
+    else if (residual_ < kInfinity)
+      damping_ *= std::clamp(residual / residual_, kMostFall, 1.0);
     residual_ = residual;
     return false;
   }
@@ -94,20 +99,22 @@ class DampedPath {
     if (is_blocked_) return;
     if (!is_loaded()) monitor_.set_path(std::min(load(), moved_));
     const Vector before = result_.q;
-    objective.damp(Vector::Constant(result_.q.size(), damping_), before);
+    const double damping = damping_ / std::max(shares_, 1);  // a step of more shares takes as much more time
+    objective.damp(Vector::Constant(result_.q.size(), damping), before);
     if (is_loaded()) monitor_.limit_iterations(kMostInStep);
     outcome_.status = run_outer_iterations(solver_, objective, result_.q, monitor_, kStepTolerance,
                                            result_.outer_iterations, outcome_.note);
     const bool is_slow = outcome_.status == Status::IterationLimit && monitor_.has_reached_limit();
     if (is_slow) outcome_.status = Status::Stalled;
     monitor_.lift_limit();
-    drag_ = objective.relative_residual(result_.q, damping_ * (result_.q - before));
+    drag_ = objective.relative_residual(result_.q, damping * (result_.q - before));
     objective.damp({}, {});
     has_failed_ = is_slow || (is_loaded() && outcome_.status != Status::Converged && true_residual() > kLost);
-    if (is_at_full_problem() && problem_.stability.factorisation && !has_ended()) ask_for_stability();
+    if (!has_ended()) ask_for_stability();
   }
 
-  // Counts the step if its shape is unstable without dampers: the Hessian has a negative eigenvalue.
+  // Whether the shape of the last step is stable without dampers: the Hessian is positive definite. From half
+  // of the loads on counts the steps that are not.
   void ask_for_stability() {
     Objective& objective = problem_.objective;
     Vector g;
@@ -115,21 +122,24 @@ class DampedPath {
     objective.damp(Vector::Constant(result_.q.size(), kHold * damping_), result_.q);
     const double energy = monitor_.hessian(result_.q, g, hessian, Projection::None);
     objective.damp({}, {});
+    is_stable_ = false;
     if (!std::isfinite(energy)) return;
     PhaseTimer timer(monitor_.phases(), "certificate");
-    const auto factor = problem_.stability.factorisation();
+    const auto factor = make_multifrontal_factorisation();
     factor->analyse(hessian);
     monitor_.count_certificate(1);
-    result_.unstable_steps = std::max(result_.unstable_steps, 0);
-    if (!factor->factorise(hessian)) ++result_.unstable_steps;
+    is_stable_ = factor->factorise(hessian);
+    if (load() >= kLate && problem_.stability.factorisation)
+      result_.unstable_steps = std::max(result_.unstable_steps, 0) + (is_stable_ ? 0 : 1);
   }
 
-  // One share of the loads a step as long as the shape moves; more where it has all but come to rest under
-  // those that it has, so that the dampers hardly pull.
+  // One share of the loads a step as long as the shape moves through what is unstable; more after a step whose
+  // shape is stable or all but rests under its loads, so that the dampers hardly pull. What decides is the
+  // shape, not how a method came to it, so that all take the same steps.
   void raise_load() {
-    if (load() == 1) return;
-    const bool follows = taken_shares_ > 0 && drag_ < kFollows;
-    shares_ = std::clamp(follows ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
+    const int left = is_loaded() ? 0 : problem_.continuation.damped_steps - taken_shares_;
+    const bool is_easy = taken_shares_ > 0 && (is_stable_ || drag_ < kFollows);
+    shares_ = std::min(std::clamp(is_easy ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares), left);
     taken_shares_ += shares_;
   }
 
@@ -158,7 +168,7 @@ class DampedPath {
   double moved_ = 0;                   // of the prescribed motion
   double residual_ = kInfinity;        // of the last step at the full problem
   int steps_at_full_problem_ = 0, steps_without_motion_ = 0;
-  bool is_blocked_ = false, has_failed_ = false;
+  bool is_stable_ = false, is_blocked_ = false, has_failed_ = false;
 };
 
 }  // namespace

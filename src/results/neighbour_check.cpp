@@ -35,7 +35,7 @@ std::string neighbour_warning(const NeighbourCheck& check) {
   if (check.unstable_steps > 0)
     return "The shape may be one of several: its damped path is unstable in " +
            std::to_string(check.unstable_steps) + (check.unstable_steps == 1 ? " step" : " steps") +
-           " under the full load. Look for others with --branches 5.";
+           " from half of the loads on. Look for others with --branches 5.";
   return "The shape may be one of several: the solve took " + std::to_string(check.iterates) +
          " iterations, and most valves that take so many have other equilibria near by, with other figures. "
          "Look for them with --branches 5.";

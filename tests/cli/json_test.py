@@ -92,7 +92,7 @@ class Json(CommandCase):
 
         disc = self.generate("disc", "--triangles", 100)
         self.assertEqual(shares(disc), [])
-        self.assertEqual(shares(disc, "--damped-steps", 4), [25, 50, 75, 100])
+        self.assertEqual(shares(disc, "--damped-steps", 4), [25, 75, 100])  # a stable shape: the next step is twice as long
         valve = self.generate("mitral", "--triangles", 200, "--contact", "none")
         valve.write_text(valve.read_text().replace('"boundary":', '"motion": {"steps": 3}, "boundary":', 1))
         self.assertEqual(shares(valve, "--damped-steps", 0, "--max-seconds", 20)[:2], [33, 67])
