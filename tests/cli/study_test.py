@@ -82,6 +82,8 @@ class StudyTest(unittest.TestCase):
     def test_derivatives_are_the_limit_of_small_changes(self):
         for contact in ["none", "barrier"]:
             scene = self.generate("mitral", "--preset", "benchmark", "--triangles", 300, "--contact", contact)
+            # At once: where a path leaves the junctions of slack chords decides whether the tangent has an inverse.
+            scene.write_text(scene.read_text().replace('"damped_steps": 20', '"damped_steps": 0'))
             derived = self.movements(scene, "--tolerance", 1e-10)
             solved = self.movements(scene, "--tolerance", 1e-11, "--perturb", "0.02%")
             self.assertEqual(set(derived), set(solved))

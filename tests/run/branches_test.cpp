@@ -276,6 +276,8 @@ TEST(NeighbourCheck, SuspectsALongWayOfNewtonAlone) {
   damped.unstable_steps = 0;
   EXPECT_TRUE(check_neighbours("newton", damped, {}).is_made);
   EXPECT_EQ(neighbour_warning(check_neighbours("newton", damped, {})), "");
+  damped.unstable_steps = 1;
+  EXPECT_EQ(neighbour_warning(check_neighbours("newton", damped, {})), "");
   damped.unstable_steps = 2;
   EXPECT_NE(neighbour_warning(check_neighbours("dynamic", damped, {})).find("unstable in 2 steps"),
             std::string::npos);
