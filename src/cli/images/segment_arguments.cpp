@@ -75,7 +75,9 @@ SegmentOptions segment_options(const SegmentArguments& arguments) {
   return options;
 }
 
+// What is doubtful first.
 void print_found(const Segmentation& found) {
+  for (const std::string& warning : found.warnings) std::printf("warning: %s\n", warning.c_str());
   const TriangleMesh& mesh = found.valve.leaflets;
   std::printf("leaflets: %d vertices, %d triangles, least angle %.1f degrees, %.1f mm2\n",
               mesh.vertex_count(), mesh.triangle_count(), found.least_angle,
@@ -87,7 +89,6 @@ void print_found(const Segmentation& found) {
   std::printf("  %-12s %.0f %% of the area\n", "shown", 100 * found.shown_share);
   std::printf("  %-12s %d x %d x %d voxels, %.1f s of the processor\n", "looked at", found.size[0],
               found.size[1], found.size[2], found.cpu_seconds);
-  for (const std::string& warning : found.warnings) std::printf("warning: %s\n", warning.c_str());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "image/segment/round_triangles.hpp"
+#include "image/segment/unfold_rows.hpp"
 #include "mesh/distance/triangle_tree.hpp"
 #include "mesh/remesh/coarsen.hpp"
 #include "mesh/remesh/cut_away.hpp"
@@ -15,26 +16,6 @@ namespace {
 constexpr double kCutSnap = 0.3;    // of an edge, within which the cut goes through a vertex
 constexpr double kShortEdge = 0.5;  // of the wanted length
 constexpr int kRoundings = 30;      // of making triangles round
-
-TriangleMesh grid_mesh(const LayerGrid& grid) {
-  TriangleMesh mesh;
-  mesh.vertices = grid.points;
-  mesh.triangles.resize(3, 2 * grid.columns * (grid.rows - 1));
-  Eigen::Index t = 0;
-  for (int row = 0; row + 1 < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      const auto a = static_cast<int>(grid.node(column, row)),
-                 b = static_cast<int>(grid.node(column + 1, row));
-      const auto c = static_cast<int>(grid.node(column + 1, row + 1)),
-                 d = static_cast<int>(grid.node(column, row + 1));
-      const bool is_short =
-          (grid.points.col(a) - grid.points.col(c)).norm() < (grid.points.col(b) - grid.points.col(d)).norm();
-      // Down the column, then around: the normal is that of the grid.
-      mesh.triangles.col(t++) << a, d, is_short ? c : b;
-      mesh.triangles.col(t++) << (is_short ? a : d), c, b;
-    }
-  return mesh;
-}
 
 // Without the vertices that belong to nothing.
 TriangleMesh compacted(const TriangleMesh& mesh) {
@@ -87,13 +68,15 @@ void place_on_grid(LayerMesh& mesh, const TriangleMesh& whole) {
 
 }  // namespace
 
-LayerMesh layer_mesh(const LayerGrid& grid, const Vector& ends, double edge_length) {
+LayerMesh layer_mesh(const LayerGrid& found, const Vector& ends, double edge_length) {
+  LayerGrid grid = found;
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
   Vector level(grid.points.cols());
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       level[grid.node(column, row)] = ends[column] - lengths(row, column);
-  const TriangleMesh whole = grid_mesh(grid);
+  unfold_rows(grid, level);
+  const TriangleMesh whole = triangles_of(grid);
   const TriangleMesh fine = compacted(cut_away(whole, level, kCutSnap).mesh);
   const double area = surface_area(fine.vertices, fine.triangles);
   const double wanted = area / (0.25 * std::sqrt(3.0) * edge_length * edge_length);

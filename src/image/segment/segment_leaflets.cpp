@@ -8,6 +8,7 @@
 #include "image/segment/leaflet_thickness.hpp"
 #include "image/segment/round_triangles.hpp"
 #include "image/segment/track_layer.hpp"
+#include "mesh/distance/intersections.hpp"
 
 #include <Eigen/Geometry>
 
@@ -160,6 +161,13 @@ void move_to_atrium(LayerMesh& mesh, const LayerGrid& grid, const Volume& volume
 }
 
 void add_warnings(Segmentation& result) {
+  if (result.crossing_pairs > 0)
+    result.warnings.push_back(
+        "the leaflets pass through themselves: " + std::to_string(result.crossing_pairs) +
+        (result.crossing_pairs == 1 ? " pair of triangles touches or passes"
+                                    : " pairs of triangles touch or pass") +
+        " through each other; `coapt import` takes such leaflets only where a short push parts them. Give a "
+        "mask, or mend the mesh there");
   if (result.shown_share < kLittleShown)
     result.warnings.push_back("the image shows only " + number_text(100 * result.shown_share, 2) +
                               " % of the area of the leaflets; the rest follows from its neighbours");
@@ -184,6 +192,8 @@ void gather(Segmentation& result, const LayerMesh& mesh, const LayerFit& fit, do
   result.noise = fit.noise;
   result.noise_area = fit.noise_area;
   result.least_angle = least_angle(mesh.mesh);
+  result.crossing_pairs =
+      static_cast<int>(intersecting_pairs(mesh.mesh.vertices, mesh.mesh.triangles).size());
   const Vector areas = nodal_areas(mesh.mesh.vertices, mesh.mesh.triangles);
   double shown = 0;
   for (Eigen::Index v = 0; v < areas.size(); ++v)

@@ -46,6 +46,7 @@ struct Segmentation {
   double blur = 0;                      // across the sheet, mean of all places [mm]
   double contrast = 0;                  // of the leaflets, in values
   double least_angle = 0;               // of the mesh [degrees]
+  int crossing_pairs = 0;               // of triangles that touch or pass through each other
   double shown_share = 0;               // of the area, where the evidence is at least 0.3
   std::optional<Volume> strength = {};  // of the evidence of sheets, where it is kept
   std::optional<BurlinaSegmentation> burlina = {};  // of that method

@@ -45,6 +45,7 @@ OrderedJson document(const Segmentation& found, const std::string& volume, const
       {"vertices", valve.leaflets.vertex_count()},
       {"triangles", valve.leaflets.triangle_count()},
       {"least_angle_deg", found.least_angle},
+      {"crossing_pairs", found.crossing_pairs},
       {"area_mm2", surface_area(valve.leaflets.vertices, valve.leaflets.triangles)},
       {"annulus_length_mm", loop_length(valve, valve.annulus)},
       {"free_edge_length_mm", loop_length(valve, valve.free_edge)},

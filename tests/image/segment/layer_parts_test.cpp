@@ -5,8 +5,10 @@
 #include "image/segment/round_triangles.hpp"
 #include "image/segment/sheet_evidence.hpp"
 #include "image/segment/speckle_blur.hpp"
+#include "image/segment/unfold_rows.hpp"
 #include "image/segment/wall_profile.hpp"
 #include "image/support/speckle_phantom.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "mesh/shapes.hpp"
 
 #include <Eigen/Geometry>
@@ -68,6 +70,52 @@ TEST(CollapseShortEdges, MakesAPointOfTwoThatAllButCoincide) {
   EXPECT_GT(least_angle(mesh), 15);
   EXPECT_EQ(mesh.triangles.cols(), before - 2);
   EXPECT_EQ(boundary_loops(mesh.triangles).size(), 2u);
+}
+
+// A tube whose columns 17 to 23 lie in reverse order from row 4 on.
+LayerGrid pleated_tube() {
+  LayerGrid grid{.columns = 40, .rows = 10, .points = Points(3, 400), .normals = Points(3, 0)};
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const bool is_pleat = row >= 4 && std::abs(column - 20) <= 3;
+      const double angle = 2 * std::numbers::pi / 40 * (is_pleat ? 20 - 0.4 * (column - 20) : column);
+      grid.points.col(grid.node(column, row)) = Vec3(6 * std::cos(angle), 6 * std::sin(angle), -row);
+    }
+  update_normals(grid);
+  return grid;
+}
+
+int folded_edges(const TriangleMesh& mesh) {
+  int count = 0;
+  for (const Edge& edge : edges(mesh.triangles))
+    if (edge.triangles.size() == 2)
+      count += area_vector(mesh.vertices, mesh.triangles.col(edge.triangles[0]))
+                   .dot(area_vector(mesh.vertices, mesh.triangles.col(edge.triangles[1]))) <= 0;
+  return count;
+}
+
+TEST(UnfoldRows, TakesAPleatApartAndLeavesTheRest) {
+  const LayerGrid given = pleated_tube();
+  LayerGrid grid = given;
+  ASSERT_GT(folded_edges(triangles_of(grid)), 0);
+  ASSERT_GT(intersecting_pairs(grid.points, triangles_of(grid).triangles).size(), 0u);
+  unfold_rows(grid, Vector::Ones(grid.points.cols()));
+  const TriangleMesh mesh = triangles_of(grid);
+  EXPECT_EQ(folded_edges(mesh), 0);
+  EXPECT_EQ(intersecting_pairs(mesh.vertices, mesh.triangles).size(), 0u);
+  EXPECT_NEAR(surface_area(mesh.vertices, mesh.triangles), 2 * std::numbers::pi * 6 * 9, 6);
+  EXPECT_EQ(grid.points.leftCols(3 * 40), given.points.leftCols(3 * 40));
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 30; column <= 50; ++column) EXPECT_EQ(grid.at(column, row), given.at(column, row));
+}
+
+TEST(UnfoldRows, LeavesWhatLiesBeyondTheEdge) {
+  const LayerGrid given = pleated_tube();
+  LayerGrid grid = given;
+  Vector level = Vector::Ones(grid.points.cols());
+  level.tail(7 * grid.columns).setConstant(-1);  // from row 3 on
+  unfold_rows(grid, level);
+  EXPECT_EQ(grid.points, given.points);
 }
 
 TEST(ClosedPolygon, FollowsAWaveAndPassesOverAGap) {

@@ -58,6 +58,7 @@ void expect_sound(const Segmentation& found) {
   EXPECT_TRUE(check_mesh(found.valve.leaflets).empty());
   EXPECT_EQ(boundary_loops(found.valve.leaflets.triangles).size(), 2u);
   EXPECT_GE(found.least_angle, 20);
+  EXPECT_EQ(found.crossing_pairs, 0);
 }
 
 TEST(SegmentLeaflets, FindsTheGeneratedValveInSpeckle) {
