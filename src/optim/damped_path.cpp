@@ -20,8 +20,8 @@ constexpr int kMostShares = 8;     // in one step
 constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;  // of the damping, from one step to the next at the full problem
 constexpr double kStableFall = 0.1;  // the same where the shape is stable without dampers
-constexpr double kHold = 1e-4;     // of the damping: holds free nodes where a step is asked for its stability
-constexpr double kLate = 0.5;      // of the loads: from there on unstable steps are counted
+constexpr double kHold = 1e-4;  // of the damping: holds free nodes where a step is asked for its stability
+constexpr double kLate = 0.5;   // of the loads: from there on unstable steps are counted
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
 constexpr int kMostInStep =
@@ -66,7 +66,8 @@ class DampedPath {
   }
   bool is_at_full_problem() const { return load() == 1 && moved_ == 1; }
 
-  // Whether the dampers may go; weakens them by what the residual fell by, and more where the shape is stable.
+  // Whether the dampers may go; weakens them by what the residual fell by, and more where the shape is
+  // stable.
   bool is_at_rest() {
     if (!is_at_full_problem()) return false;
     const double residual = true_residual();
@@ -133,9 +134,9 @@ class DampedPath {
       result_.unstable_steps = std::max(result_.unstable_steps, 0) + (is_stable_ ? 0 : 1);
   }
 
-  // One share of the loads a step as long as the shape moves through what is unstable; more after a step whose
-  // shape is stable or all but rests under its loads, so that the dampers hardly pull. What decides is the
-  // shape, not how a method came to it, so that all take the same steps.
+  // One share of the loads a step as long as the shape moves through what is unstable; more after a step
+  // whose shape is stable or all but rests under its loads, so that the dampers hardly pull. What decides is
+  // the shape, not how a method came to it, so that all take the same steps.
   void raise_load() {
     const int left = is_loaded() ? 0 : problem_.continuation.damped_steps - taken_shares_;
     const bool is_easy = taken_shares_ > 0 && (is_stable_ || drag_ < kFollows);

@@ -145,8 +145,8 @@ struct Result {
   int outer_iterations = 0;  // outer renewals of such a load
   int damped_steps = 0;      // along a damped path, those at the full problem included
 
-  // Of a damped path: steps from half of the loads on whose shape is unstable without dampers, so that the ways
-  // of neighbours part there; -1 where nobody looked, as where no certificate is asked for.
+  // Of a damped path: steps from half of the loads on whose shape is unstable without dampers, so that the
+  // ways of neighbours part there; -1 where nobody looked, as where no certificate is asked for.
   int unstable_steps = -1;
   EvaluationCounts evaluations;
   long factorisations = 0;

@@ -9,8 +9,8 @@ namespace {
 // those with fewer in 6 of 17.
 constexpr int kLongPath = 40;
 
-// Unstable steps of a damped path from which others are suspected: of 48 valves those with more have others in
-// 16 of 26 cases, those with fewer in 3 of 22.
+// Unstable steps of a damped path from which others are suspected: of 48 valves those with more have others
+// in 16 of 26 cases, those with fewer in 3 of 22.
 constexpr int kUnstableSteps = 2;
 
 }  // namespace

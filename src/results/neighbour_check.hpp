@@ -18,8 +18,8 @@ struct NeighbourCheck {
 
 // Of a solve at once from the iterates that newton needed: a long path is one over kinks, snaps and turns,
 // and where it ends, small changes decide. Along a damped path, by any method, from the steps with
-// half of the loads or more that are unstable without dampers: there the ways of neighbours part. A suspicion, no proof either
-// way; docs/decisions/010-branches.md and 019-damped-path.md have the hit rates.
+// half of the loads or more that are unstable without dampers: there the ways of neighbours part. A
+// suspicion, no proof either way; docs/decisions/010-branches.md and 019-damped-path.md have the hit rates.
 NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
                                 const std::vector<CascadeLevel>& levels);
 

@@ -235,7 +235,8 @@ OrderedJson neighbours() {
        {"suspected", flag("there may be other equilibria near by: --branches looks for them")},
        {"iterates",
         count("of the longest path on one mesh, of a solve at once, which its suspicion is drawn from")},
-       {"unstable_steps", count("of a damped path from half of the loads on, which its suspicion is drawn from")}},
+       {"unstable_steps",
+        count("of a damped path from half of the loads on, which its suspicion is drawn from")}},
       "whether the path to the result suggests other equilibria; no proof either way");
 }
 
