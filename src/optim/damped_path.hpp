@@ -10,7 +10,8 @@ namespace coapt {
 // minimum of the energy with dampers to the state before, found by the solver. Loads and prescribed motion
 // grow together in continuation.damped_steps equal steps, or in fewer: a step after one in which the dampers
 // pulled by less than 1e-3, or whose shape is stable without them, takes twice the share of the one before,
-// up to eight times the equal one, in as many times the time, so that its dampers are as many times weaker.
+// up to eight times the equal one. Loads grow at one rate: a step of k shares takes k times as long, so that
+// its dampers are c/k.
 // At the full problem the dampers weaken as the residual falls, to a tenth where the shape is stable without
 // them, and go. As a step has one minimum near its start, the order of nodes and the method hardly ever
 // decide where the path leads (docs/decisions/019). With continuation.is_loaded the path begins at the full
