@@ -7,6 +7,7 @@
 #include "scene/build/build.hpp"
 #include "scene/build/scene_geometry.hpp"
 #include "scene/file/scene_parameter.hpp"
+#include "sensitivity/parameters/line_lengths.hpp"
 #include "sensitivity/tracked_equilibrium.hpp"
 #include "solve/solve_scene.hpp"
 #include "tuning/detail/scene_derivatives.hpp"
@@ -65,6 +66,22 @@ std::vector<Variation> variations(const Scene& scene, const SceneGeometry& geome
   throw InputError(scene.file.string() + ": terms: none is elastic, there is nothing to vary");
 }
 
+// A factor on the number. Lengths of lines have exact derivatives: a central difference would strain those
+// that are just slack, whose junctions nothing else holds.
+std::unique_ptr<Parameter> factor_on(const Variation& varied, const SceneGeometry& geometry,
+                                     const Objective& objective) {
+  const std::string& name = varied.parameter.name;
+  for (const auto& term : objective.terms()) {
+    if (varied.parameter.key != "length_scale" || name != term->name() + ".length_scale") continue;
+    const std::unique_ptr<LineAccess> lines = line_access(*term);
+    bool has_lengths = lines != nullptr;
+    for (int e = 0; has_lengths && e < term->stencils().count(); ++e) has_lengths = lines->rest_length(e) > 0;
+    if (has_lengths) return make_line_lengths(name, *term, all_lines(*term), LengthMeasure::Factor);
+  }
+  return std::make_unique<SceneDerivatives>(
+      name, geometry, SceneDerivatives::Neighbours{varied.smaller, varied.larger}, kDerivativeShare);
+}
+
 // The first solution, and what is compared with it.
 class Study {
  public:
@@ -101,15 +118,13 @@ class Study {
 
   // Makes ready for derivatives at the first solution. Throws InputError where there are none.
   void track(const std::vector<Variation>& varied) {
-    std::vector<SceneDerivatives::Neighbours> neighbours;
-    for (const Variation& each : varied) neighbours.push_back({each.smaller, each.larger});
     TrackingOptions tracking;
     tracking.factorisation = setup_.stability.factorisation;
     tracking.tolerance = setup_.stop.tolerance;
     tracking.max_seconds = setup_.stop.max_seconds;
     tracking.observer = setup_.observer;
     equilibrium_ = std::make_unique<TrackedEquilibrium>(*model_.objective, q_, std::move(tracking));
-    equilibrium_->add(std::make_unique<SceneDerivatives>(geometry_, std::move(neighbours), kDerivativeShare));
+    for (const Variation& each : varied) equilibrium_->add(factor_on(each, geometry_, *model_.objective));
     if (const WarmSolve solved = equilibrium_->solve(); solved.status != Status::Converged)
       throw InputError("the first solution is no equilibrium any more: " + solved.message);
   }

@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 
 namespace coapt {
 namespace {
@@ -140,11 +139,7 @@ std::unique_ptr<Parameter> stiffness(const std::string& name, const Scene& scene
 std::unique_ptr<Parameter> of_term(const std::string& name, const std::string& what, const Scene& scene,
                                    const Model& model, EnergyTerm& term) {
   if (what == "lengths") return make_line_lengths(name, term, single_lines(term), LengthMeasure::Length);
-  if (what == "length") {
-    std::vector<int> all(static_cast<size_t>(term.stencils().count()));
-    std::iota(all.begin(), all.end(), 0);
-    return make_line_lengths(name, term, {all}, LengthMeasure::Factor);
-  }
+  if (what == "length") return make_line_lengths(name, term, all_lines(term), LengthMeasure::Factor);
   if (what == "pressure") return make_pressure_value(name, term);
   if (what == "load") return make_load_factor(name, term);
   if (what == "forces") return make_nodal_forces(name, term);

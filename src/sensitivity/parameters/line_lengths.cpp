@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 
 #include <cmath>
+#include <numeric>
 
 namespace coapt {
 namespace {
@@ -159,6 +160,12 @@ std::vector<std::vector<int>> single_lines(const EnergyTerm& term) {
   std::vector<std::vector<int>> groups;
   for (int e = 0; e < term.stencils().count(); ++e) groups.push_back({e});
   return groups;
+}
+
+std::vector<std::vector<int>> all_lines(const EnergyTerm& term) {
+  std::vector<int> all(static_cast<size_t>(term.stencils().count()));
+  std::iota(all.begin(), all.end(), 0);
+  return {all};
 }
 
 }  // namespace coapt

@@ -26,4 +26,7 @@ std::unique_ptr<Parameter> make_line_lengths(std::string name, EnergyTerm& term,
 // Each line of a term by itself, measured by Length.
 std::vector<std::vector<int>> single_lines(const EnergyTerm& term);
 
+// All lines of a term as one group.
+std::vector<std::vector<int>> all_lines(const EnergyTerm& term);
+
 }  // namespace coapt

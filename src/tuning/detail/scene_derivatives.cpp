@@ -19,29 +19,26 @@ Points nodal_gradient(const Scene& scene, const SceneGeometry& geometry, const P
 
 }  // namespace
 
-SceneDerivatives::SceneDerivatives(const SceneGeometry& geometry, std::vector<Neighbours> neighbours,
+SceneDerivatives::SceneDerivatives(std::string name, const SceneGeometry& geometry, Neighbours neighbours,
                                    double share)
-    : Parameter("scene"), geometry_(geometry), neighbours_(std::move(neighbours)), share_(share) {}
+    : Parameter(std::move(name)), geometry_(geometry), neighbours_(std::move(neighbours)), share_(share) {}
 
 std::string SceneDerivatives::defect(const Vector& given) const {
   return given == value() ? std::string() : "parameter \"" + name() + "\": has derivatives only, and stays";
 }
 
-Points SceneDerivatives::force_derivative(const Neighbours& of, const Points& x) const {
-  return (nodal_gradient(of.larger, geometry_, x) - nodal_gradient(of.smaller, geometry_, x)) / (2 * share_);
+Points SceneDerivatives::force_derivative(const Points& x) const {
+  return (nodal_gradient(neighbours_.larger, geometry_, x) -
+          nodal_gradient(neighbours_.smaller, geometry_, x)) /
+         (2 * share_);
 }
 
 Vector SceneDerivatives::pull_back(const Points& x, const Points& weights) const {
-  Vector result = value();
-  for (size_t k = 0; k < neighbours_.size(); ++k)
-    result[static_cast<Eigen::Index>(k)] = force_derivative(neighbours_[k], x).cwiseProduct(weights).sum();
-  return result;
+  return Vector::Constant(1, force_derivative(x).cwiseProduct(weights).sum());
 }
 
 void SceneDerivatives::push_forward(const Points& x, const Vector& change, Points& g) const {
-  for (size_t k = 0; k < neighbours_.size(); ++k)
-    if (const double own = change[static_cast<Eigen::Index>(k)]; own != 0)
-      g += own * force_derivative(neighbours_[k], x);
+  if (change[0] != 0) g += change[0] * force_derivative(x);
 }
 
 }  // namespace coapt
