@@ -41,7 +41,7 @@ CASES = {
     "sector": Case("0.5mm", ["0.6mm", "0.9mm"], 0.15, 2, {}),
 }
 COMMON = {"area_percent": 5, "free_edge_mean": 0.8, "annulus_mean": 1.0, "loops": 2, "least_angle_deg": 20, "thickness_percent": 20,
-          "dice_atrium": 0.9, "dice_ventricle": 0.9, "coverage_2_sd": 0.8, "closed": 1, "closed_to_truth_mean": 0.6,
+          "dice_atrium": 0.95, "dice_ventricle": 0.95, "coverage_2_sd": 0.8, "closed": 1, "closed_to_truth_mean": 0.6,
           "closed_from_truth_mean": 0.6, "orifice_error_mm2": 15, "cpu_s": 60}
 FLOORS = ("least_angle_deg", "dice_atrium", "dice_ventricle", "coverage_2_sd", "coverage_2_sd_gaps", "closed")  # the more the better
 NAMES = {

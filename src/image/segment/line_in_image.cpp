@@ -14,11 +14,11 @@ constexpr double kLineStep = 0.5, kShortestLine = 3;  // along the line [mm]
 constexpr double kPatchPixel = 0.4;                   // across it [mm]
 constexpr int kPatchBeside = 12, kPatchAbove = 10;  // pixels that are compared, to each side, and up and down
 constexpr int kMostShift = 10;                      // by which they are shifted at most
-constexpr double kDrawnSheet = 0.7;  // standard deviation of a drawn sheet: the finest that is sought [mm]
-constexpr double kAlongLine = 2;     // of the correlation along the line [mm]
-constexpr int kTangentSteps = 4;     // steps to both sides, from which the line's direction is taken
-constexpr int kAveragedSteps = 2;    // steps to both sides, over which the image is averaged
-constexpr double kLeastLikeness = 0.7;
+constexpr double kDrawnSheet = 0.7;     // standard deviation of a drawn sheet: the finest that is sought [mm]
+constexpr double kAlongLine = 2;        // of the correlation along the line [mm]
+constexpr int kTangentSteps = 4;        // steps to both sides, from which the line's direction is taken
+constexpr int kAveragedSteps = 2;       // steps to both sides, over which the image is averaged
+constexpr double kLeastLikeness = 0.7;  // correlation from which the image shows the line
 
 // Of one place of the line.
 struct Station {
