@@ -15,6 +15,7 @@ import json
 import math
 import os
 import pathlib
+import statistics
 import struct
 import subprocess
 import sys
@@ -319,7 +320,7 @@ def cells(key: str, case: Case, rows: list[dict[str, float]]) -> list[str]:
     worst = values[0] if key in FLOORS else values[-1]
     counted = f"{sum(met)} of {len(rows)}" + (f" ({'≥' if key in FLOORS else '=' if key == 'loops' else '≤'} {goal:g})" if met else "")
     number = lambda value: "0" if value < 1e-9 else f"{value:.3g}" if value < 1000 else str(round(value))
-    return [number(values[len(values) // 2]), number(worst), counted if met else ""]
+    return [number(statistics.median(values)), number(worst), counted if met else ""]
 
 
 def print_table(names: list[str], rows: dict[str, list[dict[str, float]]]) -> None:
