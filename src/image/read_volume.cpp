@@ -150,7 +150,8 @@ SeriesFiles series_in(const fs::path& folder) {
 }
 
 int chosen_frame(const VolumeFile& file, const VolumeReadOptions& options, const std::string& name) {
-  const std::string choice = "; choose one with --frame, from 0 to " + std::to_string(file.frames - 1);
+  const std::string choice =
+      "; choose one with " + options.frame_option + ", from 0 to " + std::to_string(file.frames - 1);
   if (file.frames > 1 && !options.frame)
     throw InputError(name + ": is a time series of " + std::to_string(file.frames) + " frames" + choice);
   const int frame = options.frame.value_or(0);
@@ -183,7 +184,9 @@ VolumeFile volume_of(const fs::path& path, const VolumeReadOptions& options) {
   const SeriesFiles files = is_series ? series_in(path) : SeriesFiles{{path}, {}};
   VolumeFile file = is_series ? described(files.whole, options, name) : header_of(path, options);
   if (!file.states_spacing)
-    throw InputError(name + ": does not say how large its voxels are; give it with --spacing, in mm");
+    throw InputError(name +
+                     ": does not say how large its voxels are; `coapt image convert --spacing` "
+                     "gives it, in mm");
   const auto frame = static_cast<std::size_t>(chosen_frame(file, options, name));
   for (const fs::path& part : files.paths) {
     const ImageFile image(part);

@@ -28,8 +28,9 @@ struct VolumeFile {
 };
 
 struct VolumeReadOptions {
-  std::optional<int> frame;     // of a time series, from 0
-  std::optional<Vec3> spacing;  // in place of the file's [mm]
+  std::optional<int> frame;              // of a time series, from 0
+  std::optional<Vec3> spacing;           // in place of the file's [mm]
+  std::string frame_option = "--frame";  // by which a user chooses the frame, for what is said of it
 };
 
 // Size, grid, kind of voxel and number of frames. Positions are turned to LPS where the file has them in RAS

@@ -89,9 +89,20 @@ class CloseAnImage(CommandCase):
         for mean in self.distance_from_truth():
             self.assertLess(mean, 0.6)
 
+    def series(self):
+        """A time series of the open and the closed volume, which lie on one grid."""
+        fields, opened = fields_and_voxels(self.truth / "phantom/open/image.nrrd")
+        _, closed = fields_and_voxels(self.truth / "phantom/closed/image.nrrd")
+        for old, new in ((b"dimension: 3", b"dimension: 4"), (b"sizes:", b"sizes: 2"), (b"directions:", b"directions: none"),
+                         (b"kinds:", b"kinds: list")):
+            fields = fields.replace(old, new)
+        path = self.folder / "beat.seq.nrrd"
+        path.write_bytes(fields + b"\n\n" + gzip.compress(bytes(value for pair in zip(opened, closed) for value in pair), 1))
+        return path
+
     def test_an_image_becomes_a_closed_valve(self):
         closed = self.truth / "phantom/closed"
-        run = self.close("--annulus-closed", closed / "annulus.mrk.json", "--closed", closed / "image.nrrd")
+        run = self.close("--annulus-closed", closed / "annulus.mrk.json", "--closed", self.series(), "--closed-frame", 1)
         out = self.folder / "out"
         self.assert_closed_like_the_truth()
         page = (out / "result/report.html").read_text()
@@ -106,6 +117,12 @@ class CloseAnImage(CommandCase):
         self.assertIn(f"mean {apart['to_image']['mean_mm']:.2f}", run.stdout)
         self.assertLess(apart["to_image"]["mean_mm"], 1.2)
         self.assertGreater(apart["ridge_points"], 1000)
+        line = apart["coaptation_line"]
+        self.assertGreater(line["shown_share"], 0.5)
+        self.assertLess(line["to_predicted"]["mean_mm"], 2)
+        self.assertIn(f"shows {100 * line['shown_share']:.0f} % of it", run.stdout)
+        self.assertIn(f"shows {100 * line['shown_share']:.0f} % of it", page)
+        self.assertIn('Name="in_image"', (out / "coaptation_lines.vtp").read_text(errors="replace"))
         self.assertIn('Name="distance_to_image_mm"', (out / "image_distance.vtp").read_text(errors="replace"))
         ring, given = json.loads((out / "scene/valve.json").read_text())["annulus_closed"], positions(closed / "annulus.mrk.json")
         self.assertLess(max(min(math.dist(p, q) for q in given) for p in ring), 2)
@@ -165,7 +182,11 @@ class CloseAnImage(CommandCase):
         start = ("close", opened / "image.nrrd", "--annulus", ring, "-o", out)
         self.assert_bad_input(coapt(*start, "--annulus-closed", far), "far.mrk.json", "--register")
         self.assert_bad_input(coapt(*start, "--register"), "--register", "--annulus-closed")
+        self.assert_bad_input(coapt(*start, "--closed", self.series()), "beat.seq.nrrd", "2 frames", "--closed-frame, from 0 to 1")
+        self.assert_bad_input(coapt(*start, "--closed-frame", 1), "--closed-frame", "needs --closed")
         tips = self.truth / "tips.mrk.json"
+        no_ring = ("close", opened / "image.nrrd", "--annulus", tips, "-o", out)
+        self.assert_bad_input(coapt(*no_ring), "do not go round it once", "closed curve")
         self.assert_bad_input(coapt(*start, "--papillary-closed", tips), "--papillary-closed", "--papillary,")
         one = marks(self.folder / "one.mrk.json", "Fiducial", [[0, 0, -20]])
         self.assert_bad_input(coapt(*start, "--papillary", tips, "--papillary-closed", one), "one.mrk.json", "1 tips", "same order")

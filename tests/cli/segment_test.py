@@ -116,7 +116,12 @@ class SegmentAnImage(CommandCase):
         empty.write_bytes(b"")
         self.assert_bad_input(self.segment(image=empty), "empty.nrrd", "is empty")
         short = self.changed("short.nrrd", lambda fields: fields, lambda data: data[:len(data) // 2])
-        self.assert_bad_input(self.segment(image=short), "short.nrrd", "cannot be read", "again")
+        run = self.segment(image=short)
+        self.assert_bad_input(run, "short.nrrd", "cannot be read: expected", "again")
+        self.assertNotIn("[nrrd]", run.stderr)  # the names of functions within a library
+        bare = self.changed("bare.nrrd", lambda fields: "\n".join(
+            line for line in fields.split("\n") if not line.startswith(("space", "kinds"))))
+        self.assert_bad_input(self.segment(image=bare), "bare.nrrd", "how large its voxels are", "image convert --spacing")
         sizes = next(line for line in fields_and_voxels(self.image)[0].split("\n") if line.startswith("sizes"))
         huge = self.changed("huge.nrrd", lambda fields: fields.replace(sizes, "sizes: 10000 10000 10000"))
         self.assert_bad_input(self.segment(image=huge), "huge.nrrd", "1e+12 voxels", "crop it")
@@ -163,6 +168,10 @@ class SegmentAnImage(CommandCase):
         for path in (plain, drawn):
             self.assertEqual(path.read_bytes()[1:4], b"PNG")
         self.assertNotEqual(plain.read_bytes(), drawn.read_bytes())
+        sheets = self.folder / "sheets.png"
+        run = coapt("image", "slices", self.image, "--annulus", self.ring, "--sheets", "-o", sheets)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertNotIn(sheets.read_bytes(), (plain.read_bytes(), drawn.read_bytes()))
         self.assert_bad_input(coapt("image", "slices", self.image, "-o", self.folder / "a.jpg"), "a.jpg", ".png")
 
     def check(self, *arguments):
@@ -176,6 +185,7 @@ class SegmentAnImage(CommandCase):
         out = self.folder / "real-image-check"
         self.assertEqual(json.loads((out / "info.json").read_text())["voxel_kind"], "uint8")
         self.assertEqual((out / "slices.png").read_bytes()[1:4], b"PNG")
+        self.assertEqual((out / "sheets.png").read_bytes()[1:4], b"PNG")
         shutil.rmtree(out)
         run = self.check(self.image, self.ring, "--", "--dynamic-range", 50)
         self.assertEqual(run.returncode, 0, run.stderr)

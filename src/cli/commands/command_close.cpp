@@ -3,6 +3,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/images/close_pictures.hpp"
 #include "cli/images/image_distance.hpp"
+#include "cli/images/image_line.hpp"
 #include "cli/images/segment_arguments.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
@@ -14,6 +15,7 @@
 #include "formats/json/markups.hpp"
 #include "formats/json/valve_json.hpp"
 #include "formats/utf8.hpp"
+#include "image/segment/annulus_region.hpp"
 #include "image/segment/ridge_points.hpp"
 #include "image/segment/write_segmentation.hpp"
 #include "mesh/curve_match.hpp"
@@ -43,6 +45,7 @@ constexpr int kCurvePoints = 8;  // of a smooth annulus between two that were gi
 struct CloseArguments {
   SegmentArguments segment;
   std::string closed, annulus_closed, papillary_closed;
+  std::optional<int> closed_frame;
   bool registers = false;
   LeafletChordOptions chords = {.zones = {chord_zone("free_edge"), chord_zone("rough")}};
 };
@@ -81,6 +84,8 @@ void check_place(const CloseArguments& arguments, const Points& annulus, const P
 CloseInput read_input(const CloseArguments& arguments) {
   if (arguments.registers && arguments.annulus_closed.empty())
     throw InputError("--register: needs --annulus-closed, the annulus in the frame of the closed volume");
+  if (arguments.closed_frame && arguments.closed.empty())
+    throw InputError("--closed-frame: needs --closed, the volume that it is a frame of");
   if (!arguments.papillary_closed.empty() && arguments.segment.papillary.empty())
     throw InputError("--papillary-closed: needs --papillary, the same tips in the open valve");
   CloseInput input;
@@ -100,7 +105,8 @@ CloseInput read_input(const CloseArguments& arguments) {
                        std::to_string(input.papillary.cols()) + "; give the same tips in the same order");
   }
   input.open = printed_volume(arguments.segment.volume, arguments.segment.frame);
-  if (!arguments.closed.empty()) input.closed = printed_volume(arguments.closed, std::nullopt);
+  if (!arguments.closed.empty())
+    input.closed = printed_volume(arguments.closed, arguments.closed_frame, "--closed-frame");
   return input;
 }
 
@@ -146,10 +152,23 @@ PicturedValve pictured(const CloseInput& input, const Segmentation& found, const
   TriangleMesh closed = surface_at(solved.model, solved.report.fields.x);
   closed.vertices.colwise() += solved.model.origin;
   const TriangleMesh& leaflets = found.valve.leaflets;
-  return {input.open, leaflets, std::move(closed), input.annulus, leaflets.vertices.rowwise().mean()};
+  const std::optional<Closure>& closure = solved.report.metrics.closure;
+  return {input.open,
+          leaflets,
+          std::move(closed),
+          input.annulus,
+          leaflets.vertices.rowwise().mean(),
+          closure ? pieces_of(closure->line, solved.model.origin) : std::vector<Points>()};
 }
 
-// Into image_distance.*, and the picture of it.
+// Where the closed volume shows the coaptation line, in its own frame.
+std::vector<LineInImage> found_line(const Volume& closed, const PicturedValve& there) {
+  Vec3 up = plane_of(there.annulus).normal;
+  if (up.dot(there.ventricle - Vec3(there.annulus.rowwise().mean())) > 0) up = -up;
+  return line_in_image(closed, there.solved, there.line, up);
+}
+
+// Into image_distance.* and coaptation_lines.vtp, and the picture of it.
 PageImage compare_with_closed(const CloseArguments& arguments, const CloseInput& input,
                               const PicturedValve& valve) {
   const RigidMotion back = input.to_open.inverse();
@@ -157,14 +176,20 @@ PageImage compare_with_closed(const CloseArguments& arguments, const CloseInput&
   there.annulus = back.apply(valve.annulus);
   there.solved = moved(back, valve.solved);
   there.ventricle = back.apply(Points(valve.ventricle)).col(0);
+  for (Points& piece : there.line) piece = back.apply(piece);
   const Points ridges = ridge_points_around(*input.closed, there.annulus);
   const ImageDistance distance = distance_from_image(valve.solved, input.to_open.apply(ridges));
-  write_image_distance(arguments.segment.output, valve.solved, distance, arguments.closed);
+  const std::vector<LineInImage> line_there = found_line(*input.closed, there);
+  const ImageLine line = compared_line(line_there, input.to_open);
+  write_image_distance(arguments.segment.output, valve.solved, distance, line, arguments.closed);
+  write_image_line(arguments.segment.output, line);
   std::printf(
       "distance to the closed image: mean %.2f, 95 %% %.2f mm; back: mean %.2f, 95 %% %.2f mm (%ld points)\n",
       distance.to_image.mean, distance.to_image.p95, distance.from_image.mean, distance.from_image.p95,
       static_cast<long>(distance.ridge_points));
-  return closed_picture(arguments.segment.output, *input.closed, there, ridges);
+  std::printf("%s\n", sentence_on(line).c_str());
+  return closed_picture(arguments.segment.output, *input.closed, there, ridges, line_there,
+                        sentence_on(line));
 }
 
 RunReport solve_valve(const fs::path& folder, const Session& session) {
@@ -207,9 +232,10 @@ int close_image(const CloseArguments& arguments, Session& session) {
   std::vector<PageImage> pictures = {open_picture(folder, valve)};
   if (input.closed) pictures.push_back(compare_with_closed(arguments, input, valve));
   write_pictured_page(solved, "Slices through the images", pictures);
-  std::printf("written to %s (leaflets/, scene/, result/report.html, slices_open.png%s)\n",
-              folder.string().c_str(),
-              input.closed ? ", slices_closed.png, image_distance.vtp, image_distance.json" : "");
+  std::printf(
+      "written to %s (leaflets/, scene/, result/report.html, slices_open.png%s)\n", folder.string().c_str(),
+      input.closed ? ", slices_closed.png, image_distance.vtp, image_distance.json, coaptation_lines.vtp"
+                   : "");
   if (solved.report.result.status != Status::Converged) return kNotConverged;
   return is_in_doubt(solved.report) ? kInDoubt : kConverged;
 }
@@ -223,6 +249,8 @@ void add_close_command(CLI::App& app, Session& session) {
   add_segment_options(*command, arguments->segment);
   command->add_option("--closed", arguments->closed,
                       "Volume with the closed valve: how far the solved leaflets lie from it");
+  command->add_option("--closed-frame", arguments->closed_frame,
+                      "Of --closed, where that is a time series; it may be the same file");
   command->add_option("--annulus-closed", arguments->annulus_closed,
                       "Annulus of the closed valve (.mrk.json): the annulus moves there");
   command->add_option("--papillary-closed", arguments->papillary_closed,

@@ -10,6 +10,7 @@
 #include "formats/lower_extension.hpp"
 #include "formats/mesh_io.hpp"
 #include "image/read_volume.hpp"
+#include "image/segment/ridge_points.hpp"
 #include "image/slices/valve_slices.hpp"
 #include "image/write_volume.hpp"
 
@@ -30,10 +31,13 @@ namespace {
 constexpr std::array<Colour, 4> kSurfaceColours = {
     Colour{86, 180, 233}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}};
 
+constexpr Colour kSheetColour = {240, 228, 66};  // yellow of the same set
+
 struct ImageArguments {
   std::string file, output, kind, annulus;
   std::vector<std::string> surfaces;
   std::optional<int> frame;
+  bool draws_sheets = false;
   std::vector<std::string> spacing;  // with units: one for all axes, or three
 };
 
@@ -107,7 +111,8 @@ void print_image(const std::string& path, const VolumeFile& file) {
   for (int axis = 0; axis < 3; ++axis)
     std::printf("  axis %c      %s\n", "ijk"[axis], triple_text(volume.direction.col(axis)).c_str());
   const CentreBox box = centre_box(volume);
-  std::printf("  lies from   %s to %s mm\n", triple_text(box.low).c_str(), triple_text(box.high).c_str());
+  if (file.states_spacing)
+    std::printf("  lies from   %s to %s mm\n", triple_text(box.low).c_str(), triple_text(box.high).c_str());
   if (!volume.values.empty()) {
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
     std::printf("  range       %s to %s\n", number_text(*low, 6).c_str(), number_text(*high, 6).c_str());
@@ -153,7 +158,9 @@ void draw_slices(const ImageArguments& arguments, Session& session) {
   const std::vector<SlicePlane> planes = arguments.annulus.empty()
                                              ? middle_planes(file.volume)
                                              : valve_planes(annulus_curve(arguments.annulus), below);
-  const Picture picture = valve_slices(file.volume, planes, surfaces, {});
+  std::vector<DrawnPoints> sheets;
+  if (arguments.draws_sheets) sheets.push_back({ridge_points_in(file.volume), kSheetColour});
+  const Picture picture = valve_slices(file.volume, planes, surfaces, sheets);
   write_png(arguments.output, picture);
   std::printf("written to %s (%d x %d pixels)\n", arguments.output.c_str(), picture.width, picture.height);
   session.document = written_document({arguments.output}, file.warnings);
@@ -200,6 +207,8 @@ void add_image_command(CLI::App& app, Session& session) {
       "Closed curve (.mrk.json): slices along its axis (default: along the axes of the volume)");
   slices->add_option("--surface", arguments->surfaces, "Mesh to draw where a slice cuts it; any number")
       ->delimiter(',');
+  slices->add_flag("--sheets", arguments->draws_sheets,
+                   "Draw the middles of the bright sheets that the volume shows");
   slices->add_option("-o,--output", arguments->output, "File to write: .png")->required();
   slices->callback([arguments, &session] { draw_slices(*arguments, session); });
   convert->callback([arguments, &session] { convert_image(*arguments, session); });

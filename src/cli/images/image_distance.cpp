@@ -1,5 +1,6 @@
 #include "cli/images/image_distance.hpp"
 
+#include "cli/images/image_line.hpp"
 #include "core/error.hpp"
 #include "formats/durable_file.hpp"
 #include "formats/json/json_text.hpp"
@@ -15,6 +16,8 @@ namespace {
 constexpr double kSameSheet = 5;  // a ridge farther from the closed leaflets is another structure [mm]
 constexpr double kSharePercentile = 0.95;
 
+}  // namespace
+
 DistanceFigures figures_of(std::vector<double> values) {
   if (values.empty()) return {kNaN, kNaN, kNaN};
   std::sort(values.begin(), values.end());
@@ -24,8 +27,6 @@ DistanceFigures figures_of(std::vector<double> values) {
   figures.max = values.back();
   return figures;
 }
-
-}  // namespace
 
 ImageDistance distance_from_image(const TriangleMesh& closed, const Points& ridges) {
   if (ridges.cols() == 0) throw InputError("the closed volume shows no sheets around the annulus");
@@ -44,7 +45,8 @@ ImageDistance distance_from_image(const TriangleMesh& closed, const Points& ridg
 }
 
 void write_image_distance(const std::filesystem::path& folder, const TriangleMesh& closed,
-                          const ImageDistance& distance, const std::string& closed_volume) {
+                          const ImageDistance& distance, const ImageLine& line,
+                          const std::string& closed_volume) {
   VtpSurface surface;
   surface.vertices = closed.vertices;
   surface.triangles = closed.triangles;
@@ -54,11 +56,13 @@ void write_image_distance(const std::filesystem::path& folder, const TriangleMes
   const auto json = [](const DistanceFigures& d) {
     return OrderedJson{{"mean_mm", d.mean}, {"p95_mm", d.p95}, {"max_mm", d.max}};
   };
-  const OrderedJson document = {{"closed_volume", closed_volume},
-                                {"to_image", json(distance.to_image)},
-                                {"from_image", json(distance.from_image)},
-                                {"ridge_points", distance.ridge_points},
-                                {"farthest_counted_mm", kSameSheet}};
+  const OrderedJson document = {
+      {"closed_volume", closed_volume},
+      {"to_image", json(distance.to_image)},
+      {"from_image", json(distance.from_image)},
+      {"ridge_points", distance.ridge_points},
+      {"farthest_counted_mm", kSameSheet},
+      {"coaptation_line", {{"shown_share", line.shown_share}, {"to_predicted", json(line.to_predicted)}}}};
   formats::write_durable(folder / "image_distance.json", json_text(document, 2) + "\n");
 }
 

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace coapt::cli {
 
@@ -21,8 +22,14 @@ struct ImageDistance {
 // structures, and do not count. Throws InputError where there is none.
 ImageDistance distance_from_image(const TriangleMesh& closed, const Points& ridges);
 
+// Mean, 95th percentile and greatest; NaN without values.
+DistanceFigures figures_of(std::vector<double> values);
+
+struct ImageLine;  // image_line.hpp
+
 // image_distance.vtp (distance_to_image_mm at the vertices) and image_distance.json, into a folder.
 void write_image_distance(const std::filesystem::path& folder, const TriangleMesh& closed,
-                          const ImageDistance& distance, const std::string& closed_volume);
+                          const ImageDistance& distance, const ImageLine& line,
+                          const std::string& closed_volume);
 
 }  // namespace coapt::cli

@@ -146,8 +146,9 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
   command.add_flag("--keep", arguments.keeps_evidence, "Also write the evidence of sheets, evidence.nrrd");
 }
 
-Volume printed_volume(const std::string& path, const std::optional<int>& frame) {
-  VolumeFile file = read_volume(path, {.frame = frame, .spacing = {}});
+Volume printed_volume(const std::string& path, const std::optional<int>& frame,
+                      const std::string& frame_option) {
+  VolumeFile file = read_volume(path, {.frame = frame, .spacing = {}, .frame_option = frame_option});
   for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
   return std::move(file.volume);
 }

@@ -28,7 +28,8 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments);
 // prints what was found, with warnings. Throws InputError that names the file.
 Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volume);
 
-// Values of a file of a volume [mm], with warnings printed.
-Volume printed_volume(const std::string& path, const std::optional<int>& frame);
+// The volume of a file [mm], with warnings printed; frame_option: by which a user chooses the frame.
+Volume printed_volume(const std::string& path, const std::optional<int>& frame,
+                      const std::string& frame_option = "--frame");
 
 }  // namespace coapt::cli

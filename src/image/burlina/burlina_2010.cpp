@@ -46,7 +46,9 @@ BurlinaSegmentation segment_burlina_2010(const Volume& volume, const BurlinaOpti
     inhibitions.push_back(options.inhibition == Inhibition::Edge
                               ? edge_inhibition(smooth, options.scale, seed, kSeedRadius)
                               : intensity_inhibition(smooth, seed, kSeedRadius));
-  const LevelSets contours = grown_contours(inhibitions, seeds, kSeedRadius, options.level_set);
+  const LevelSetOptions usual = options.inhibition == Inhibition::Edge ? edge_level_set() : LevelSetOptions();
+  const LevelSets contours =
+      grown_contours(inhibitions, seeds, kSeedRadius, options.level_set.value_or(usual));
   found.steps = contours.steps;
   found.is_done = contours.is_done;
   found.thin_tissue = thin_tissue(volume, options.scale);

@@ -5,15 +5,25 @@
 #include "image/burlina/level_set.hpp"
 #include "image/volume.hpp"
 
+#include <optional>
+
 namespace coapt {
 
 enum class Inhibition { Edge, Intensity };  // eq. 7, eq. 8
+
+// Weights with eq. 7. Along its normal n a contour stops where area_weight |dg/dn| is volume_weight g or
+// more: g has to fall by a share of volume_weight / area_weight in a voxel, 0.75 here, as the edge of a
+// leaflet makes it do. With those of eq. 8, whose g is zero in tissue, it would be 3.75, and contours go
+// through.
+inline LevelSetOptions edge_level_set() {
+  return {.area_weight = 0.2, .volume_weight = -0.15, .greatest_steps = 3000};
+}
 
 struct BurlinaOptions {
   Inhibition inhibition = Inhibition::Intensity;
   Vec3 atrium = Vec3::Zero(), ventricle = Vec3::Zero();  // places in their blood, where contours begin [mm]
   double scale = 0.7;                                    // of the thin tissue and of the edges [mm]
-  LevelSetOptions level_set = {};
+  std::optional<LevelSetOptions> level_set = {};  // default: its own with eq. 8, edge_level_set() with eq. 7
 };
 
 struct BurlinaSegmentation {

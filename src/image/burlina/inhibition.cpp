@@ -10,7 +10,7 @@
 namespace coapt {
 namespace {
 
-constexpr double kGradientsOfBlood = 2;  // at which an edge has halved the speed
+constexpr double kGradientsOfBlood = 1;  // at which an edge has halved the speed
 constexpr double kDeviationOfMedian =
     1.4826;  // standard deviation over the median departure, of a normal distribution
 

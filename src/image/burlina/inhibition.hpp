@@ -8,9 +8,9 @@
 namespace coapt {
 
 // Eq. 7, the edges of the image: g = 1 / (1 + a |grad G * I|^2), G a Gaussian of this standard deviation
-// [mm]. The paper gives no number for a: it is such that g is one half at twice the median gradient in the
-// ball of this radius around the seed [mm]. g is zero nowhere, so that every contour goes on through every
-// wall, slowly: it has to be stopped in time. Throws InputError where the ball holds no voxel of the volume,
+// [mm]. The paper gives no number for a: it is such that g is one half at the median gradient in the
+// ball of this radius around the seed [mm]. g is zero nowhere: a contour stops at an edge only where the area
+// term of eq. 9 holds it (edge_level_set()). Throws InputError where the ball holds no voxel of the volume,
 // or the same values.
 Volume edge_inhibition(const Volume& volume, double scale, const Vec3& seed, double radius);
 

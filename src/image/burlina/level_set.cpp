@@ -12,7 +12,7 @@ namespace coapt {
 namespace {
 
 constexpr float kStep = 2;          // of psi where a contour begins, and beyond the narrow band
-constexpr int kStepsOfGrowth = 10;  // between two looks at how much a contour has grown
+constexpr double kGrownVoxels = 5;  // of a free contour, between two looks at how much it has grown
 
 // p'(s) / s of the double-well potential of Li et al. 2010.
 float double_well(float s) {
@@ -180,9 +180,12 @@ LevelSets grown_contours(const std::vector<Volume>& inhibitions, const std::vect
   contours.reserve(seeds.size());
   for (size_t n = 0; n < seeds.size(); ++n) contours.emplace_back(inhibitions[n], seeds[n], radius, options);
   LevelSets found;
+  // Where the delta is greatest, 1 / delta_width, a free contour grows by this much in a step.
+  const double speed = std::abs(options.volume_weight) / options.delta_width;
+  const int steps_of_growth = std::max(1, static_cast<int>(std::lround(kGrownVoxels / speed)));
   while (!found.is_done && found.steps < options.greatest_steps) {
     for (Contour& contour : contours) contour.step(contours);
-    if (++found.steps % kStepsOfGrowth != 0) continue;
+    if (++found.steps % steps_of_growth != 0) continue;
     double greatest = 0;
     for (Contour& contour : contours) greatest = std::max(greatest, contour.growth());
     found.is_done = greatest < options.least_growth;

@@ -15,8 +15,9 @@ struct LevelSetOptions {
   double volume_weight = -0.75;  // nu, negative: the contour expands, by half a voxel a step where g is 1
   double delta_width = 1.5;      // of the smoothed Dirac delta, to each side
   int greatest_steps = 600;
-  double least_growth =
-      5e-3;  // share of its volume by which a contour grows in ten steps, below which it is done
+  // Share of its volume by which a contour grows while a free one would by five voxels, below which it is
+  // done.
+  double least_growth = 5e-3;
 };
 
 // psi < 0 within each contour. All start as balls of this radius [mm] around their seeds and grow in the same

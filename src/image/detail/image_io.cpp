@@ -49,7 +49,8 @@ void check_file(const fs::path& path) {
     throw InputError(path.string() + ": is empty; copy or export it again");
 }
 
-// What ITK says, in one line and without the place in its sources.
+// What ITK says, in one line and without the place in its sources. Of what the NRRD library says, each of its
+// functions in turn, only the cause, which is last.
 std::string reason_of(const itk::ExceptionObject& error) {
   std::string text = error.GetDescription();
   std::replace_if(
@@ -57,6 +58,11 @@ std::string reason_of(const itk::ExceptionObject& error) {
   if (const std::size_t at = text.find("): "); text.starts_with("itk::ERROR") && at != std::string::npos)
     text.erase(0, at + 3);
   while (text.ends_with(' ')) text.pop_back();
+  const std::string nrrd = "[nrrd] ";
+  if (const std::size_t at = text.rfind(nrrd); at != std::string::npos) {
+    text.erase(0, at + nrrd.size());
+    if (const std::size_t name = text.find(": "); name != std::string::npos) text.erase(0, name + 2);
+  }
   return text;
 }
 

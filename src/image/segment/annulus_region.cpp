@@ -11,6 +11,8 @@ namespace coapt {
 namespace {
 
 constexpr double kMargin = 6;  // around what is looked at [mm]
+constexpr double kMostWandering =
+    0.25;  // of a full turn, by which a curve that is drawn by hand goes back and forth
 
 }  // namespace
 
@@ -27,6 +29,22 @@ AnnulusPlane plane_of(const Points& annulus) {
   plane.normal = area.normalized();
   plane.diameter = length / std::numbers::pi;
   return plane;
+}
+
+bool goes_round_once(const Points& annulus) {
+  const AnnulusPlane plane = plane_of(annulus);
+  const Vec3 right = plane.normal.unitOrthogonal(), up = plane.normal.cross(right);
+  double turn = 0, way = 0;
+  for (Eigen::Index i = 0; i < annulus.cols(); ++i) {
+    const Vec3 a = annulus.col(i) - plane.middle, b = annulus.col((i + 1) % annulus.cols()) - plane.middle;
+    const double x = a.dot(right) * b.dot(right) + a.dot(up) * b.dot(up);
+    const double y = a.dot(right) * b.dot(up) - a.dot(up) * b.dot(right);
+    const double angle = std::atan2(y, x);
+    turn += angle;
+    way += std::abs(angle);
+  }
+  const double full = 2 * std::numbers::pi;
+  return std::abs(std::abs(turn) - full) < 0.01 * full && way < (1 + 2 * kMostWandering) * full;
 }
 
 Volume around_annulus(const Volume& volume, const Points& annulus, const std::optional<Vec3>& ventricle) {

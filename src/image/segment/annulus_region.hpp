@@ -15,6 +15,10 @@ struct AnnulusPlane {
 // Of a closed curve, 3 x n in order. Pre: it has a length and an area.
 AnnulusPlane plane_of(const Points& annulus);
 
+// Whether the curve, seen along its axis, goes once around its middle and at no place far back: points that
+// are in no order do not. Pre: as above.
+bool goes_round_once(const Points& annulus);
+
 // How long leaflets are looked for, as a share of the annulus' mean diameter.
 inline constexpr double kGreatestShare = 0.9;
 

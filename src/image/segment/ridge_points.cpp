@@ -35,9 +35,12 @@ Points ridge_points(const SheetEvidence& evidence, double least) {
   return points;
 }
 
+Points ridge_points_in(const Volume& volume) {
+  return ridge_points(sheet_evidence(volume, sheet_scales(volume)), kLeastRidge);
+}
+
 Points ridge_points_around(const Volume& volume, const Points& annulus) {
-  const Volume part = around_annulus(volume, annulus, {});
-  return ridge_points(sheet_evidence(part, sheet_scales(part)), kLeastRidge);
+  return ridge_points_in(around_annulus(volume, annulus, {}));
 }
 
 }  // namespace coapt

@@ -34,6 +34,9 @@ void check(const Volume& volume, const SegmentOptions& options) {
                       " points; at least 5 are needed, in their order around the ring");
   else if (!options.annulus.allFinite() || plane_of(options.annulus).diameter <= 0)
     defects.push_back("the annulus has a point that is no place, or no length");
+  else if (!goes_round_once(options.annulus))
+    defects.push_back(
+        "the points of the annulus do not go round it once; draw it as a closed curve, from point to point");
   else if (std::isnan(sample(volume, options.annulus.rowwise().mean(), kNaN)))
     defects.push_back(
         "the middle of the annulus lies outside of the volume; are both in the same frame (LPS)?");

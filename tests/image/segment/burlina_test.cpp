@@ -167,5 +167,33 @@ TEST(Burlina2010, FindsTheChambersAndTheLeafletsOfAPhantom) {
   EXPECT_EQ(boundary_loops(found.valve.leaflets.triangles).size(), 2u);
 }
 
+TEST(Burlina2010, ContoursStopAtTheEdgesOfLeaflets) {
+  const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = 5});
+  const Phantom phantom = imaged(valve);
+  SegmentOptions options;
+  options.annulus = valve.leaflets.vertices(Eigen::all, valve.annulus);
+  options.dynamic_range = 50;
+  options.method = SegmentMethod::Burlina2010;
+  options.inhibition = Inhibition::Edge;
+  const Segmentation found = segment_leaflets(phantom.image, options);
+  ASSERT_TRUE(found.burlina);
+  EXPECT_GT(dice(found.burlina->chambers, phantom.labels, kLabelAtrium), 0.6);
+  double entered = 0, leaflet = 0;
+  const Volume& chambers = found.burlina->chambers;
+  for (int k = 0; k < chambers.size[2]; ++k)
+    for (int j = 0; j < chambers.size[1]; ++j)
+      for (int i = 0; i < chambers.size[0]; ++i) {
+        const Vec3 at = voxels_of(phantom.labels, position_of(chambers, Vec3(i, j, k)));
+        const auto n = [&](int axis) { return static_cast<int>(std::lround(at[axis])); };
+        const float label = phantom.labels.values[phantom.labels.voxel(n(0), n(1), n(2))];
+        if (std::lround(label) != kLabelLeaflet) continue;
+        ++leaflet;
+        entered += chambers.values[chambers.voxel(i, j, k)] > 0;
+      }
+  EXPECT_LT(entered, 0.05 * leaflet);
+  EXPECT_LT(surface_distance(valve.leaflets, found.valve.leaflets).mean, 0.3);
+  EXPECT_LT(surface_distance(found.valve.leaflets, valve.leaflets).mean, 0.3);
+}
+
 }  // namespace
 }  // namespace coapt
