@@ -1,5 +1,7 @@
 #include "energy/connected_parts.hpp"
 
+#include "core/small_eigen.hpp"
+
 #include <Eigen/Dense>
 
 #include <numeric>
@@ -33,8 +35,7 @@ class Groups {
 
 // Of a Gram matrix: squares of sines, so that directions some 1e-5 apart still count as two.
 int rank(const Matrix6& gram) {
-  const Eigen::Vector<double, 6> values =
-      Eigen::SelfAdjointEigenSolver<Matrix6>(gram, Eigen::EigenvaluesOnly).eigenvalues();
+  const SmallVector values = small_eigenvalues(gram);
   return static_cast<int>((values.array() > 1e-10 * values[5]).count());
 }
 

@@ -18,31 +18,45 @@ using Square = Eigen::Matrix<double, kSize, kSize>;
 // What is this small beside the greatest entry is round-off.
 constexpr double kRoundOff = 32 * std::numeric_limits<double>::epsilon();
 
+// Sums of the blocks of a symmetric matrix. Here and below by loops: expressions of Eigen are a type, and
+// half a second of the compiler, for each size.
+template <int kBlock, int kSize>
+struct Sums {
+  Eigen::Matrix<double, kBlock, kSize> rows;  // of a column
+  Square<kBlock> all;
+
+  explicit Sums(const Square<kSize>& k) {
+    for (int j = 0; j < kSize; ++j)
+      for (int i = 0; i < kBlock; ++i) {
+        double sum = k(i, j);
+        for (int row = i + kBlock; row < kSize; row += kBlock) sum += k(row, j);
+        rows(i, j) = sum;
+      }
+    for (int j = 0; j < kBlock; ++j)
+      for (int i = 0; i < kBlock; ++i) {
+        double sum = rows(i, j);
+        for (int column = j + kBlock; column < kSize; column += kBlock) sum += rows(i, column);
+        all(i, j) = sum;
+      }
+  }
+};
+
 // Do the blocks of every row sum to zero over the nodes? The matrix is symmetric, so do those of columns.
 template <int kNodes>
 bool is_translation_invariant(const Square<3 * kNodes>& h, double scale) {
-  Eigen::Matrix<double, 3, 3 * kNodes> sum = h.template topRows<3>();
-  for (int a = 1; a < kNodes; ++a) sum += h.template middleRows<3>(3 * a);
-  return sum.cwiseAbs().maxCoeff() <= kRoundOff * scale;
+  return Sums<3, 3 * kNodes>(h).rows.cwiseAbs().maxCoeff() <= kRoundOff * scale;
 }
 
 // (I + c J) k (I + c J) over blocks of the size kBlock, J all ones. Forces and displacements of the nodes but
 // the first are so put in an orthonormal basis of what is no translation, and back.
 template <int kBlock, int kSize>
 Square<kSize> blended(const Square<kSize>& k, double c) {
-  constexpr int count = kSize / kBlock;
-  Eigen::Matrix<double, kBlock, kSize> rows = k.template topRows<kBlock>();
-  for (int a = 1; a < count; ++a) rows += k.template middleRows<kBlock>(kBlock * a);
-  Square<kBlock> all = rows.template leftCols<kBlock>();
-  for (int a = 1; a < count; ++a) all += rows.template middleCols<kBlock>(kBlock * a);
+  const Sums<kBlock, kSize> sums(k);
   Square<kSize> result;
-  for (int a = 0; a < count; ++a)
-    for (int b = 0; b < count; ++b)
-      result.template block<kBlock, kBlock>(kBlock * a, kBlock * b) =
-          k.template block<kBlock, kBlock>(kBlock * a, kBlock * b) +
-          c * (rows.template middleCols<kBlock>(kBlock * b) +
-               rows.template middleCols<kBlock>(kBlock * a).transpose()) +
-          (c * c) * all;
+  for (int j = 0; j < kSize; ++j)
+    for (int i = 0; i < kSize; ++i)
+      result(i, j) = k(i, j) + c * (sums.rows(i % kBlock, j) + sums.rows(j % kBlock, i)) +
+                     (c * c) * sums.all(i % kBlock, j % kBlock);
   return result;
 }
 
@@ -65,9 +79,10 @@ bool negative_part_of(const Square<kBlock*(kNodes - 1)>& k, double scale, Square
   return true;
 }
 
-// A direction that two or three nodes have; of other elements zero.
+// The direction that two or three nodes have.
 template <int kNodes>
 Vec3 own_direction(const Eigen::Vector<double, 3 * kNodes>& x) {
+  static_assert(kNodes == 2 || kNodes == 3);
   Vec3 n = Vec3::Zero();
   if constexpr (kNodes == 2) n = x.template segment<3>(3) - x.template segment<3>(0);
   if constexpr (kNodes == 3)
@@ -92,6 +107,18 @@ bool parts_along(const Vec3& n, const Square<3 * kLeft>& k, double scale, Square
   return true;
 }
 
+using TwoVectors = Eigen::Matrix<double, 3, 2>;
+
+Eigen::Matrix2d in_plane(const TwoVectors& across, const TwoVectors& columns) {
+  return across.transpose() * columns;
+}
+
+// A block of what is `along` the direction n, of nn = n n^T, and `plane` across it.
+Eigen::Matrix3d joined(double along, const Eigen::Matrix3d& nn, const TwoVectors& across,
+                       const Eigen::Matrix2d& plane) {
+  return along * nn + across * plane * across.transpose();
+}
+
 // The same for an element with a direction of its own: along it, and in the plane across it.
 template <int kNodes>
 bool negative_part_in_two(const Vec3& n, const Square<3 * (kNodes - 1)>& k, double scale,
@@ -99,14 +126,14 @@ bool negative_part_in_two(const Vec3& n, const Square<3 * (kNodes - 1)>& k, doub
   constexpr int left = kNodes - 1;
   Square<left> along, along_part;
   if (!parts_along<left>(n, k, scale, along)) return false;
-  Eigen::Matrix<double, 3, 2> across;
+  TwoVectors across;
   across.col(0) = n.unitOrthogonal();
   across.col(1) = n.cross(across.col(0));
   Square<2 * left> plane, plane_part;
   for (int b = 0; b < left; ++b) {
     const Eigen::Matrix<double, 3 * left, 2> columns = k.template middleCols<3>(3 * b) * across;
     for (int a = 0; a < left; ++a)
-      plane.template block<2, 2>(2 * a, 2 * b) = across.transpose() * columns.template middleRows<3>(3 * a);
+      plane.template block<2, 2>(2 * a, 2 * b) = in_plane(across, columns.template middleRows<3>(3 * a));
   }
   if (!negative_part_of<kNodes, 1>(along, scale, along_part)) return false;
   if (!negative_part_of<kNodes, 2>(plane, scale, plane_part)) return false;
@@ -114,7 +141,7 @@ bool negative_part_in_two(const Vec3& n, const Square<3 * (kNodes - 1)>& k, doub
   for (int a = 0; a < left; ++a)
     for (int b = 0; b < left; ++b)
       part.template block<3, 3>(3 * a, 3 * b) =
-          along_part(a, b) * nn + across * plane_part.template block<2, 2>(2 * a, 2 * b) * across.transpose();
+          joined(along_part(a, b), nn, across, plane_part.template block<2, 2>(2 * a, 2 * b));
   return true;
 }
 
@@ -122,14 +149,16 @@ bool negative_part_in_two(const Vec3& n, const Square<3 * (kNodes - 1)>& k, doub
 template <int kNodes>
 void add_invariant(const Square<3 * (kNodes - 1)>& part, Square<3 * kNodes>& h) {
   constexpr int rest = 3 * (kNodes - 1);
-  Eigen::Matrix<double, 3, rest> sum = part.template topRows<3>();
-  for (int a = 1; a < kNodes - 1; ++a) sum += part.template middleRows<3>(3 * a);
-  Eigen::Matrix3d all = sum.template leftCols<3>();
-  for (int a = 1; a < kNodes - 1; ++a) all += sum.template middleCols<3>(3 * a);
-  h.template bottomRightCorner<rest, rest>() += part;
-  h.template topRightCorner<3, rest>() -= sum;
-  h.template bottomLeftCorner<rest, 3>() -= sum.transpose();
-  h.template topLeftCorner<3, 3>() += all;
+  const Sums<3, rest> sums(part);
+  for (int j = 0; j < rest; ++j) {
+    for (int i = 0; i < rest; ++i) h(3 + i, 3 + j) += part(i, j);
+    for (int i = 0; i < 3; ++i) {
+      h(i, 3 + j) -= sums.rows(i, j);
+      h(3 + j, i) -= sums.rows(i, j);
+    }
+  }
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) h(i, j) += sums.all(i, j);
 }
 
 }  // namespace
@@ -143,9 +172,9 @@ void project_invariant_element(const Eigen::Vector<double, 3 * kNodes>& x, Squar
   if (!std::isfinite(scale)) return project_psd(h);
   if (is_positive_semidefinite<rest>(k, scale)) return;
   Square<rest> part;
-  if (!negative_part_in_two<kNodes>(own_direction<kNodes>(x), k, scale, part) &&
-      !negative_part_of<kNodes, 3>(k, scale, part))
-    return project_psd(h);
+  bool is_found = false;
+  if constexpr (kNodes < 4) is_found = negative_part_in_two<kNodes>(own_direction<kNodes>(x), k, scale, part);
+  if (!is_found && !negative_part_of<kNodes, 3>(k, scale, part)) return project_psd(h);
   add_invariant<kNodes>(part, h);
 }
 

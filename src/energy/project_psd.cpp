@@ -1,14 +1,26 @@
 #include "energy/project_psd.hpp"
 
+#include "core/small_eigen.hpp"
+
 #include <Eigen/Eigenvalues>
 
 namespace coapt {
 
 template <int kSize>
 void project_psd(Eigen::Matrix<double, kSize, kSize>& h) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(h);
-  if (eigen.eigenvalues()[0] >= 0) return;
-  h = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+  Eigen::Vector<double, kSize> values;
+  Eigen::Matrix<double, kSize, kSize> vectors;
+  if constexpr (kSize <= kSmallEigenRows) {
+    const SmallEigen eigen = small_eigen(h);
+    values = eigen.values;
+    vectors = eigen.vectors;
+  } else {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(h);
+    values = eigen.eigenvalues();
+    vectors = eigen.eigenvectors();
+  }
+  if (values[0] >= 0) return;
+  h = vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
 }
 
 template void project_psd<6>(Eigen::Matrix<double, 6, 6>&);

@@ -221,6 +221,19 @@ TEST(ProjectElement, IsTheEigenvalueDecompositionOfAnyMatrix) {
   expect_any_matrix_projected<4>();
 }
 
+// Minors tell without factors of a pair that it is definite, and must not where it is not quite.
+TEST(ProjectElement, SeesTheLeastNegativeEigenvalueOfAPair) {
+  std::srand(12);
+  for (const double scale : {1e-100, 1e-6, 1.0, 1e100})
+    for (const double least : {-1e-12, -1e-8, -1e-3, 1e-12, 1e-3})
+      for (const double other : {1.0, 1e-6, -1e-6})
+        for (int trial = 0; trial < 10; ++trial) {
+          const auto k = with_eigenvalues<3>(scale * Vec3(1, other, least));
+          expect_projected_as_decomposed<2>(invariant<2>(k),
+                                            std::to_string(least) + ' ' + std::to_string(other));
+        }
+}
+
 // With a direction of their own: the normal of a triangle, the line of two nodes.
 TEST(ProjectElement, IsTheEigenvalueDecompositionOfMembranesAndLines) {
   const Points X = rest_triangle();

@@ -1,5 +1,4 @@
-// The negative part of a small symmetric matrix by its factors, without a decomposition. Private to this
-// room.
+// The negative part of a small symmetric matrix by its factors alone. Private to this room.
 //   A = L D L^T without pivoting tells by the signs of D whether an eigenvalue is negative, and by a column
 //   of L^-T a vector whose Rayleigh quotient is; from there iteration by Rayleigh quotients (Parlett 1998,
 //   section 4.6) finds an eigenvalue to rounding in three or four steps. It is taken away, and so on.
@@ -64,9 +63,19 @@ inline double round_off(int size, double scale) {
   return 4 * size * std::numeric_limits<double>::epsilon() * scale;
 }
 
+// By leading minors, which need no division: positive definite beyond rounding. Pre: scale^3 is a number.
+inline bool has_positive_minors(const Eigen::Matrix3d& a, double scale) {
+  const double least = 2 * round_off(3, scale), second = a(0, 0) * a(1, 1) - a(1, 0) * a(1, 0);
+  const double third = a(2, 0) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0)) +
+                       a(2, 1) * (a(1, 0) * a(2, 0) - a(0, 0) * a(2, 1)) + a(2, 2) * second;
+  return a(0, 0) > least && second > least * scale && third > least * scale * scale;
+}
+
 // True where the factors prove it to rounding; `scale` is the greatest entry.
 template <int kSize>
 bool is_positive_semidefinite(const Eigen::Matrix<double, kSize, kSize>& a, double scale) {
+  if constexpr (kSize == 3)
+    if (scale > 1e-90 && scale < 1e90 && has_positive_minors(a, scale)) return true;
   SmallFactor<kSize> factor;
   factor.compute(a, 0, round_off(kSize, scale), true);
   return factor.is_certain && factor.negative < 0;

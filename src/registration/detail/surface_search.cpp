@@ -1,8 +1,8 @@
 #include "registration/detail/surface_search.hpp"
 
 #include "core/error.hpp"
+#include "core/small_eigen.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -117,15 +117,15 @@ Step least_squares_step(const std::vector<Pair>& pairs, const Vec3& centre, doub
     if (point_share > 0)
       for (int axis = 0; axis < 3; ++axis) add(pair, Vec3::Unit(axis), point_share * pair.weight);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix7> eigen(h);  // reads the lower triangle
-  const Vector7& values = eigen.eigenvalues();
+  const SmallEigen eigen = small_eigen(h);  // reads the lower triangle
+  const SmallVector& values = eigen.values;
   Step step;
   for (int k = 0; k < 7; ++k) {
     if (values[k] <= kUndetermined * values[6]) {
       ++step.free_directions;
       continue;
     }
-    const Vector7 direction = eigen.eigenvectors().col(k);
+    const Vector7 direction = eigen.vectors.col(k);
     step.change += direction.dot(g) / values[k] * direction;
     step.covariance += direction * direction.transpose() / values[k];
   }
