@@ -141,9 +141,8 @@ struct ExponentialInvariant {
   static constexpr double kNegligible = 700;  // a summand smaller by a factor exp(700) underflows
 
   InvariantEnergy exponential(double j) const {
-    const double grown = c1 * std::exp(c2 * j * j);
-    return {0.5 * (c0 * j + c1 * std::expm1(c2 * j * j)), 0.5 * c0 + c2 * j * grown,
-            c2 * (1 + 2 * c2 * j * j) * grown};
+    const double grown = std::expm1(c2 * j * j), slope = c1 * c2 * (1 + grown);
+    return {0.5 * (c0 * j + c1 * grown), 0.5 * c0 + j * slope, (1 + 2 * c2 * j * j) * slope};
   }
 };
 
@@ -169,7 +168,12 @@ struct InvariantLaw {
             psi.second * i2 * i2 + psi.first * (2 + 6 * thin2 / (l2 * l2)),
             psi.second * i1 * i2 + psi.first * 4 * thin2 * thin};
   }
-  double free_width(double l1) const { return 1 / std::sqrt(l1); }
+  // A strip that is free across is as much so across its thickness: l2 = l3 = sqrt(J/l1), with the J of least
+  // energy.
+  double free_width(double l1) const {
+    const double j = bulk > 0 ? volume_by_newton(l1 * l1 * l1, [&](double at) { return strip(l1, at); }) : 1;
+    return std::sqrt((j > 0 ? j : 1) / l1);
+  }
   // I1 - 3, of the isochoric part where the volume changes.
   double strain(double l1, double l2) const {
     const double thin = 1 / (l1 * l2), thin2 = thin * thin;
@@ -190,12 +194,25 @@ struct InvariantLaw {
   }
 
  private:
-  // W and its second derivative by J at fixed l1, l2.
+  static constexpr double kLastStep = 1e-9;  // of J: the error that a step this small leaves is its square
+
+  // W and its derivatives by J at fixed stretches.
   struct Volume {
-    double energy, second;
+    double energy, first, second;
     double invariant, di;  // isochoric, less 3, and its derivative by J
+    double root;           // of J, the third one
     InvariantEnergy psi;
   };
+  Volume with_invariant(double j, double root, double isochoric, double di, double ddi) const {
+    const InvariantEnergy psi = invariant.at(isochoric);
+    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1),
+            psi.first * di + bulk * (j - 1),
+            psi.second * di * di + psi.first * ddi + bulk,
+            isochoric,
+            di,
+            root,
+            psi};
+  }
   Volume volume(double l1, double l2, double thin2, double j) const {
     const double root = std::cbrt(j), a = 1 / (root * root), plane = l1 * l1 + l2 * l2;
     // The stretches without the change of volume, squared, less 1.
@@ -203,30 +220,53 @@ struct InvariantLaw {
     const double p1 = shrunk + a * (l1 - 1) * (l1 + 1), p2 = shrunk + a * (l2 - 1) * (l2 + 1);
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
-    const double isochoric = distortion(p1, p2, thin2 / (a * a));
-    const InvariantEnergy psi = invariant.at(isochoric);
-    return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1), psi.second * di * di + psi.first * ddi + bulk,
-            isochoric, di, psi};
+    return with_invariant(j, root, distortion(p1, p2, thin2 / (a * a)), di, ddi);
+  }
+  // The same of a strip that is free across.
+  Volume strip(double l1, double j) const {
+    const double root = std::cbrt(j), a = 1 / (root * root), along = l1 * l1 / j;
+    const double p1 = (1 - root) * (1 + root) * a + a * (l1 - 1) * (l1 + 1), p2 = (root - l1) / l1;
+    const double di = 2.0 / 3 * a * (1 / l1 - along), ddi = 2.0 / 9 * a / j * (5 * along - 2 / l1);
+    return with_invariant(j, root, distortion(p1, p2, 1 + p2), di, ddi);
   }
 
-  // The J of least energy lies between no change of volume and J*, that of least distortion. With
+  // The J of least energy, which lies between 1 and that of least distortion, by Newton's method from J = 1.
+  // A few steps where the bulk modulus outweighs psi; 0 where they do not suffice, as on the steep side of an
+  // exponential.
+  template <typename AtVolume>
+  double volume_by_newton(double least_distortion, const AtVolume& at) const {
+    constexpr int kMost = 6;
+    const double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion);
+    double j = 1;
+    for (int k = 0; k < kMost; ++k) {
+      const Volume v = at(j);
+      const double next = j - v.first / v.second;
+      if (!(next >= low && next <= high)) return 0;
+      if (std::abs(next - std::exchange(j, next)) <= kLastStep * next) return j;
+    }
+    return 0;
+  }
+
+  // The J of least energy. Where Newton's method does not find it: with J* the J of least distortion,
   // J = 1 + (J* - 1) s and u = ln(s/(1 - s)) the stress of psi and that of the bulk modulus balance where
   //   ln psi'(j) + ln(4 thin2/(3 bulk)) - 5/3 ln J + ln(J* + J) - u = 0,
   // which falls with u from +infinity to -infinity, nearly along a straight line however steep psi is. Newton
   // in u, kept in its bracket by bisection.
   double balanced_volume(double l1, double l2, double thin2) const {
     const double plane = l1 * l1 + l2 * l2, least_distortion = std::sqrt(0.5 * plane / thin2);
+    const auto at = [&](double volume_ratio) { return volume(l1, l2, thin2, volume_ratio); };
+    if (const double found = volume_by_newton(least_distortion, at); found > 0) return found;
     const double width = least_distortion - 1;
     constexpr int kMost = 200;          // steps towards the change of volume
-    constexpr double kLast = 1e-9;      // of J: the error that a step this small leaves is its square
     constexpr double kMostLogit = 700;  // beyond it exp() overflows
+
     const auto share = [](double u) { return 1 / (1 + std::exp(-u)); };  // s
     const auto volume_of = [&](double u) {
       return u < 0 ? 1 + width * share(u) : least_distortion - width * share(-u);
     };
     double low = -kMostLogit, high = kMostLogit, u = 0, j = volume_of(u);
     for (int k = 0; k < kMost; ++k) {
-      const Volume v = volume(l1, l2, thin2, j);
+      const Volume v = at(j);
       const LogSlope slope = invariant.log_slope(v.invariant);
       const double balance = slope.log + std::log(4 * thin2 / (3 * bulk)) - 5.0 / 3 * std::log(j) +
                              std::log(least_distortion + j) - u;
@@ -236,7 +276,7 @@ struct InvariantLaw {
       u -= balance / fall;
       if (!(u >= low && u <= high)) u = 0.5 * (low + high);
       const double last = std::exchange(j, volume_of(u));
-      if (std::abs(j - last) <= kLast * j) break;
+      if (std::abs(j - last) <= kLastStep * j) break;
     }
     return j;
   }
@@ -245,7 +285,7 @@ struct InvariantLaw {
     const double j = balanced_volume(l1, l2, thin2);
     const Volume v = volume(l1, l2, thin2, j);
     // At fixed J the derivatives by the stretches; then those through J, which the minimum fixes.
-    const double root = std::cbrt(j), a = 1 / (root * root), b = j * j * a * thin2;  // I = a plane + b
+    const double a = 1 / (v.root * v.root), b = j * j * a * thin2;  // I = a plane + b
     const double i1 = 2 * (a * l1 - b / l1), i2 = 2 * (a * l2 - b / l2);
     const double da = -2.0 / 3 * a / j, db = 4.0 / 3 * b / j;
     const double i1j = 2 * (da * l1 - db / l1), i2j = 2 * (da * l2 - db / l2);
