@@ -39,10 +39,6 @@ constexpr double kCurved = 0.1, kFlat = 0.2;
 constexpr int kParts = 3, kPartIterations = 15;
 constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
-constexpr double kMostPart = 0.25;  // of all nodes: a greater part costs as much as a step of the whole
-
-// Fall of the force in a whole step near an equilibrium, between which a double root holds it up.
-constexpr double kDoubleRootFall = 0.2, kLeastFall = 0.6;
 
 // Rounding of the kinks, as a share of the element's length.
 constexpr double kOverloaded = 3;                            // residual of a start that asks for it
@@ -89,7 +85,6 @@ class Newton {
         if (shift_ > kMostShiftOverUnit * unit_ || !hessian_.raise(monitor_, shift_))
           return Status::LineSearchFailed;
       }
-      balance_double_root();
       std::swap(at_, next_);
       q = at_.q;
       raise_limits();
@@ -263,24 +258,10 @@ class Newton {
     return false;
   }
 
-  // Near a double root the force falls to a quarter a step. Where few nodes have one, such as the loose
-  // junctions of chords, the motion of all others hides it from first_step(), but not from the force.
-  void balance_double_root() {
-    const double fall = next_.g.norm() / at_.g.norm();
-    if (is_part_ || !(fall > kDoubleRootFall && fall < kLeastFall) || fall * residual_ > kNear) return;
-    PhaseTimer timer(monitor_.phases(), "parts");
-    LinePoint better = next_;
-    if (balance_worst_part(better) && better.g.norm() < next_.g.norm() &&
-        better.energy <= next_.energy + monitor_.energy_noise(next_.energy))
-      std::swap(next_, better);
-  }
-
-  // Returns false where there is no such part of few nodes, or the point cannot be evaluated any more.
+  // Returns false where there is no such part, or the point cannot be evaluated any more.
   bool balance_worst_part(LinePoint& at) {
     const auto worst = worst_part(at.g, hessian_.matrix());
-    if (!worst ||
-        3 * static_cast<double>(worst->blocks.size()) > kMostPart * static_cast<double>(at.q.size()))
-      return false;
+    if (!worst) return false;
     const auto part = objective_.part(at.q, worst->blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
     const double elsewhere = worst->outside / objective_.reference_force(at.q);

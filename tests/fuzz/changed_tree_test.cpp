@@ -54,7 +54,8 @@ TEST(ChangedTree, OfCborIsCbor) {
 
 TEST(ChangedTree, LeavesWhatIsNoTreeAndWhatIsTooDeepAlone) {
   for (const std::string& text : {std::string(), std::string("v 0 0 0\nf 1 2 3\n"), std::string("{\"a\": "),
-                                  std::string(18000, '['), std::string(200, '[') + std::string(200, ']')})
+                                  std::string(18000, '['), std::string(200, '[') + std::string(200, ']'),
+                                  "\x9b" + std::string(8, '\x9b')})  // CBOR: an array of more than there are
     EXPECT_EQ(changed_tree(text, 1), "") << text.substr(0, 20);
 }
 

@@ -60,10 +60,10 @@ constexpr std::array kBoundShifts = {2.0, 4.0};  // likewise, at which imaginary
 constexpr int kPowerSteps = 40;                  // towards the greatest imaginary part
 constexpr double kMargin = 1.1;                  // on the imaginary part that they find
 constexpr double kConverged = 1e-8;              // relative residual of an eigenpair
-constexpr int kFirst = 40, kMost = 160;          // eigenvalues that are asked for
-constexpr int kSubspace = 60;                    // vectors of the Krylov space, at least
+constexpr int kFewest = 10, kMost = 160;         // eigenvalues that are asked for
+constexpr int kSpare = 40;                       // vectors of the Krylov space beyond two for each of them
 constexpr int kRestarts = 100;                   // of Arnoldi's method
-constexpr double kMoreThanNeeded = 1.3;          // asked for, over what the last search lets expect
+constexpr double kMoreThanNeeded = 1.3;          // asked for, over what is expected
 
 // An estimate from below of the greatest |v^* W v| / (v^* M v), by the power method from v: M^-1 W is normal
 // in the scalar product of M, which has been factorised.
@@ -97,6 +97,14 @@ double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, co
   return least;
 }
 
+// How many eigenvalues of the symmetric part lie below a value: about as many as of the tangent lie as near to
+// the shift.
+int count_below(const SparseMatrix& lower, double value, Factorisation& factor) {
+  SparseMatrix shifted = lower;
+  shifted.diagonal().array() -= value;
+  return factor.inertia(shifted).negative;
+}
+
 // How many values to ask for where the `last` reach to `far` from the shift and not to `reach`, as if they
 // lay evenly.
 int more_values(int last, double shift, double far, double reach) {
@@ -111,7 +119,7 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
   const double shift = kShift * std::abs(least_value);
   LowestEigenvalues found;
-  found.factorisations = 1 + static_cast<int>(kBoundShifts.size());
+  found.factorisations = 2 + static_cast<int>(kBoundShifts.size());
   const double reach =
       std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factor));
   if (!std::isfinite(reach)) return found;
@@ -119,8 +127,9 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   if (!inverse.is_made()) return found;
 
   const auto free = static_cast<int>((start.array() != 0).count());
-  for (int wanted = kFirst;;) {
-    const int subspace = std::min(free, std::max(2 * wanted + kFirst, kSubspace));
+  const int expected = count_below(lower, reach - shift, factor);
+  for (int wanted = bounded_int(kMoreThanNeeded * expected, kFewest, kMost);;) {
+    const int subspace = std::min(free, 2 * wanted + kSpare);
     if (wanted + 2 > subspace) break;
     Spectra::GenEigsRealShiftSolver<InverseTangent> solver(inverse, wanted, subspace, -shift);
     try {
