@@ -6,7 +6,7 @@
 #include "energy/kernels/facet_volume.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/moving_part.hpp"
-#include "energy/rim_fan.hpp"
+#include "mesh/rim_fan.hpp"
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>

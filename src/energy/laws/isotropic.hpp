@@ -235,7 +235,7 @@ struct InvariantLaw {
   // exponential.
   template <typename AtVolume>
   double volume_by_newton(double least_distortion, const AtVolume& at) const {
-    constexpr int kMost = 6;
+    constexpr int kMost = 6;  // steps
     const double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion);
     double j = 1;
     for (int k = 0; k < kMost; ++k) {

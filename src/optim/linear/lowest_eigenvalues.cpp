@@ -97,8 +97,8 @@ double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, co
   return least;
 }
 
-// How many eigenvalues of the symmetric part lie below a value: about as many as of the tangent lie as near to
-// the shift.
+// How many eigenvalues of the symmetric part lie below a value: about as many as of the tangent lie as near
+// to the shift.
 int count_below(const SparseMatrix& lower, double value, Factorisation& factor) {
   SparseMatrix shifted = lower;
   shifted.diagonal().array() -= value;

@@ -1,4 +1,4 @@
-#include "energy/rim_fan.hpp"
+#include "mesh/rim_fan.hpp"
 
 #include <set>
 #include <utility>
