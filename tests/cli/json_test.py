@@ -139,7 +139,8 @@ class Json(CommandCase):
 
     def test_a_quiet_study_says_which_points_were_refused(self):
         scene = self.generate("disc", "--triangles", 100)
-        run = coapt("study", scene, "--sweep", "load_pressure.value=1,2kPa", "--solver", "nwton", "-q", "-o", self.folder / "out")
+        run = coapt("study", scene, "--sweep", "load_pressure.value=1,2kPa", "--solver", "nwton", "-q", "-j", 1,
+                    "-o", self.folder / "out")
         self.assertEqual((run.returncode, run.stdout), (1, ""))
         self.assertEqual(len(run.stderr.splitlines()), 2, run.stderr)
         for line, value in zip(run.stderr.splitlines(), ["1 kPa", "2 kPa"]):

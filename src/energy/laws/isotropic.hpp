@@ -241,7 +241,7 @@ struct InvariantLaw {
     for (int k = 0; k < kMost; ++k) {
       const Volume v = at(j);
       const double next = j - v.first / v.second;
-      if (!(next >= low && next <= high)) return 0;
+      if (!std::isfinite(v.second) || !(next >= low && next <= high)) return 0;
       if (std::abs(next - std::exchange(j, next)) <= kLastStep * next) return j;
     }
     return 0;
