@@ -72,7 +72,7 @@ std::unique_ptr<Parameter> factor_on(const Variation& varied, const SceneGeometr
                                      const Objective& objective) {
   const std::string& name = varied.parameter.name;
   for (const auto& term : objective.terms()) {
-    if (varied.parameter.key != "length_scale" || name != term->name() + ".length_scale") continue;
+    if (name != term->name() + ".length_scale") continue;
     const std::unique_ptr<LineAccess> lines = line_access(*term);
     bool has_lengths = lines != nullptr;
     for (int e = 0; has_lengths && e < term->stencils().count(); ++e) has_lengths = lines->rest_length(e) > 0;

@@ -97,6 +97,19 @@ TEST(MembraneStateOf, ACompressibleStripThatWrinklesHasTheStressOfTheFreeOne) {
 
 // Plane stress of St. Venant-Kirchhoff says what a triangle resists, not how thick it is: J = 1 by
 // convention. Uniaxial: S = E (l^2 - 1)/2, P = l S, and sigma = l^2 S, the force over the cross-section A0/l.
+// l2 = l3, so that one equation for the volume gives the width. Where an exponential is steep it is a guess.
+TEST(MembraneStateOf, AStripIsFreeOfStressAcrossAtTheWidthThatTheLawGives) {
+  for (const double bulk : {0.0, 3.0, 20.0, 400.0})
+    for (const double l : {1.001, 1.1, 1.3}) {
+      const NeoHookeanLaw neo_hookean{{0.4}, bulk};
+      const ExponentialLaw exponential{{0.01, 0.0075, 2}, bulk};
+      const StretchEnergy a = neo_hookean.evaluate(l, neo_hookean.free_width(l)),
+                          b = exponential.evaluate(l, exponential.free_width(l));
+      EXPECT_LT(std::abs(a.w2), 1e-8 * a.w1) << l << ", bulk " << bulk;
+      EXPECT_LT(std::abs(b.w2), 1e-8 * b.w1) << l << ", bulk " << bulk;
+    }
+}
+
 TEST(MembraneStateOf, StVenantKirchhoffKeepsItsVolume) {
   const double young = 2, poisson = 0.3, h = 0.4, l = 1.5, e = 0.5 * (l * l - 1);
   const double across = std::sqrt(1 - 2 * poisson * e);

@@ -150,14 +150,18 @@ double dice(const Volume& found, const Volume& labels, int chamber) {
   return 2 * both / either;
 }
 
-TEST(Burlina2010, FindsTheChambersAndTheLeafletsOfAPhantom) {
-  const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = 5});
-  const Phantom phantom = imaged(valve);
+SegmentOptions by_burlina(const Valve& valve) {
   SegmentOptions options;
   options.annulus = valve.leaflets.vertices(Eigen::all, valve.annulus);
   options.dynamic_range = 50;
   options.method = SegmentMethod::Burlina2010;
-  const Segmentation found = segment_leaflets(phantom.image, options);
+  return options;
+}
+
+TEST(Burlina2010, FindsTheChambersAndTheLeafletsOfAPhantom) {
+  const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = 5});
+  const Phantom phantom = imaged(valve);
+  const Segmentation found = segment_leaflets(phantom.image, by_burlina(valve));
   ASSERT_TRUE(found.burlina);
   EXPECT_GT(dice(found.burlina->chambers, phantom.labels, kLabelAtrium), 0.85);
   EXPECT_GT(dice(found.burlina->chambers, phantom.labels, kLabelVentricle), 0.85);
@@ -170,10 +174,7 @@ TEST(Burlina2010, FindsTheChambersAndTheLeafletsOfAPhantom) {
 TEST(Burlina2010, ContoursStopAtTheEdgesOfLeaflets) {
   const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = 5});
   const Phantom phantom = imaged(valve);
-  SegmentOptions options;
-  options.annulus = valve.leaflets.vertices(Eigen::all, valve.annulus);
-  options.dynamic_range = 50;
-  options.method = SegmentMethod::Burlina2010;
+  SegmentOptions options = by_burlina(valve);
   options.inhibition = Inhibition::Edge;
   const Segmentation found = segment_leaflets(phantom.image, options);
   ASSERT_TRUE(found.burlina);
