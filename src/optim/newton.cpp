@@ -3,10 +3,12 @@
 #include "optim/line_search.hpp"
 #include "optim/linear/gmres.hpp"
 #include "optim/linear/shifted_hessian.hpp"
+#include "optim/slack_junctions.hpp"
 #include "optim/worst_part.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace coapt {
 namespace {
@@ -36,7 +38,7 @@ constexpr double kCurved = 0.1, kFlat = 0.2;
 // Parts of the nodes in balance at the end of a step: how many one after the other, iterations of each, the
 // share of the force elsewhere to which each is solved, and how far its nodes may go, as a share of the
 // scene's extent. On 36 valves (docs/decisions/011) half that reach lost a little, a tenth all of the gain.
-constexpr int kParts = 3, kPartIterations = 15;
+constexpr int kParts = 3, kPartIterations = 8;
 constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
 
@@ -54,7 +56,9 @@ class Newton {
         monitor_(monitor),
         options_(options),
         is_part_(is_part),
-        hessian_(options.factorisation) {}
+        hessian_(options.factorisation) {
+    if (!is_part && !objective.is_damped()) junctions_.emplace(objective);
+  }
   ~Newton() {
     if (is_part_) return;
     if (rounding_ > 0) objective_.round_kinks(0);
@@ -72,6 +76,8 @@ class Newton {
       evaluate();
     }
     while (true) {
+      settle_junctions();
+      q = at_.q;
       if (const auto status = accept()) return *status;
       if (is_at_round_off()) return Status::Stalled;
       if (unit_ == 0) start_shift();
@@ -81,12 +87,12 @@ class Newton {
         find_direction();
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
         if (is_found) break;
+        if (is_part_) return Status::LineSearchFailed;  // its nodes have gone as far as they may
         if (monitor_.is_out_of_time()) return Status::TimeLimit;
         if (shift_ > kMostShiftOverUnit * unit_ || !hessian_.raise(monitor_, shift_))
           return Status::LineSearchFailed;
       }
       std::swap(at_, next_);
-      q = at_.q;
       raise_limits();
     }
   }
@@ -99,6 +105,13 @@ class Newton {
 
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
+
+  // Not on rounded kinks, which are no double roots.
+  void settle_junctions() {
+    if (!junctions_ || junctions_->is_empty() || rounding_ > 0) return;
+    if (objective_.relative_residual(at_.q, at_.g) >= kNear) return;
+    if (junctions_->settle(kNear * objective_.reference_force(at_.q), at_.q)) evaluate();
+  }
 
   // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium they follow to
   // the end, and go.
@@ -158,7 +171,9 @@ class Newton {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
-    for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
+    for (Vector* vector : {&left_, &conjugate_, &image_, &better_.q, &better_.g})
+      vector->resize(at_.q.size());
+    if (!is_part_) worst_.make_room(static_cast<size_t>(at_.q.size() / 3));
   }
 
   // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
@@ -247,12 +262,11 @@ class Newton {
   // measured (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
   // at `to` then keeps enough of what was promised.
   bool balance_worst_parts(LinePoint& to) {
-    PhaseTimer timer(monitor_.phases(), "parts");
-    LinePoint better = to;
+    better_ = to;
     for (int k = 0; k < kParts; ++k) {
-      if (!balance_worst_part(better)) return false;
-      if (at_.energy - better.energy < kFewKept * at_.promised(std::min(better.step, 1.0))) continue;
-      std::swap(to, better);
+      if (!balance_worst_part(better_)) return false;
+      if (at_.energy - better_.energy < kFewKept * at_.promised(std::min(better_.step, 1.0))) continue;
+      std::swap(to, better_);
       return true;
     }
     return false;
@@ -260,18 +274,18 @@ class Newton {
 
   // Returns false where there is no such part, or the point cannot be evaluated any more.
   bool balance_worst_part(LinePoint& at) {
-    const auto worst = worst_part(at.g, hessian_.matrix());
-    if (!worst) return false;
-    const auto part = objective_.part(at.q, worst->blocks, kPartReach * objective_.extent(at.q));
+    if (!find_worst_part(at.g, hessian_.matrix(), worst_)) return false;
+    PhaseTimer timer(monitor_.phases(), "parts");
+    const auto part = objective_.part(at.q, worst_.blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
-    const double elsewhere = worst->outside / objective_.reference_force(at.q);
+    const double elsewhere = worst_.outside / objective_.reference_force(at.q);
     const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), kPartIterations};
     const Observer nobody;
     Monitor monitor(*part, stop, nobody);
     Vector q = part->unknowns();
     Newton(options_, *part, monitor, true).minimize(q);
-    for (size_t k = 0; k < worst->blocks.size(); ++k)
-      at.q.segment<3>(3 * worst->blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
+    for (size_t k = 0; k < worst_.blocks.size(); ++k)
+      at.q.segment<3>(3 * worst_.blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
     at.energy = monitor_.gradient(at.q, at.g);
     return std::isfinite(at.energy) && at.g.allFinite();
   }
@@ -317,6 +331,7 @@ class Newton {
   Monitor& monitor_;
   const SolverOptions& options_;
   const bool is_part_;
+  std::optional<SlackJunctions> junctions_;  // of a whole objective without dampers
   ShiftedHessian hessian_;
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
@@ -324,7 +339,8 @@ class Newton {
   double residual_ = kInfinity;                                   // of this iterate
   double least_energy_ = kInfinity, least_residual_ = kInfinity;  // that counted as a gain
   int idle_ = 0;                                                  // iterates since
-  LinePoint at_, next_;
+  LinePoint at_, next_, better_;
+  WorstPart worst_;
   Vector work_, symmetric_, direction_, last_;
   Vector left_, conjugate_, image_;  // of the conjugate gradients
 };

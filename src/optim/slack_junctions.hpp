@@ -1,0 +1,52 @@
+// Nodes that lines alone hold, such as those where trees of chords branch, and that bear nothing as long as
+// all of their lines are slack.
+#pragma once
+
+#include "energy/objective.hpp"
+
+#include <array>
+#include <vector>
+
+namespace coapt {
+
+class TermAccess;
+
+// Where a line's slack ends the energy is no quadratic: Newton's method approaches it by halves (a double
+// root, Decker & Kelley 1980), and a shape that lies there is no smooth function of lengths and positions. So
+// junctions whose lines can all be slack are moved to where they are.
+class SlackJunctions {
+ public:
+  // objective: must outlive this, and prescribe no other places meanwhile.
+  explicit SlackJunctions(const Objective& objective);
+
+  bool is_empty() const { return trees_.empty(); }
+
+  // q: unknowns of the objective. In every tree whose lines pull by less than `most` [force], one of them not
+  // slack by a small share of its length, the junctions move to a place near by where all lines are slack by
+  // it; where there is none they stay. Returns whether any moved.
+  bool settle(double most, Vector& q);
+
+ private:
+  struct Line {
+    const TermAccess* term;
+    int element;
+    std::array<int, 2> nodes;
+    std::array<bool, 2> is_junction;
+  };
+  struct Tree {  // junctions that lines tie to each other
+    std::vector<int> junctions;
+    std::vector<Line> lines;  // all that end at them
+  };
+
+  void place_lines(const Vector& q);
+  bool settle(const Tree& tree, double most);
+  double length(const Line& line) const { return (x_.col(line.nodes[1]) - x_.col(line.nodes[0])).norm(); }
+  double force(const Line& line) const;
+  bool is_slack(const Line& line) const;
+
+  std::vector<Tree> trees_;
+  std::vector<int> block_;  // of unknowns, by node; -1: wholly prescribed
+  Points x_;                // 3 x node_count; those of lines alone are of the last q
+};
+
+}  // namespace coapt
