@@ -1,7 +1,7 @@
 #include "optim/lbfgs.hpp"
 
-#include "optim/linear/shifted_hessian.hpp"
 #include "optim/quasi_newton.hpp"
+#include "optim/shifted_hessian.hpp"
 
 #include <algorithm>
 #include <deque>

@@ -2,7 +2,7 @@
 
 #include "optim/line_search.hpp"
 #include "optim/linear/gmres.hpp"
-#include "optim/linear/shifted_hessian.hpp"
+#include "optim/shifted_hessian.hpp"
 #include "optim/slack_junctions.hpp"
 #include "optim/worst_part.hpp"
 

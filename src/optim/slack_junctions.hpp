@@ -3,9 +3,7 @@
 #pragma once
 
 #include "energy/objective.hpp"
-
-#include <array>
-#include <vector>
+#include "mesh/slack_lines.hpp"
 
 namespace coapt {
 
@@ -27,26 +25,18 @@ class SlackJunctions {
   bool settle(double most, Vector& q);
 
  private:
-  struct Line {
+  struct Element {
     const TermAccess* term;
-    int element;
-    std::array<int, 2> nodes;
-    std::array<bool, 2> is_junction;
-  };
-  struct Tree {  // junctions that lines tie to each other
-    std::vector<int> junctions;
-    std::vector<Line> lines;  // all that end at them
+    int index;
   };
 
-  void place_lines(const Vector& q);
-  bool settle(const Tree& tree, double most);
-  double length(const Line& line) const { return (x_.col(line.nodes[1]) - x_.col(line.nodes[0])).norm(); }
-  double force(const Line& line) const;
-  bool is_slack(const Line& line) const;
+  double force(int line) const;
 
-  std::vector<Tree> trees_;
+  SlackLines lines_;
+  std::vector<Element> elements_;  // of each line
+  std::vector<LineTree> trees_;
   std::vector<int> block_;  // of unknowns, by node; -1: wholly prescribed
-  Points x_;                // 3 x node_count; those of lines alone are of the last q
+  Points x_;                // 3 x node_count; the ends of lines are those of the last q
 };
 
 }  // namespace coapt

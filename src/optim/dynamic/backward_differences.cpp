@@ -1,6 +1,6 @@
 #include "optim/dynamic/time_integrator.hpp"
 #include "optim/linear/gmres.hpp"
-#include "optim/linear/shifted_hessian.hpp"
+#include "optim/shifted_hessian.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
 

@@ -3,8 +3,8 @@
 // same bits on all processors with fused multiplication.
 #pragma once
 
+#include "core/quad.hpp"
 #include "optim/linear/dense_front.hpp"
-#include "optim/linear/quad.hpp"
 
 #include <algorithm>
 #include <cmath>

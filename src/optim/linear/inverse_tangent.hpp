@@ -3,7 +3,7 @@
 #pragma once
 
 #include "optim/linear/bordered_factor.hpp"
-#include "optim/stability/free_directions.hpp"
+#include "optim/linear/free_directions.hpp"
 
 #include <Eigen/SparseLU>
 

@@ -3,9 +3,9 @@
 // Softw. 9 (1983); Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992).
 #pragma once
 
+#include "core/scratch.hpp"
 #include "core/thread_team.hpp"
 #include "optim/linear/dense_front.hpp"
-#include "optim/linear/scratch.hpp"
 #include "optim/linear/supernodes.hpp"
 
 #include <memory>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optim/linear/factorisation.hpp"
-#include "optim/stability/free_directions.hpp"
+#include "optim/linear/free_directions.hpp"
 
 #include <complex>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "optim/stability/free_directions.hpp"
+#include "optim/linear/free_directions.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>

@@ -1,4 +1,4 @@
-#include "optim/linear/shifted_hessian.hpp"
+#include "optim/shifted_hessian.hpp"
 
 #include <algorithm>
 #include <cmath>

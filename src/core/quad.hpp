@@ -1,5 +1,5 @@
-// Private to this room: four or eight numbers side by side, and code for the processor at hand, with such
-// vectors and fused multiplication where it has them.
+// Four or eight numbers side by side, and code for the processor at hand, with such vectors and fused
+// multiplication where it has them.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__)
