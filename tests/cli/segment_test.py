@@ -82,6 +82,31 @@ class SegmentAnImage(CommandCase):
     def test_options_that_belong_to_another_method_are_refused(self):
         self.assert_bad_input(self.segment("--threshold", 3, "--method", "ridge"), "--threshold", "isosurface")
         self.assert_bad_input(self.segment("--inhibition", "edge", "--method", "ridge"), "--inhibition", "burlina-2010")
+        self.assert_bad_input(self.segment("--template", "valve.json", "--method", "ridge"), "--template", "template")
+        self.assert_bad_input(self.segment("--second-route", "--method", "isosurface"), "two routes")
+
+    def test_a_template_finds_what_the_first_route_does(self):
+        figures, said = self.found("--method", "template", "--dynamic-range", 50, "--second-route")
+        for mean in self.distances():
+            self.assertLess(mean, 0.3)
+        other = figures["second_route"]
+        self.assertLess(other["mean_mm"], 0.3)
+        self.assertGreater(other["p95_mm"], other["mean_mm"])
+        self.assertIn("second route", said)
+        self.assertIn(b"second_route_mm", (self.folder / "out/leaflets.vtp").read_bytes())
+
+    def test_a_valve_of_ones_own_is_a_template(self):
+        valve = self.folder / "other/valve.json"
+        run = coapt("generate", "mitral", "--seed", 7, "--triangles", 600, "-o", valve.parent)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        options = ("--method", "template", "--dynamic-range", 50, "--template", valve)
+        self.found(*options)
+        for mean in self.distances():
+            self.assertLess(mean, 0.3)
+        without = json.loads(valve.read_text())
+        del without["free_edge"]
+        valve.write_text(json.dumps(without))
+        self.assert_bad_input(self.segment(*options), "valve.json", "annulus or no free edge")
 
     def test_burlinas_method_leaves_its_pieces_and_a_valve(self):
         seeds = self.folder / "seeds.mrk.json"

@@ -5,7 +5,10 @@
 #include "cli/progress.hpp"
 #include "core/error.hpp"
 #include "formats/json/markups.hpp"
+#include "formats/json/valve_json.hpp"
 #include "image/read_volume.hpp"
+#include "image/template/fit_template.hpp"
+#include "image/template/given_template.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +28,8 @@ using Names = std::vector<std::pair<std::string, Value>>;
 const Names<SegmentMethod>& methods() {
   static const Names<SegmentMethod> kNames = {{"ridge", SegmentMethod::Ridge},
                                               {"isosurface", SegmentMethod::Isosurface},
-                                              {"burlina-2010", SegmentMethod::Burlina2010}};
+                                              {"burlina-2010", SegmentMethod::Burlina2010},
+                                              {"template", SegmentMethod::Template}};
   return kNames;
 }
 
@@ -49,9 +53,23 @@ std::string name_of(const Names<Value>& names, Value value) {
   return "";
 }
 
+std::optional<Valve> template_shape(const SegmentArguments& arguments) {
+  if (arguments.shape.empty()) return std::nullopt;
+  ValveFile file = read_valve(arguments.shape);
+  for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
+  try {
+    check_template(file.valve);
+  } catch (const InputError& error) {
+    throw error.within(arguments.shape);
+  }
+  return std::move(file.valve);
+}
+
 SegmentOptions segment_options(const SegmentArguments& arguments) {
   SegmentOptions options;
   options.method = value_named(methods(), arguments.method);
+  options.finder = template_finder({.shape = template_shape(arguments)});
+  options.has_second_route = arguments.has_second_route;
   options.inhibition = value_named(inhibitions(), arguments.inhibition);
   if (!arguments.seeds.empty()) {
     options.seeds = papillary_points(arguments.seeds);
@@ -86,6 +104,9 @@ void print_found(const Segmentation& found) {
               found.thickness_median, found.blur);
   std::printf("  %-12s %.2f mm across the leaflets on average, %.2f mm of the free edge along them\n",
               "deviation", found.deviation.mean(), found.edge_deviation);
+  if (const std::optional<RouteAgreement>& other = found.second_route)
+    std::printf("  %-12s %.2f mm away on average, 95 %% %.2f mm; its free edge %.2f mm, its area %+.1f %%\n",
+                "second route", other->mean, other->p95, other->free_edge, 100 * other->area_difference);
   std::printf("  %-12s %.0f %% of the area\n", "shown", 100 * found.shown_share);
   std::printf("  %-12s %d x %d x %d voxels, %.1f s of the processor\n", "looked at", found.size[0],
               found.size[1], found.size[2], found.cpu_seconds);
@@ -117,13 +138,21 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
                      "Standard deviation of the blur across the leaflets, such as 0.4mm (default: found)");
   auto* method =
       command
-          .add_option(
-              "--method", arguments.method,
-              "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
-              "is above a threshold; burlina-2010: what the thin-tissue detector and the level set of "
-              "that paper leave")
+          .add_option("--method", arguments.method,
+                      "ridge: the middle of the bright sheet; isosurface: the side to the atrium of what "
+                      "is above a threshold; template: a shape that is fitted by its energy in the image; "
+                      "burlina-2010: what the thin-tissue detector and the level set of "
+                      "that paper leave")
           ->check(CLI::IsMember(methods()))
           ->capture_default_str();
+  command
+      .add_option("--template", arguments.shape,
+                  "Of template: a valve JSON with leaflets, annulus and free edge (default: a funnel)")
+      ->needs(method);
+  command.add_flag(
+      "--second-route", arguments.has_second_route,
+      "Also find the leaflets as template where the method is ridge, or the other way round, and "
+      "say how far the two lie apart");
   command.add_option("--threshold", arguments.threshold, "Of the isosurface (default: Otsu's)")
       ->needs(method);
   command
@@ -161,6 +190,9 @@ Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volu
   if (arguments.threshold) needs_method(SegmentMethod::Isosurface, "--threshold");
   if (!arguments.seeds.empty() || value_named(inhibitions(), arguments.inhibition) != Inhibition::Intensity)
     needs_method(SegmentMethod::Burlina2010, "--seeds or --inhibition");
+  if (!arguments.shape.empty()) needs_method(SegmentMethod::Template, "--template");
+  if (arguments.has_second_route && !arguments.mask.empty())
+    throw InputError("--second-route: is of what the image shows, and not of a --mask");
   const SegmentOptions options = segment_options(arguments);
   try {
     const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());

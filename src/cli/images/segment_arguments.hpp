@@ -14,12 +14,12 @@ class App;
 namespace coapt::cli {
 
 struct SegmentArguments {
-  std::string volume, annulus, papillary, mask, seeds, output, edge_length = "1.2mm";
+  std::string volume, annulus, papillary, mask, seeds, shape, output, edge_length = "1.2mm";
   std::string method, inhibition;  // add_segment_options sets the defaults
   std::optional<int> frame;
   std::optional<double> threshold, dynamic_range;
   std::string blur;  // empty: found
-  bool keeps_evidence = false;
+  bool keeps_evidence = false, has_second_route = false;
 };
 
 void add_segment_options(CLI::App& command, SegmentArguments& arguments);

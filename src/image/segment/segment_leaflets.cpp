@@ -25,6 +25,7 @@ constexpr double kShown = 0.3;         // evidence from which a place counts as 
 // What phantoms show beyond the noise of the fit: standard deviation of a place, in voxels.
 constexpr double kPlaceNoise = 0.15;
 constexpr double kLeastAngle = 20;    // below which the mesh is doubtful [degrees]
+constexpr double kMostApart = 0.05;   // of the area, from which two routes do not agree
 constexpr double kLittleShown = 0.7;  // of the area, below which the result is doubtful
 
 void check(const Volume& volume, const SegmentOptions& options) {
@@ -49,6 +50,11 @@ void check(const Volume& volume, const SegmentOptions& options) {
     defects.push_back("the edge length is " + number_text(options.edge_length, 3) + " mm; expected 0.3 to 5");
   if (!(options.smoothing >= 0.2 && options.smoothing <= 10))
     defects.push_back("the smoothing is " + number_text(options.smoothing, 3) + " mm; expected 0.2 to 10");
+  const bool is_route = options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template;
+  if (options.has_second_route && !is_route)
+    defects.push_back("only `ridge` and `template` are two routes to the same layer, that can be compared");
+  if (!options.finder && (options.method == SegmentMethod::Template || options.has_second_route))
+    defects.push_back("nobody said how the layer of a template is found");
   if (!defects.empty()) throw InputError(defects);
 }
 
@@ -112,13 +118,24 @@ BurlinaSegmentation burlina_pieces(const Volume& volume, const SegmentOptions& o
 Volume looked_at(const Volume& volume, const SegmentOptions& options, const AnnulusPlane& plane,
                  const TrackOptions& track, std::optional<double>& threshold, Segmentation& result) {
   if (options.mask) return occupied_by_mask(volume, *options.mask);
-  if (options.method == SegmentMethod::Ridge) return volume;
+  if (options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template) return volume;
   if (options.method == SegmentMethod::Burlina2010) {
     result.burlina = burlina_pieces(volume, options, plane, track);
     return result.burlina->leaflets;
   }
   threshold = options.threshold ? *options.threshold : otsu_threshold(volume);
   return greatest_part(volume, *threshold);
+}
+
+// Row by row from the annulus.
+FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, const SheetEvidence& ridge,
+                          const SegmentOptions& options, const TrackOptions& track, Phases& phases) {
+  FoundLayer layer;
+  layer.grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
+  layer.fit = fit_layer(layer.grid, ridge, options.smoothing, kFitRounds);
+  phases.begin("free edge");
+  layer.edge = free_edge(seen, evidence, layer.grid);
+  return layer;
 }
 
 // The points above the edge that the image shows.
@@ -177,6 +194,14 @@ void add_warnings(Segmentation& result) {
   if (result.least_angle < kLeastAngle)
     result.warnings.push_back("the least angle of the mesh is " + number_text(result.least_angle, 3) +
                               " degrees, below " + number_text(kLeastAngle, 2));
+  if (result.second_route && result.second_route->apart_share > kMostApart)
+    result.warnings.push_back("the two routes to the leaflets lie farther apart than both say they may on " +
+                              number_text(100 * result.second_route->apart_share, 2) +
+                              " % of the area; look at second_route_mm in leaflets.vtp");
+  if (result.second_route && result.second_route->has_edges_apart)
+    result.warnings.push_back("the two routes to the leaflets end " +
+                              number_text(result.second_route->free_edge, 2) +
+                              " mm apart on average, more than both say they may; the free edge is in doubt");
   if (result.burlina && !result.burlina->is_done)
     result.warnings.push_back("the contours of the chambers still grew after " +
                               std::to_string(result.burlina->steps) + " steps");
@@ -184,13 +209,26 @@ void add_warnings(Segmentation& result) {
     result.warnings.push_back("no thickness could be fitted; the valve states none");
 }
 
+// The deviation of each vertex along its normal.
+Vector deviation_at(const LayerMesh& mesh, const LayerFit& fit, double voxel) {
+  const double common = kPlaceNoise * voxel;
+  return (at_vertices(mesh, fit.deviation).array().square() + common * common).sqrt();
+}
+
+void compare_routes(Segmentation& result, const FoundLayer& other, double edge_length, double voxel) {
+  const LayerMesh mesh = layer_mesh(other.grid, other.edge.lengths, edge_length);
+  const Valve& valve = result.valve;
+  result.second_route =
+      agreement_of({valve.leaflets, valve.free_edge, result.deviation, result.edge_deviation},
+                   {mesh.mesh, mesh.free_edge, deviation_at(mesh, other.fit, voxel), other.edge.deviation});
+}
+
 void gather(Segmentation& result, const LayerMesh& mesh, const LayerFit& fit, double voxel) {
   result.valve.leaflets = mesh.mesh;
   result.valve.annulus = mesh.annulus;
   result.valve.free_edge = mesh.free_edge;
   result.valve.thickness = result.thickness_median;
-  const double common = kPlaceNoise * voxel;
-  result.deviation = (at_vertices(mesh, fit.deviation).array().square() + common * common).sqrt();
+  result.deviation = deviation_at(mesh, fit, voxel);
   result.evidence = at_vertices(mesh, fit.evidence);
   result.noise = fit.noise;
   result.noise_area = fit.noise_area;
@@ -229,11 +267,15 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
 
   phases.begin("layer from the annulus");
   track.ventricle = side_of_ventricle(evidence, options, plane, track);
-  LayerGrid grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
-  const LayerFit fit = fit_layer(grid, ridge, options.smoothing, kFitRounds);
-
-  phases.begin("free edge");
-  const FreeEdge edge = free_edge(seen, evidence, grid);
+  const auto fitted = [&] {
+    return options.finder({seen, evidence, ridge, options.annulus, track.ventricle, options.smoothing});
+  };
+  const auto followed = [&] { return followed_layer(seen, evidence, ridge, options, track, phases); };
+  const bool is_fitted = options.method == SegmentMethod::Template;
+  const FoundLayer layer = is_fitted ? fitted() : followed();
+  const LayerGrid& grid = layer.grid;
+  const LayerFit& fit = layer.fit;
+  const FreeEdge& edge = layer.edge;
   const std::vector<char> is_seen = seen_points(grid, fit, edge);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
   result.blur = mean_of(blur, is_seen);
@@ -248,6 +290,10 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   result.thickness_median = median_of_finite(result.thickness);
   if (threshold) move_to_atrium(mesh, grid, part, *threshold);
   gather(result, mesh, fit, part.spacing.maxCoeff());
+  if (options.has_second_route) {
+    phases.begin("second route");
+    compare_routes(result, is_fitted ? followed() : fitted(), options.edge_length, part.spacing.maxCoeff());
+  }
   if (options.keeps_evidence) result.strength = std::move(evidence.strength);
   add_warnings(result);
   result.cpu_seconds = cpu_seconds() - cpu_start;

@@ -64,6 +64,12 @@ OrderedJson document(const Segmentation& found, const std::string& volume, const
       {"phase_seconds", phases},
       {"cpu_seconds", found.cpu_seconds},
       {"warnings", found.warnings}};
+  if (const std::optional<RouteAgreement>& other = found.second_route)
+    written["second_route"] = {{"mean_mm", other->mean},
+                               {"p95_mm", other->p95},
+                               {"free_edge_mean_mm", other->free_edge},
+                               {"area_difference", other->area_difference},
+                               {"apart_share", other->apart_share}};
   if (found.burlina)
     written["level_set"] = {{"steps", found.burlina->steps}, {"is_done", found.burlina->is_done}};
   return written;
@@ -80,6 +86,8 @@ void write_segmentation(const std::filesystem::path& folder, const Segmentation&
   surface.point_arrays.push_back({"thickness_mm", found.thickness.transpose()});
   surface.point_arrays.push_back({"deviation_mm", found.deviation.transpose()});
   surface.point_arrays.push_back({"evidence", found.evidence.transpose()});
+  if (found.second_route)
+    surface.point_arrays.push_back({"second_route_mm", found.second_route->distances.transpose()});
   surface.texts.push_back({"units", {"mm"}});
   surface.texts.push_back({"SPACE", {"LPS"}});
   write_vtp(folder / "leaflets.vtp", surface);
