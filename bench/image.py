@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """How near `coapt segment` comes to the leaflets of phantoms, whose truth is known.
 
-    bench/image.py [path of coapt] [--seeds N] [--case NAME ...] [-o FILE.csv]
+    bench/image.py [path of coapt] [--seeds N] [--case NAME ...] [--method NAME] [-o FILE.csv]
 
 Generates mitral valves of seeds 0 to N - 1, solves them, makes ultrasound-like volumes of each (`coapt phantom`), looks for the
 leaflets in that of the open valve, compares them with the surface that it was made of, closes them (`coapt close`), and compares the
 closed valve with the one that was imaged. Prints a Markdown table for bench/tables.py: the median over all seeds, the worst of them,
-and how many meet the goal; with -o also a row for each volume. Volumes at 0.7 mm have 15 % dropout.
+and how many meet the goal; with -o also a row for each volume. Volumes at 0.7 mm have 15 % dropout. --method is that of `segment`.
 """
 import argparse
 import csv
@@ -268,11 +268,11 @@ def made_phantom(coapt: str, case: Case, seed: int, folder: pathlib.Path) -> Non
             "-o", str(folder / "phantom"))
 
 
-def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path) -> dict[str, float]:
+def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str) -> dict[str, float]:
     made_phantom(coapt, case, seed, folder)
     truth, found = folder / "phantom/open", folder / "found"
     _, megabytes = command(coapt, "segment", str(truth / "image.nrrd"), "--annulus", str(truth / "annulus.mrk.json"), "--dynamic-range",
-                           "50", "-o", str(found))
+                           "50", "--method", method, "-o", str(found))
     apart = distances(coapt, found / "leaflets.obj", truth / "surface.obj", folder / "registered")
     code, _ = command(coapt, "import", str(found / "valve.json"), "-o", str(folder / "scene"), may_fail=True)
     dice = [math.nan, math.nan]  # where what was found passes through itself, which is refused
@@ -337,6 +337,7 @@ def main() -> None:
     parser.add_argument("coapt", nargs="?", default="build/ci/bin/coapt")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--case", action="append", choices=CASES)
+    parser.add_argument("--method", default="ridge")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     options = parser.parse_args()
     names = options.case or list(CASES)
@@ -344,7 +345,7 @@ def main() -> None:
     for seed in range(options.seeds):
         for name in names:
             with tempfile.TemporaryDirectory() as folder:
-                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder)))
+                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder), options.method))
             print(name, seed, {key: round(value, 3) for key, value in rows[name][-1].items()}, file=sys.stderr, flush=True)
     print_table(names, rows)
     kept = [{"case": name, "seed": seed} | row for name in names for seed, row in enumerate(rows[name])]

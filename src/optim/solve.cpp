@@ -12,6 +12,7 @@
 #include "optim/stability/stationary_point.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace coapt {
@@ -102,8 +103,9 @@ void conclude(const Outcome& outcome, const Solver& solver, const Problem& probl
 }
 
 // Leaves a saddle, or a divergence under a follower load, along its unstable mode: downhill, by the work
-// along the way where there is no energy. What descends from a saddle never comes back to it, as its energy
-// is lower; what a follower load drives may, so that every other attempt tries the other way first, and later
+// along the way where there is no energy, and to the side on which that falls more, as the sign of a mode is
+// the accident of the order of nodes. What descends from a saddle never comes back to it, as its energy is
+// lower; what a follower load drives may, so that every other attempt tries the other side first, and later
 // ones go farther. Returns false where there is nothing to leave or no way down was found.
 bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result& result) {
   const Vector& mode = result.certificate.stability.descent;
@@ -111,16 +113,25 @@ bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result&
   if (objective.has_circulatory_force()) objective.set_path_anchor(result.q);
   const double energy = monitor.value(result.q), wanted = energy - monitor.energy_noise(energy);
   const double first = (1 + attempt / 2) * kFirstKick * objective.extent(result.q);  // NOLINT: whole pairs
-  const double forward = attempt % 2 == 0 ? 1 : -1;
   double length = first / mode.lpNorm<Eigen::Infinity>();
-  for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25)
-    for (const double sign : {forward, -forward}) {
-      const double step = monitor.step_limit(result.q, sign * mode, length);
-      const Vector q = result.q + sign * step * mode;
-      if (!(monitor.value(q) < wanted)) continue;
-      result.q = q;
+  for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25) {
+    struct Side {
+      Vector q;
+      double energy;
+    };
+    std::array<Side, 2> sides;
+    for (const int k : {0, 1}) {
+      const Vector way = (k == 0 ? 1 : -1) * mode;
+      sides[k].q = result.q + monitor.step_limit(result.q, way, length) * way;
+      sides[k].energy = monitor.value(sides[k].q);
+    }
+    const bool is_second = (sides[1].energy < sides[0].energy) == (attempt % 2 == 0);
+    for (const bool other : {is_second, !is_second}) {
+      if (!(sides[other].energy < wanted)) continue;
+      result.q = std::move(sides[other].q);
       return true;
     }
+  }
   return false;
 }
 
