@@ -8,7 +8,6 @@ namespace coapt {
 namespace {
 
 constexpr double kSlack = 1e-4;  // of its length, by which a line is to be slack
-
 const TermAccess* lines_of(const EnergyTerm& term) {
   const TermAccess* access = access_of(term);
   return access != nullptr && access->kind() == TermKind::Line && access->has_lines() ? access : nullptr;

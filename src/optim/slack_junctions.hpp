@@ -1,5 +1,5 @@
-// Nodes that lines alone hold, such as those where trees of chords branch, and that bear nothing as long as
-// all of their lines are slack.
+// Nodes that lines alone hold, such as those where chords branch, and that bear nothing while these are
+// slack.
 #pragma once
 
 #include "energy/objective.hpp"
@@ -20,8 +20,8 @@ class SlackJunctions {
   bool is_empty() const { return trees_.empty(); }
 
   // q: unknowns of the objective. In every tree whose lines pull by less than `most` [force], one of them not
-  // slack by a small share of its length, the junctions move to a place near by where all lines are slack by
-  // it; where there is none they stay. Returns whether any moved.
+  // slack by a small share of its length, the junctions move to where all are, if that is near. Whether any
+  // moved.
   bool settle(double most, Vector& q);
 
  private:

@@ -115,22 +115,19 @@ bool leave_unstable(Objective& objective, int attempt, Monitor& monitor, Result&
   const double first = (1 + attempt / 2) * kFirstKick * objective.extent(result.q);  // NOLINT: whole pairs
   double length = first / mode.lpNorm<Eigen::Infinity>();
   for (int trial = 0; trial < kKickTrials; ++trial, length *= 0.25) {
-    struct Side {
-      Vector q;
-      double energy;
-    };
-    std::array<Side, 2> sides;
+    std::array<Vector, 2> sides;
+    std::array<double, 2> energies{};
     for (const int k : {0, 1}) {
       const Vector way = (k == 0 ? 1 : -1) * mode;
-      sides[k].q = result.q + monitor.step_limit(result.q, way, length) * way;
-      sides[k].energy = monitor.value(sides[k].q);
+      sides[k] = result.q + monitor.step_limit(result.q, way, length) * way;
+      energies[k] = monitor.value(sides[k]);
     }
-    const bool is_second = (sides[1].energy < sides[0].energy) == (attempt % 2 == 0);
-    for (const bool other : {is_second, !is_second}) {
-      if (!(sides[other].energy < wanted)) continue;
-      result.q = std::move(sides[other].q);
-      return true;
-    }
+    const int lower = energies[1] < energies[0] ? 1 : 0, first_tried = attempt % 2 == 0 ? lower : 1 - lower;
+    for (const int k : {first_tried, 1 - first_tried})
+      if (energies[k] < wanted) {
+        result.q = sides[k];
+        return true;
+      }
   }
   return false;
 }

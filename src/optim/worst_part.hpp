@@ -10,10 +10,8 @@ namespace coapt {
 struct WorstPart {
   std::vector<int> blocks;  // of unknowns, ascending
   double outside = 0;       // greatest nodal force elsewhere [force]
-
   Vector force;             // of each block, to work with
   std::vector<char> is_in;  // the same
-
   void make_room(size_t count) {
     blocks.reserve(count);
     force.resize(static_cast<Eigen::Index>(count));
