@@ -3,12 +3,10 @@
 #include "optim/line_search.hpp"
 #include "optim/linear/gmres.hpp"
 #include "optim/shifted_hessian.hpp"
-#include "optim/slack_junctions.hpp"
 #include "optim/worst_part.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace coapt {
 namespace {
@@ -38,7 +36,7 @@ constexpr double kCurved = 0.1, kFlat = 0.2;
 // Parts of the nodes in balance at the end of a step: how many one after the other, iterations of each, the
 // share of the force elsewhere to which each is solved, and how far its nodes may go, as a share of the
 // scene's extent. On 36 valves (docs/decisions/011) half that reach lost a little, a tenth all of the gain.
-constexpr int kParts = 3, kPartIterations = 8;
+constexpr int kParts = 3, kPartIterations = 15;
 constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
 
@@ -56,9 +54,7 @@ class Newton {
         monitor_(monitor),
         options_(options),
         is_part_(is_part),
-        hessian_(options.factorisation) {
-    if (!is_part && !objective.is_damped()) junctions_.emplace(objective);
-  }
+        hessian_(options.factorisation) {}
   ~Newton() {
     if (is_part_) return;
     if (rounding_ > 0) objective_.round_kinks(0);
@@ -76,8 +72,6 @@ class Newton {
       evaluate();
     }
     while (true) {
-      settle_junctions();
-      q = at_.q;
       if (const auto status = accept()) return *status;
       if (is_at_round_off()) return Status::Stalled;
       if (unit_ == 0) start_shift();
@@ -93,6 +87,7 @@ class Newton {
           return Status::LineSearchFailed;
       }
       std::swap(at_, next_);
+      q = at_.q;
       raise_limits();
     }
   }
@@ -105,13 +100,6 @@ class Newton {
 
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
-
-  // Not on rounded kinks, which are no double roots.
-  void settle_junctions() {
-    if (!junctions_ || junctions_->is_empty() || rounding_ > 0) return;
-    if (objective_.relative_residual(at_.q, at_.g) >= kNear) return;
-    if (junctions_->settle(kNear * objective_.reference_force(at_.q), at_.q)) evaluate();
-  }
 
   // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium they follow to
   // the end, and go.
@@ -171,9 +159,7 @@ class Newton {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
-    for (Vector* vector : {&left_, &conjugate_, &image_, &better_.q, &better_.g})
-      vector->resize(at_.q.size());
-    if (!is_part_) worst_.make_room(static_cast<size_t>(at_.q.size() / 3));
+    for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
   }
 
   // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
@@ -262,11 +248,12 @@ class Newton {
   // measured (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
   // at `to` then keeps enough of what was promised.
   bool balance_worst_parts(LinePoint& to) {
-    better_ = to;
+    PhaseTimer timer(monitor_.phases(), "parts");
+    LinePoint better = to;
     for (int k = 0; k < kParts; ++k) {
-      if (!balance_worst_part(better_)) return false;
-      if (at_.energy - better_.energy < kFewKept * at_.promised(std::min(better_.step, 1.0))) continue;
-      std::swap(to, better_);
+      if (!balance_worst_part(better)) return false;
+      if (at_.energy - better.energy < kFewKept * at_.promised(std::min(better.step, 1.0))) continue;
+      std::swap(to, better);
       return true;
     }
     return false;
@@ -274,18 +261,18 @@ class Newton {
 
   // Returns false where there is no such part, or the point cannot be evaluated any more.
   bool balance_worst_part(LinePoint& at) {
-    if (!find_worst_part(at.g, hessian_.matrix(), worst_)) return false;
-    PhaseTimer timer(monitor_.phases(), "parts");
-    const auto part = objective_.part(at.q, worst_.blocks, kPartReach * objective_.extent(at.q));
+    const auto worst = worst_part(at.g, hessian_.matrix());
+    if (!worst) return false;
+    const auto part = objective_.part(at.q, worst->blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
-    const double elsewhere = worst_.outside / objective_.reference_force(at.q);
+    const double elsewhere = worst->outside / objective_.reference_force(at.q);
     const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), kPartIterations};
     const Observer nobody;
     Monitor monitor(*part, stop, nobody);
     Vector q = part->unknowns();
     Newton(options_, *part, monitor, true).minimize(q);
-    for (size_t k = 0; k < worst_.blocks.size(); ++k)
-      at.q.segment<3>(3 * worst_.blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
+    for (size_t k = 0; k < worst->blocks.size(); ++k)
+      at.q.segment<3>(3 * worst->blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
     at.energy = monitor_.gradient(at.q, at.g);
     return std::isfinite(at.energy) && at.g.allFinite();
   }
@@ -331,7 +318,6 @@ class Newton {
   Monitor& monitor_;
   const SolverOptions& options_;
   const bool is_part_;
-  std::optional<SlackJunctions> junctions_;  // of a whole objective without dampers
   ShiftedHessian hessian_;
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
@@ -339,8 +325,7 @@ class Newton {
   double residual_ = kInfinity;                                   // of this iterate
   double least_energy_ = kInfinity, least_residual_ = kInfinity;  // that counted as a gain
   int idle_ = 0;                                                  // iterates since
-  LinePoint at_, next_, better_;
-  WorstPart worst_;
+  LinePoint at_, next_;
   Vector work_, symmetric_, direction_, last_;
   Vector left_, conjugate_, image_;  // of the conjugate gradients
 };

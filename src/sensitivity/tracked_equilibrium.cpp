@@ -3,7 +3,6 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "optim/newton.hpp"
-#include "optim/slack_junctions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -224,8 +223,6 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report
   if (objective_.step_limit(x, predicted, 1) < 1) return false;
   objective_.prescribe(x + predicted);
   q_ = objective_.unknowns(x + predicted);
-  // What is slack has no share in the prediction, and becomes taut where its lines became shorter.
-  SlackJunctions(objective_).settle(kInfinity, q_);
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q_);
   if (!std::isfinite(objective_.gradient(q_, g_)) || !g_.allFinite()) return false;
   Vector direction, next_q, next_g;
