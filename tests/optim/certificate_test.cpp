@@ -3,6 +3,7 @@
 #include "optim/stability/certificate.hpp"
 
 #include "energy/element_term.hpp"
+#include "energy/kernels/link.hpp"
 #include "energy/kernels/surface_tension.hpp"
 #include "energy/load_dead.hpp"
 #include "energy/load_pressure.hpp"
@@ -212,24 +213,7 @@ TEST_P(Solvers, S9LeavesASaddleForAMinimum) {
               summary(result.certificate).c_str());
 }
 
-// Pulls and pushes.
-struct Strut {
-  static constexpr int kNodes = 2;
-  static constexpr std::string_view kType = "strut";
-  static constexpr TermRole kRole = TermRole::Internal;
-  struct Rest {
-    double length;
-  };
-  static double evaluate(const Rest& rest, const Eigen::Vector<double, 6>& x, Eigen::Vector<double, 6>* g,
-                         Eigen::Matrix<double, 6, 6>* H) {
-    const Vec3 d = x.tail<3>() - x.head<3>();
-    const double l = d.norm(), e = l - rest.length;
-    expand_axial({0.5 * e * e, e, 1}, d, l, g, H);
-    return 0.5 * e * e;
-  }
-};
-
-// Two struts in a row, too long for their supports, and a small force across: at the saddle they bend a
+// Two links in a row, too long for their supports, and a small force across: at the saddle they bend a
 // little against it. Whatever sign a mode has, the force says where they snap to.
 TEST_P(Solvers, LeavesASaddleToTheSideOnWhichTheEnergyFallsMore) {
   constexpr double kLength = 1.2;
@@ -243,8 +227,8 @@ TEST_P(Solvers, LeavesASaddleToTheSideOnWhichTheEnergyFallsMore) {
     Points forces = Points::Zero(3, 3);
     forces(1, 1) = force;
     std::vector<std::unique_ptr<EnergyTerm>> terms;
-    terms.push_back(std::make_unique<ElementTerm<Strut>>("struts", std::vector<int>{0, 1, 1, 2},
-                                                         std::vector<Strut::Rest>{{kLength}, {kLength}}));
+    terms.push_back(std::make_unique<ElementTerm<Link>>("links", std::vector<int>{0, 1, 1, 2},
+                                                        std::vector<Link::Rest>{{1, kLength}, {1, kLength}}));
     terms.push_back(std::make_unique<LoadDead>("across", "load_field", forces, x));
     Objective objective(x, fixed, std::move(terms));
     const Result result = solved(objective, objective.unknowns(x), GetParam());

@@ -1,6 +1,7 @@
 #include "image/template/fit_template.hpp"
 
 #include "core/error.hpp"
+#include "image/segment/leaflet_thickness.hpp"
 #include "image/segment/track_layer.hpp"
 #include "image/template/given_template.hpp"
 #include "image/template/sheet_potential.hpp"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace coapt {
 namespace {
@@ -74,7 +74,7 @@ std::unique_ptr<Objective> run_stage(LayerGrid& grid, const LayerImage& image, c
 double leaflet_level(const LayerGrid& grid, const SheetEvidence& evidence) {
   constexpr double kLook = 0.25;  // [mm]
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
-  std::vector<double> found;
+  Vector found = Vector::Constant(grid.points.cols(), kNaN);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       if (lengths(row, column) < kLevelFrom || lengths(row, column) > kLevelTo) continue;
@@ -82,15 +82,14 @@ double leaflet_level(const LayerGrid& grid, const SheetEvidence& evidence) {
       double most = 0;
       for (double t = -kLevelReach; t <= kLevelReach; t += kLook)
         most = std::max(most, sheet_strength(evidence, x + t * normal, normal));
-      if (most > 0) found.push_back(most);
+      if (most > 0) found[grid.node(column, row)] = most;
     }
-  if (found.empty())
+  const double level = median_of_finite(found);
+  if (level == 0)
     throw InputError(
         "no sheet hangs from the annulus that a template could be drawn to; is the annulus that of this "
         "volume?");
-  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
-  std::nth_element(found.begin(), middle, found.end());
-  return *middle;
+  return level;
 }
 
 // A weighted sum of two evidences on one grid.
@@ -131,17 +130,13 @@ Vector evidence_on(const LayerGrid& grid, const SheetEvidence& evidence) {
 // What the values on the layer exceed those on its darker side by, in the middle.
 double contrast_of(const Volume& volume, const LayerGrid& grid) {
   constexpr double kBeside = 2;  // [mm]
-  std::vector<double> found;
-  for (Eigen::Index node = 0; node < grid.points.cols(); ++node) {
+  Vector found(grid.points.cols());
+  for (Eigen::Index node = 0; node < found.size(); ++node) {
     const Vec3 x = grid.points.col(node), aside = kBeside * grid.normals.col(node);
-    const double contrast =
+    found[node] =
         sample(volume, x, kNaN) - std::min(sample(volume, x + aside, kNaN), sample(volume, x - aside, kNaN));
-    if (std::isfinite(contrast)) found.push_back(contrast);
   }
-  if (found.empty()) return 0;
-  const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
-  std::nth_element(found.begin(), middle, found.end());
-  return *middle;
+  return median_of_finite(found);
 }
 
 }  // namespace
