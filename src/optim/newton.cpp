@@ -81,7 +81,6 @@ class Newton {
         find_direction();
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
         if (is_found) break;
-        if (is_part_) return Status::LineSearchFailed;  // mostly at the end of its reach
         if (monitor_.is_out_of_time()) return Status::TimeLimit;
         if (shift_ > kMostShiftOverUnit * unit_ || !hessian_.raise(monitor_, shift_))
           return Status::LineSearchFailed;
