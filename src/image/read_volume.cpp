@@ -25,7 +25,7 @@ constexpr double kUnevenSlices =
     0.01;  // greatest deviation of a slice from its even place, in distances of slices
 // What GDCM may take for files of so many bytes.
 constexpr double kTrialSeconds = 15, kTrialSecondsPerByte = 3e-6;
-constexpr std::uintmax_t kTrialBytes = std::uintmax_t(4) << 30, kTrialBytesPerByte = 100;
+constexpr std::uintmax_t kTrialBytes = std::uintmax_t(1) << 28, kTrialBytesPerByte = 300;
 
 std::string sizes_text(const std::vector<std::size_t>& sizes) {
   std::string text;
@@ -235,14 +235,28 @@ void check_dicom_by_trial(const fs::path& path, const Read& read) {
                    ": the DICOM file is damaged; copy or export it again");
 }
 
+// ITK makes rotations of a NIfTI header by functions that end the program where they meet what is no number.
+void check_nifti_by_trial(const fs::path& path) {
+  std::error_code error;
+  if (!is_nifti(path) || !fs::is_regular_file(path, error)) return;
+  const std::string end = end_of_trial([&] { const ImageFile file(path); }, {});
+  if (end.empty()) return;
+  throw InputError(
+      path.string() + ": its reader (ITK) was ended by " + end +
+      ": the NIfTI header is damaged, where it says how the axes lie (qform, sform) for instance; " +
+      "copy or export it again");
+}
+
 }  // namespace
 
 VolumeFile read_volume_header(const fs::path& path, const VolumeReadOptions& options) {
+  check_nifti_by_trial(path);
   check_dicom_by_trial(path, [&] { header_of(path, options); });
   return header_of(path, options);
 }
 
 VolumeFile read_volume(const fs::path& path, const VolumeReadOptions& options) {
+  check_nifti_by_trial(path);
   check_dicom_by_trial(path, [&] { volume_of(path, options); });
   return volume_of(path, options);
 }

@@ -67,8 +67,9 @@ double Monitor::energy_noise(double energy) const {
   return kEnergyNoise * std::abs(energy) + kWorkNoise * objective_.largest_force() * extent_;
 }
 
-void Monitor::begin_outer_iteration(int number, double tolerance) {
+void Monitor::begin_outer_iteration(int number, double tolerance, bool is_descent) {
   outer_iteration_ = number;
+  is_descent_ = is_descent;
   tolerance_ = tolerance;
   is_first_of_outer_iteration_ = true;
   time_before_ = trace_.empty() ? 0 : trace_.back().time;
@@ -85,6 +86,7 @@ std::optional<Status> Monitor::accept(const Vector& q, double energy, const Vect
   Iteration now;
   now.iteration = iterations_;
   now.outer_iteration = outer_iteration_;
+  now.is_descent = is_descent_;
   now.path = path_;
   now.energy = energy;
   now.residual = objective_.relative_residual(q, g);

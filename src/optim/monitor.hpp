@@ -44,7 +44,7 @@ class Monitor {
   // --- for solve() -------------------------------------------------------------------------------------
   // Asked at each accepted iterate whether the run has no equilibrium to find. It must outlive the run.
   void set_watch(EquilibriumWatch* watch) { watch_ = watch; }
-  void begin_outer_iteration(int number, double tolerance);
+  void begin_outer_iteration(int number, double tolerance, bool is_descent = true);
   void set_path(double share) { path_ = share; }  // done, of the iterates to come: see Iteration::path
   // Ends minimisations after so many more iterations than now; what the whole run may take still holds.
   void limit_iterations(int count) { most_iterations_ = iterations_ + count; }
@@ -69,6 +69,7 @@ class Monitor {
   double tolerance_;
   double start_;
   int outer_iteration_ = 0;
+  bool is_descent_ = true;
   double path_ = kNaN;
   double time_before_ = 0;  // simulated, before this round [s]
   int iterations_ = 0, most_iterations_ = std::numeric_limits<int>::max();

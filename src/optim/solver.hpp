@@ -46,6 +46,7 @@ struct Iteration {
   double seconds = 0;       // wall time since the start
   double time = 0;          // simulated since the start, of a method that follows the motion of masses [s]
   long evaluations = 0;     // of the gradient so far
+  bool is_descent = true;   // whether the energy falls to it: not in a search for a state without forces
   double path = kNaN;       // share done of a path of loads or of prescribed motion; NaN: there is none
 };
 

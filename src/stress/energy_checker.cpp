@@ -17,7 +17,9 @@ std::string energy_rise(const Result& result, Objective& objective, const Points
   const double rounding = 1e-11 * greatest + 1e-13 * objective.largest_force() * extent;
   for (size_t k = 1; k < result.trace.size(); ++k) {
     const Iteration &before = result.trace[k - 1], &now = result.trace[k];
-    if (now.outer_iteration != before.outer_iteration || now.energy <= before.energy + rounding) continue;
+    if (now.outer_iteration != before.outer_iteration || !now.is_descent ||
+        now.energy <= before.energy + rounding)
+      continue;
     return "in iteration " + std::to_string(now.iteration) + " the energy rises from " +
            number_text(before.energy) + " by " + number_text(now.energy - before.energy) + ", rounding " +
            number_text(rounding) + " mJ";

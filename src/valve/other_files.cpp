@@ -39,8 +39,9 @@ void refuse_other_json(const Json& json, const std::filesystem::path& path) {
   if (json.contains("leaflets")) refuse(path, "a valve JSON", kImport);
 }
 
-void refuse_scene(const Json& json, const std::filesystem::path& path) {
+void refuse_scene(const Json& json, const std::filesystem::path& path, const std::string& expected) {
   if (!json.is_object() || !json.contains("terms") || json.contains("leaflets")) return;
+  if (!expected.empty()) throw InputError(path.string() + ": is a scene; expected " + expected);
   throw InputError(path.string() + ": is a scene already: `coapt solve " + path.string() +
                    "` solves it as it is");
 }

@@ -4,6 +4,7 @@
 #include "formats/json/read_json.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace coapt {
 
@@ -12,7 +13,8 @@ namespace coapt {
 void refuse_other_file(const std::filesystem::path& path);
 void refuse_other_json(const Json& json, const std::filesystem::path& path);
 
-// Throws InputError where the JSON is that of a scene, which commands on valve files are given.
-void refuse_scene(const Json& json, const std::filesystem::path& path);
+// Throws InputError where the JSON is that of a scene, which commands on valve files are given, and says what
+// was expected in its place, or how it is solved.
+void refuse_scene(const Json& json, const std::filesystem::path& path, const std::string& expected = "");
 
 }  // namespace coapt

@@ -103,6 +103,8 @@ class SegmentAnImage(CommandCase):
         self.found(*options)
         for mean in self.distances():
             self.assertLess(mean, 0.3)
+        scene = valve.parent / "scene.json"
+        self.assert_bad_input(self.segment(*options[:-1], scene), "scene.json", "is a scene", "a valve JSON")
         without = json.loads(valve.read_text())
         del without["free_edge"]
         valve.write_text(json.dumps(without))

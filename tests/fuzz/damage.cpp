@@ -1,5 +1,6 @@
 #include "fuzz/damage.hpp"
 
+#include "fuzz/changed_header.hpp"
 #include "fuzz/changed_tree.hpp"
 
 #include <algorithm>
@@ -52,10 +53,12 @@ void damage_once(std::string& text, const std::vector<std::string>& seeds, std::
 std::string damaged(const std::vector<std::string>& seeds, std::size_t index) {
   std::mt19937 random(static_cast<std::mt19937::result_type>(index));
   std::string text = seeds[below(random, seeds.size())];
+  if (index % 2 == 1) {
+    if (std::string volume = changed_header(text, index); !volume.empty()) return volume;
 #ifdef COAPT_FUZZ_TREES
-  if (index % 2 == 1)
     if (std::string tree = changed_tree(text, random()); !tree.empty()) return tree;
 #endif
+  }
   for (std::size_t k = 0, times = 1 + below(random, 6); k < times; ++k) damage_once(text, seeds, random);
   return text;
 }

@@ -78,6 +78,7 @@ int replay(const fs::path& keep, const fs::path& where, std::size_t count, std::
   for (std::size_t k = first; k < first + count; ++k)
     if (!holds("damaged copy " + std::to_string(k), coapt::fuzz::damaged(seeds, k), keep, tally)) return 1;
   std::printf("%ld read, %ld refused\n", tally.read, tally.refused);
+  std::printf("stat::number_of_executed_units: %ld\n", tally.read + tally.refused);  // as libFuzzer says it
   fs::remove(keep);
   return 0;
 }

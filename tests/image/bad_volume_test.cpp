@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace coapt {
@@ -38,6 +39,18 @@ TEST(BadVolume, PathsThatAreNoFileOfAVolume) {
   for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha", "v.dcm"}) {
     expect_says(refusal(folder.write(name, "")), "is empty", "again");
     expect_says(refusal(folder.write(name, "This is a text.\n")), "", "export it again");
+  }
+}
+
+TEST(BadVolume, AxesThatAreNoNumbers) {
+  const TemporaryFolder folder;
+  NiftiHeader header;
+  header.sform_code = 1;
+  const float nan = std::numeric_limits<float>::quiet_NaN(), most = std::numeric_limits<float>::max();
+  for (const float wrong : {nan, most}) {
+    header.srow = {0.5F, 0, 0, 0, wrong, 0.6F, 0, wrong, 0, 0, 0.7F, 0};
+    const auto path = folder.write("v.nii", nifti(header, counted<std::uint8_t>(24)));
+    expect_says(refusal(path), "v.nii", std::isnan(wrong) ? "export it again" : "");
   }
 }
 

@@ -177,6 +177,16 @@ TEST(DamagedDicom, AccidentsEndInAVolumeOrASentence) {
   EXPECT_GT(refused, 20);
 }
 
+// GDCM guesses their length from other bytes, and asks for gigabytes.
+TEST(DamagedDicom, PixelsOfNoKindAreRefused) {
+  const TemporaryFolder folder;
+  std::string bytes = dicom({}, counted<std::uint16_t>(6));
+  const std::size_t pixels = bytes.find(std::string("\xe0\x7f\x10\0OW", 6));
+  ASSERT_NE(pixels, std::string::npos);
+  bytes[pixels + 5] = '\0';
+  expect_refused(folder.write("v.dcm", bytes), "cannot be read", "export it again");
+}
+
 TEST(TrialProcess, SaysWhatEndedIt) {
   const TrialLimits limits{1, std::uintmax_t(1) << 28};
   EXPECT_EQ(end_of_trial([] {}, limits), "");

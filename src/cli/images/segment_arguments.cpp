@@ -6,9 +6,11 @@
 #include "core/error.hpp"
 #include "formats/json/markups.hpp"
 #include "formats/json/valve_json.hpp"
+#include "formats/lower_extension.hpp"
 #include "image/read_volume.hpp"
 #include "image/template/fit_template.hpp"
 #include "image/template/given_template.hpp"
+#include "valve/other_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +57,9 @@ std::string name_of(const Names<Value>& names, Value value) {
 
 std::optional<Valve> template_shape(const SegmentArguments& arguments) {
   if (arguments.shape.empty()) return std::nullopt;
+  if (formats::lower_extension(arguments.shape) == ".json")
+    refuse_scene(read_json(arguments.shape), arguments.shape,
+                 "a valve JSON with an annulus and a free edge, as `coapt segment` writes");
   ValveFile file = read_valve(arguments.shape);
   for (const std::string& warning : file.warnings) std::printf("warning: %s\n", warning.c_str());
   try {

@@ -15,6 +15,10 @@ constexpr std::size_t kPreamble = 128;            // bytes before the four lette
 constexpr std::uint32_t kUndefined = 0xffffffff;  // length of what a delimiter ends
 constexpr int kDeepestSequence = 32;              // sequences within sequences that are followed
 
+// Kinds of values (VR, DICOM PS3.5, table 6.2-1): those whose length has 4 bytes, and the others.
+constexpr std::string_view kLongKinds = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+constexpr std::string_view kShortKinds = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
+
 constexpr std::uint32_t kTransferSyntax = 0x00020010, kPixels = 0x7fe00010;
 constexpr std::uint32_t kItem = 0xfffee000, kEndOfItem = 0xfffee00d, kEndOfSequence = 0xfffee0dd;
 
@@ -23,6 +27,11 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at, int size) {
   for (int k = size - 1; k >= 0; --k)
     number = number << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(k)]);
   return number;
+}
+
+bool is_among(std::string_view kinds, std::string_view kind) {
+  const std::size_t at = kinds.find(kind);
+  return at != std::string_view::npos && at % 3 == 0;
 }
 
 struct DicomElement {
@@ -51,8 +60,8 @@ class DicomWalk {
     element.tag = number_at(bytes_, at_, 2) << 16 | number_at(bytes_, at_ + 2, 2);
     const std::string_view kind = bytes_.substr(at_ + 4, 2);
     const bool is_item = element.tag >> 16 == kItem >> 16;
-    const bool is_long =
-        std::string_view("OB OD OF OL OV OW SQ SV UC UN UR UT UV").find(kind) != std::string_view::npos;
+    const bool is_long = is_among(kLongKinds, kind);
+    if (is_explicit && element.tag == kPixels) is_whole = is_long || is_among(kShortKinds, kind);
     if (is_item || !is_explicit) {
       element.length = number_at(bytes_, at_ + 4, 4);
     } else if (!is_long) {

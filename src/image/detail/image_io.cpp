@@ -27,12 +27,11 @@ namespace fs = std::filesystem;
 // None for a format that ITK does not read here.
 itk::ImageIOBase::Pointer reader_for(const fs::path& path, std::string& format) {
   const std::string ending = formats::lower_extension(path);
-  const bool is_packed_nifti = ending == ".gz" && formats::lower_extension(path.stem()) == ".nii";
   const auto is = [&](std::initializer_list<const char*> endings) {
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
   };
   if (is({".nrrd", ".nhdr"})) return format = "NRRD", itk::NrrdImageIO::New().GetPointer();
-  if (is({".nii"}) || is_packed_nifti) return format = "NIfTI", itk::NiftiImageIO::New().GetPointer();
+  if (is_nifti(path)) return format = "NIfTI", itk::NiftiImageIO::New().GetPointer();
   if (is({".mha", ".mhd"})) return format = "MetaImage", nullptr;   // is read by meta_image.hpp
   if (is({".dcm", ".dicom", ".ima", ""}) || begins_as_dicom(path))  // whose names may end anyhow
     return format = "DICOM", itk::GDCMImageIO::New().GetPointer();
@@ -153,6 +152,11 @@ FoundImage found_by(const itk::ImageIOBase& reader, const fs::path& path, const 
 }
 
 }  // namespace
+
+bool is_nifti(const fs::path& path) {
+  const std::string ending = formats::lower_extension(path);
+  return ending == ".nii" || (ending == ".gz" && formats::lower_extension(path.stem()) == ".nii");
+}
 
 struct ImageFile::Reader {
   itk::ImageIOBase::Pointer io;  // or

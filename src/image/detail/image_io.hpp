@@ -9,6 +9,9 @@
 
 namespace coapt {
 
+// By the name of the file: .nii or .nii.gz.
+bool is_nifti(const std::filesystem::path& path);
+
 class ImageFile {
  public:
   // Reads the header. Throws InputError for a file that is not there, is empty, of another format, or that

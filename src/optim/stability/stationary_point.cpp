@@ -39,7 +39,7 @@ bool take_step(Monitor& monitor, const Vector& step, double before, Vector& q) {
 StationarySearch reach_stationary_point(Objective& objective, Vector& q, Monitor& monitor, double tolerance) {
   StationarySearch search;
   if (objective.has_circulatory_force()) return search;
-  monitor.begin_outer_iteration(monitor.outer_iteration() + 1, tolerance);
+  monitor.begin_outer_iteration(monitor.outer_iteration() + 1, tolerance, false);
   Vector g, step;
   SparseMatrix h;
   for (int k = 0;; ++k) {
