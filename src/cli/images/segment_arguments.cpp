@@ -40,6 +40,11 @@ const Names<Inhibition>& inhibitions() {
   return kNames;
 }
 
+const Names<EdgeRule>& edge_rules() {
+  static const Names<EdgeRule> kNames = {{"contrast", EdgeRule::Contrast}, {"learnt", EdgeRule::Learnt}};
+  return kNames;
+}
+
 // Pre: one of the names, or empty for the default.
 template <typename Value>
 Value value_named(const Names<Value>& names, const std::string& name) {
@@ -76,6 +81,7 @@ SegmentOptions segment_options(const SegmentArguments& arguments) {
   options.finder = template_finder({.shape = template_shape(arguments)});
   options.has_second_route = arguments.has_second_route;
   options.inhibition = value_named(inhibitions(), arguments.inhibition);
+  options.edge = value_named(edge_rules(), arguments.edge);
   if (!arguments.seeds.empty()) {
     options.seeds = papillary_points(arguments.seeds);
     if (options.seeds->cols() != 2)
@@ -115,6 +121,17 @@ void print_found(const Segmentation& found) {
   std::printf("  %-12s %.0f %% of the area\n", "shown", 100 * found.shown_share);
   std::printf("  %-12s %d x %d x %d voxels, %.1f s of the processor\n", "looked at", found.size[0],
               found.size[1], found.size[2], found.cpu_seconds);
+}
+
+void add_edge_options(CLI::App& command, SegmentArguments& arguments) {
+  arguments.edge = edge_rules().front().first;
+  command
+      .add_option("--edge", arguments.edge,
+                  "What the free edge of ridge is found by: contrast, with the strength of the sheet, or "
+                  "learnt, a network that knows generated phantoms of ultrasound alone")
+      ->check(CLI::IsMember(edge_rules()))
+      ->capture_default_str();
+  command.add_option("--edge-length", arguments.edge_length, "Of the mesh")->capture_default_str();
 }
 
 }  // namespace
@@ -176,7 +193,7 @@ void add_segment_options(CLI::App& command, SegmentArguments& arguments) {
           "Volume that is above 0.5 in the leaflets, as a neural network gives it: it takes the place of "
           "what the image shows")
       ->excludes(method);
-  command.add_option("--edge-length", arguments.edge_length, "Of the mesh")->capture_default_str();
+  add_edge_options(command, arguments);
   command.add_flag("--keep", arguments.keeps_evidence, "Also write the evidence of sheets, evidence.nrrd");
 }
 
@@ -198,6 +215,10 @@ Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volu
   if (!arguments.shape.empty()) needs_method(SegmentMethod::Template, "--template");
   if (arguments.has_second_route && !arguments.mask.empty())
     throw InputError("--second-route: is of what the image shows, and not of a --mask");
+  const bool is_learnt = value_named(edge_rules(), arguments.edge) == EdgeRule::Learnt;
+  if (is_learnt && (!arguments.dynamic_range || !arguments.mask.empty()))
+    throw InputError("--edge learnt: is of ultrasound, with --dynamic-range and without a --mask");
+  if (is_learnt) needs_method(SegmentMethod::Ridge, "--edge learnt");
   const SegmentOptions options = segment_options(arguments);
   try {
     const auto [least, greatest] = std::minmax_element(volume.values.begin(), volume.values.end());

@@ -15,7 +15,7 @@ namespace coapt::cli {
 
 struct SegmentArguments {
   std::string volume, annulus, papillary, mask, seeds, shape, output, edge_length = "1.2mm";
-  std::string method, inhibition;  // add_segment_options sets the defaults
+  std::string method, inhibition, edge;  // add_segment_options sets the defaults
   std::optional<int> frame;
   std::optional<double> threshold, dynamic_range;
   std::string blur;  // empty: found

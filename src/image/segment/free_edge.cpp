@@ -1,6 +1,7 @@
 #include "image/segment/free_edge.hpp"
 
 #include "core/error.hpp"
+#include "image/edge/edge_network.hpp"
 #include "image/segment/closed_polygon.hpp"
 
 #include <algorithm>
@@ -32,6 +33,7 @@ constexpr double kEndInBlood = 0.5;  // evidence at an end that blood follows
 constexpr double kBeyondFrom = 2.5, kBeyondTo = 4;  // from the edge, where chords are looked for [mm]
 constexpr double kFarthestMove = 1.5;               // of the edge into blood [mm]
 constexpr double kEdgeSmoothing = 1.2;              // along the ring [mm]
+constexpr double kLogitCost = 0.2;                  // of a place that the network takes for the other
 
 double mean_between(const Volume& volume, const Vec3& x, const Vec3& normal, double from, double to) {
   double sum = 0;
@@ -201,9 +203,21 @@ Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& contra
   return moved_to_blood(ends, shown, lengths);
 }
 
+// Along each column, by the network [mm].
+Vector learnt_ends(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid) {
+  Eigen::MatrixXd logits = leaflet_logits(layer_channels(volume, evidence, grid), grid.columns);
+  const auto certain = std::min(static_cast<Eigen::Index>(kShortest / kPlaceStep), logits.rows());
+  logits.topRows(certain).setConstant(logits.maxCoeff());
+  Eigen::MatrixXd costs = Eigen::MatrixXd::Zero(logits.rows() + 1, logits.cols());
+  for (Eigen::Index place = 0; place < logits.rows(); ++place)
+    costs.row(place + 1) = costs.row(place) - kLogitCost * logits.row(place);
+  return kPlaceStep * closed_polygon(costs, {});
+}
+
 }  // namespace
 
-FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid) {
+FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid,
+                   EdgeRule rule) {
   FreeEdge edge;
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
   const Eigen::MatrixXd contrast = contrasts(volume, grid);
@@ -215,7 +229,9 @@ FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const La
         "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
         "volume's frame (LPS), and are the leaflets bright in it?");
   const Eigen::MatrixXd strength = over_level(strengths(evidence, grid), lengths);
-  const Vector found = found_ends(strength, over_level(contrast, lengths), lengths);
+  const Vector found = rule == EdgeRule::Learnt
+                           ? learnt_ends(volume, evidence, grid)
+                           : found_ends(strength, over_level(contrast, lengths), lengths);
   edge.lengths = smoothed(found, grid, lengths);
   edge.deviation = std::sqrt((found - edge.lengths).squaredNorm() / grid.columns);
   for (int column = 0; column < grid.columns; ++column)

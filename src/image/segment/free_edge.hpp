@@ -6,6 +6,10 @@
 
 namespace coapt {
 
+// By what a place of the layer is taken for leaflet. Contrast: as said below. Learnt: by a neural network
+// (edge_network.hpp), which knows the brightness of ultrasound alone.
+enum class EdgeRule { Contrast, Learnt };
+
 struct FreeEdge {
   Vector lengths;        // along each column, from the annulus [mm]
   double deviation = 0;  // standard deviation of a length, before the edge was smoothed [mm]
@@ -20,6 +24,8 @@ struct FreeEdge {
 // have against it, and what is dark hardly at all, because echoes drop out within leaflets. The edge is the
 // closed polygon (closed_polygon.hpp) that these contradict least, moved on by up to 1.5 mm where blood
 // follows and no chords, and smoothed along the ring. `evidence` is that of all scales.
-FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid);
+// Learnt: the polygon that the network's logits contradict least, smoothed.
+FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid,
+                   EdgeRule rule = EdgeRule::Contrast);
 
 }  // namespace coapt

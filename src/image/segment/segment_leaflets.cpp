@@ -134,7 +134,10 @@ FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, con
   layer.grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
   layer.fit = fit_layer(layer.grid, ridge, options.smoothing, kFitRounds);
   phases.begin("free edge");
-  layer.edge = free_edge(seen, evidence, layer.grid);
+  const bool is_ultrasound = options.dynamic_range > 0 && !options.mask;
+  const bool is_image = options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template;
+  layer.edge =
+      free_edge(seen, evidence, layer.grid, is_ultrasound && is_image ? options.edge : EdgeRule::Contrast);
   return layer;
 }
 

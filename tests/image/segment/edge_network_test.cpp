@@ -1,0 +1,117 @@
+#include "image/edge/edge_network.hpp"
+
+#include "image/phantom.hpp"
+#include "image/segment/segment_leaflets.hpp"
+#include "valve/generators/leaflet_chords.hpp"
+#include "valve/generators/mitral.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace coapt {
+namespace {
+
+constexpr int kChannels = 25, kColumns = 20, kPlaces = 16;
+
+// Smooth numbers without meaning; the last channel says that there is a layer.
+Eigen::MatrixXf made_up_channels() {
+  Eigen::MatrixXf channels(kChannels, kPlaces * kColumns);
+  for (int place = 0; place < kPlaces; ++place)
+    for (int column = 0; column < kColumns; ++column)
+      for (int k = 0; k < kChannels; ++k)
+        channels(k, place * kColumns + column) =
+            0.5F + 0.5F * std::sin(0.7F * k + 0.3F * place +
+                                   2 * std::numbers::pi_v<float> * static_cast<float>(column) / kColumns);
+  channels.row(kChannels - 1).setOnes();
+  return channels;
+}
+
+TEST(EdgeNetwork, TurnsWithTheRing) {
+  const Eigen::MatrixXf channels = made_up_channels();
+  Eigen::MatrixXf turned = channels;
+  for (int place = 0; place < kPlaces; ++place)
+    for (int column = 0; column < kColumns; ++column)
+      turned.col(place * kColumns + (column + 3) % kColumns) = channels.col(place * kColumns + column);
+  const Eigen::MatrixXd logits = leaflet_logits(channels, kColumns);
+  const Eigen::MatrixXd of_turned = leaflet_logits(turned, kColumns);
+  for (int column = 0; column < kColumns; ++column)
+    EXPECT_LT((of_turned.col((column + 3) % kColumns) - logits.col(column)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(EdgeNetwork, TakesNothingBeyondTheEndOfAColumnForLeaflet) {
+  Eigen::MatrixXf channels = made_up_channels();
+  channels.rightCols(2 * kColumns).setZero();
+  const Eigen::MatrixXd logits = leaflet_logits(channels, kColumns);
+  EXPECT_EQ(logits.rows(), kPlaces);
+  EXPECT_EQ(logits.bottomRows(2).maxCoeff(), -4);
+  EXPECT_LE(logits.cwiseAbs().maxCoeff(), 4);
+}
+
+// Voxels of 0.5 mm, with chords to the free edge and the rough zone, between walls.
+struct Imaged {
+  Valve valve;
+  Volume image;
+};
+
+Imaged valve_with_rough_chords(unsigned seed) {
+  Imaged made{mitral_valve(MitralOptions{.triangles = 2500, .seed = seed}), {}};
+  LeafletChordOptions chords;
+  chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
+  made.valve.chords = leaflet_chords(made.valve, chords);
+  PhantomOptions options;
+  options.axial = options.lateral = 0.5;
+  options.dropout = 0;
+  options.shadows = 0;
+  options.seed = seed;
+  PhantomValve state;
+  state.surface = made.valve.leaflets;
+  state.annulus = made.valve.annulus;
+  state.upstream = upstream_direction(state.surface, state.annulus);
+  const ChordNetwork& network = made.valve.chords;
+  const auto place = [&](const ChordEnd& end) -> Vec3 {
+    if (end.kind == ChordEnd::Kind::Papillary) return network.papillary.col(end.index);
+    if (end.kind == ChordEnd::Kind::Junction) return network.junctions.col(end.index);
+    return made.valve.leaflets.vertices.col(end.index);
+  };
+  state.line_ends.resize(3, 2 * static_cast<Eigen::Index>(network.chords.size()));
+  for (size_t k = 0; k < network.chords.size(); ++k) {
+    state.line_ends.col(static_cast<Eigen::Index>(2 * k)) = place(network.chords[k].from);
+    state.line_ends.col(static_cast<Eigen::Index>(2 * k + 1)) = place(network.chords[k].to);
+    state.line_radii.push_back(std::sqrt(network.chords[k].area / std::numbers::pi));
+  }
+  const PhantomPattern pattern = phantom_pattern(state.surface, options);
+  made.image = make_phantom(state, pattern, phantom_grid({state}, options), options).image;
+  return made;
+}
+
+Points ring_points(const Valve& valve, const std::vector<int>& loop) {
+  return valve.leaflets.vertices(Eigen::all, loop);
+}
+
+// Mean distance of the found edge's vertices from those of the true one [mm].
+double edge_error(const Imaged& made, EdgeRule rule) {
+  SegmentOptions options;
+  options.annulus = ring_points(made.valve, made.valve.annulus);
+  options.dynamic_range = 50;
+  options.edge = rule;
+  const Segmentation found = segment_leaflets(made.image, options);
+  const Points from = ring_points(found.valve, found.valve.free_edge);
+  const Points to = ring_points(made.valve, made.valve.free_edge);
+  double sum = 0;
+  for (Eigen::Index k = 0; k < from.cols(); ++k)
+    sum += (to.colwise() - from.col(k)).colwise().norm().minCoeff();
+  return sum / static_cast<double>(from.cols());
+}
+
+// Seed 1 was not learnt from.
+TEST(EdgeNetwork, FindsTheEdgeAmongChordsOfTheRoughZone) {
+  const Imaged made = valve_with_rough_chords(1);
+  const double learnt = edge_error(made, EdgeRule::Learnt);
+  EXPECT_LT(learnt, 1);
+  EXPECT_LT(learnt, 0.7 * edge_error(made, EdgeRule::Contrast));
+}
+
+}  // namespace
+}  // namespace coapt
