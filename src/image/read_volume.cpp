@@ -23,9 +23,9 @@ constexpr double kMostSkew =
 constexpr double kUsualAspect = 1.5;  // longest over shortest edge of a voxel; beyond it a warning says so
 constexpr double kUnevenSlices =
     0.01;  // greatest deviation of a slice from its even place, in distances of slices
-// What GDCM may take for files of so many bytes.
+// What GDCM may take for files of so many bytes. With less memory it gives up where this process goes on.
 constexpr double kTrialSeconds = 15, kTrialSecondsPerByte = 3e-6;
-constexpr std::uintmax_t kTrialBytes = std::uintmax_t(1) << 28, kTrialBytesPerByte = 300;
+constexpr std::uintmax_t kTrialBytes = std::uintmax_t(4) << 30, kTrialBytesPerByte = 100;
 
 std::string sizes_text(const std::vector<std::size_t>& sizes) {
   std::string text;

@@ -136,22 +136,30 @@ FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, con
   phases.begin("free edge");
   const bool is_ultrasound = options.dynamic_range > 0 && !options.mask;
   const bool is_image = options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template;
-  layer.edge =
-      free_edge(seen, evidence, layer.grid, is_ultrasound && is_image ? options.edge : EdgeRule::Contrast);
+  const EdgeRule rule = is_ultrasound && is_image ? options.edge : EdgeRule::Contrast;
+  layer.edge = free_edge(seen, evidence, layer.grid, rule);
+  if (rule == EdgeRule::Learnt) layer.clear = free_edge(seen, evidence, layer.grid).lengths;
   return layer;
 }
 
-// The points above the edge that the image shows.
-std::vector<char> seen_points(const LayerGrid& grid, const LayerFit& fit, const FreeEdge& edge) {
+// The points above the ends of the columns that the image shows.
+std::vector<char> seen_points(const LayerGrid& grid, const LayerFit& fit, const Vector& ends) {
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
   std::vector<char> is_seen(static_cast<size_t>(grid.points.cols()));
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const Eigen::Index node = grid.node(column, row);
-      is_seen[static_cast<size_t>(node)] =
-          lengths(row, column) < edge.lengths[column] && fit.evidence[node] > kShown;
+      is_seen[static_cast<size_t>(node)] = lengths(row, column) < ends[column] && fit.evidence[node] > kShown;
     }
   return is_seen;
+}
+
+// At vertices whose nodes count; NaN at others.
+Vector over(Vector values, const LayerMesh& mesh, const std::vector<char>& is_counted) {
+  for (Eigen::Index v = 0; v < values.size(); ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!is_counted[static_cast<size_t>(mesh.nodes(k, v))]) values[v] = kNaN;
+  return values;
 }
 
 // Over the points that count; over all where none does.
@@ -279,7 +287,8 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const LayerGrid& grid = layer.grid;
   const LayerFit& fit = layer.fit;
   const FreeEdge& edge = layer.edge;
-  const std::vector<char> is_seen = seen_points(grid, fit, edge);
+  const bool has_clear_part = layer.clear.size() > 0;
+  const std::vector<char> is_seen = seen_points(grid, fit, has_clear_part ? layer.clear : edge.lengths);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
   result.blur = mean_of(blur, is_seen);
   result.edge_deviation = edge.deviation;
@@ -290,7 +299,8 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
 
   phases.begin("thickness");
   result.thickness = thickness_at_vertices(part, grid, mesh, blur, median_of_finite(fit.deviation), scale);
-  result.thickness_median = median_of_finite(result.thickness);
+  result.thickness_median =
+      median_of_finite(has_clear_part ? over(result.thickness, mesh, is_seen) : result.thickness);
   if (threshold) move_to_atrium(mesh, grid, part, *threshold);
   gather(result, mesh, fit, part.spacing.maxCoeff());
   if (options.has_second_route) {
