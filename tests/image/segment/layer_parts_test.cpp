@@ -1,6 +1,6 @@
 // The parts of which a segmentation is made, each on something whose answer is known.
+#include "core/closed_path.hpp"
 #include "core/random_source.hpp"
-#include "image/segment/closed_path.hpp"
 #include "image/segment/closed_polygon.hpp"
 #include "image/segment/round_triangles.hpp"
 #include "image/segment/sheet_evidence.hpp"

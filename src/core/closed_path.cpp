@@ -1,4 +1,4 @@
-#include "image/segment/closed_path.hpp"
+#include "core/closed_path.hpp"
 
 #include "core/types.hpp"
 
