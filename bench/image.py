@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """How near `coapt segment` comes to the leaflets of phantoms, whose truth is known.
 
-    bench/image.py [path of coapt] [--seeds N] [--case NAME ...] [--method NAME] [-o FILE.csv]
+    bench/image.py [path of coapt] [--seeds N] [--case NAME ...] [--method NAME] [--edge NAME] [-o FILE.csv]
 
 Generates mitral valves of seeds 0 to N - 1, solves them, makes ultrasound-like volumes of each (`coapt phantom`), looks for the
 leaflets in that of the open valve, compares them with the surface that it was made of, closes them (`coapt close`), and compares the
 closed valve with the one that was imaged. Prints a Markdown table for bench/tables.py: the median over all seeds, the worst of them,
-and how many meet the goal; with -o also a row for each volume. Volumes at 0.7 mm have 15 % dropout. --method is that of `segment`.
+and how many meet the goal; with -o also a row for each volume. Volumes at 0.7 mm have 15 % dropout. --method is that of `segment`, --edge that
+of `segment` and `close`.
 """
 import argparse
 import csv
@@ -216,12 +217,12 @@ def distances(coapt: str, found: pathlib.Path, truth: pathlib.Path, folder: path
     return [apart[way][figure] for way in ("to_target", "from_target") for figure in ("mean_mm", "p95_mm")]
 
 
-def closure(coapt: str, folder: pathlib.Path) -> dict[str, float]:
+def closure(coapt: str, folder: pathlib.Path, rule: str) -> dict[str, float]:
     """The valve that was found, closed, beside the one that was imaged."""
     opened, closed = folder / "phantom/open", folder / "phantom/closed"
     code, _ = command(coapt, "close", str(opened / "image.nrrd"), "--annulus", str(opened / "annulus.mrk.json"), "--annulus-closed",
                       str(closed / "annulus.mrk.json"), "--papillary", str(folder / "tips.mrk.json"), "--dynamic-range", "50",
-                      "-o", str(folder / "closed"), may_fail=True)
+                      "--edge", rule, "-o", str(folder / "closed"), may_fail=True)
     figures = dict.fromkeys(("closed_to_truth_mean", "closed_to_truth_p95", "closed_from_truth_mean", "closed_from_truth_p95",
                              "orifice_error_mm2"), math.nan)
     if code not in (0, 4):
@@ -268,11 +269,11 @@ def made_phantom(coapt: str, case: Case, seed: int, folder: pathlib.Path) -> Non
             "-o", str(folder / "phantom"))
 
 
-def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str) -> dict[str, float]:
+def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str, rule: str) -> dict[str, float]:
     made_phantom(coapt, case, seed, folder)
     truth, found = folder / "phantom/open", folder / "found"
     _, megabytes = command(coapt, "segment", str(truth / "image.nrrd"), "--annulus", str(truth / "annulus.mrk.json"), "--dynamic-range",
-                           "50", "--method", method, "-o", str(found))
+                           "50", "--method", method, "--edge", rule, "-o", str(found))
     apart = distances(coapt, found / "leaflets.obj", truth / "surface.obj", folder / "registered")
     code, _ = command(coapt, "import", str(found / "valve.json"), "-o", str(folder / "scene"), may_fail=True)
     dice = [math.nan, math.nan]  # where what was found passes through itself, which is refused
@@ -296,7 +297,7 @@ def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str
         "loops": loops_of(triangles), "bad_edges": bad_edges(triangles), "least_angle_deg": figures["least_angle_deg"],
         "thickness_percent": 100 * abs(figures["thickness_mm"]["median"] / TRUE_THICKNESS - 1),
         "dice_atrium": dice[0], "dice_ventricle": dice[1], "coverage_2_sd": covered, "coverage_2_sd_gaps": covered_gaps,
-    } | closure(coapt, folder) | {
+    } | closure(coapt, folder, rule) | {
         "voxels": math.prod(figures["voxels"]), "cpu_s": figures["cpu_seconds"], "peak_mb": megabytes,
     }
 
@@ -338,6 +339,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--case", action="append", choices=CASES)
     parser.add_argument("--method", default="ridge")
+    parser.add_argument("--edge", default="contrast")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     options = parser.parse_args()
     names = options.case or list(CASES)
@@ -345,7 +347,7 @@ def main() -> None:
     for seed in range(options.seeds):
         for name in names:
             with tempfile.TemporaryDirectory() as folder:
-                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder), options.method))
+                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder), options.method, options.edge))
             print(name, seed, {key: round(value, 3) for key, value in rows[name][-1].items()}, file=sys.stderr, flush=True)
     print_table(names, rows)
     kept = [{"case": name, "seed": seed} | row for name in names for seed, row in enumerate(rows[name])]
