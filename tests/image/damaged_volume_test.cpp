@@ -184,7 +184,7 @@ TEST(DamagedDicom, PixelsOfNoKindAreRefused) {
   const std::size_t pixels = bytes.find(std::string("\xe0\x7f\x10\0OW", 6));
   ASSERT_NE(pixels, std::string::npos);
   bytes[pixels + 5] = '\0';
-  expect_refused(folder.write("v.dcm", bytes), "cannot be read", "export it again");
+  expect_refused(folder.write("v.dcm", bytes), "what kind of numbers its pixels are", "export it again");
 }
 
 TEST(TrialProcess, SaysWhatEndedIt) {

@@ -45,6 +45,7 @@ class DicomWalk {
 
   bool is_explicit = true;  // elements say their kind
   bool is_whole = true;     // so far
+  bool has_kind = true;     // the pixels, where elements say theirs
   bool ends() const { return at_ >= bytes_.size() || !is_whole; }
   std::uint32_t next_group() const { return bytes_.size() - at_ < 2 ? 0 : number_at(bytes_, at_, 2); }
 
@@ -61,7 +62,7 @@ class DicomWalk {
     const std::string_view kind = bytes_.substr(at_ + 4, 2);
     const bool is_item = element.tag >> 16 == kItem >> 16;
     const bool is_long = is_among(kLongKinds, kind);
-    if (is_explicit && element.tag == kPixels) is_whole = is_long || is_among(kShortKinds, kind);
+    if (is_explicit && element.tag == kPixels) has_kind = is_long || is_among(kShortKinds, kind);
     if (is_item || !is_explicit) {
       element.length = number_at(bytes_, at_ + 4, 4);
     } else if (!is_long) {
@@ -120,21 +121,24 @@ std::string transfer_syntax(DicomWalk& walk) {
   return syntax;
 }
 
-bool is_whole_dicom(std::string_view bytes) {
+// Empty: none.
+std::string defect_of(std::string_view bytes) {
+  const std::string cut = "the DICOM file ends too early, or holds no image";
   DicomWalk walk(bytes, kPreamble + 4);
   const std::string syntax = transfer_syntax(walk);
-  if (!walk.is_whole || syntax.empty()) return false;
-  if (syntax == "1.2.840.10008.1.2.2" || syntax == "1.2.840.10008.1.2.1.99") return true;
+  if (!walk.is_whole || syntax.empty()) return cut;
+  if (syntax == "1.2.840.10008.1.2.2" || syntax == "1.2.840.10008.1.2.1.99") return "";
   walk.is_explicit = syntax != "1.2.840.10008.1.2";
   while (!walk.ends()) {
     const DicomElement element = walk.head();
+    if (!walk.has_kind) return "the DICOM file does not say what kind of numbers its pixels are (no VR)";
     if (element.length == kUndefined)
       walk.skip_items(0);
     else
       walk.skip(element.length);
-    if (element.tag == kPixels) return walk.is_whole;
+    if (element.tag == kPixels) return walk.is_whole ? "" : cut;
   }
-  return false;
+  return cut;
 }
 
 }  // namespace
@@ -149,10 +153,9 @@ bool begins_as_dicom(const std::filesystem::path& path) {
 void check_dicom_structure(const std::filesystem::path& path) {
   if (!begins_as_dicom(path))
     throw InputError(path.string() + ": is no DICOM file, whatever its name says; export it again");
-  if (!is_whole_dicom(formats::read_whole(path)))
-    throw InputError(path.string() +
-                     ": its voxels cannot be read: the DICOM file ends too early, or holds no image; " +
-                     "copy or export it again");
+  const std::string defect = defect_of(formats::read_whole(path));
+  if (!defect.empty())
+    throw InputError(path.string() + ": its voxels cannot be read: " + defect + "; copy or export it again");
 }
 
 }  // namespace coapt
