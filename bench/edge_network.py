@@ -4,19 +4,21 @@
     bench/edge_network.py make FOLDER [--coapt PATH] [--layers PATH]    phantoms, unrolled: the files of `learn`
     bench/edge_network.py learn FOLDER [--steps N]                      writes src/image/edge/edge_weights.inc
 
-`make` draws mitral valves of seeds 100 to 189 to learn from, and 200 to 211 to stop by; those of bench/image.py, 0 to 9, are left for its
-figures. Voxels of 0.5 mm without dropout and of 0.7 mm with 15 % dropout in turns; three in five with chords to the free edge and the rough
-zone, the others with those of the generator or none. As many steps are taken on rough valves (`--rough`), mitral and tricuspid in turns, of
-seeds 101 to 157, and 201 to 208 to stop by; 1 to 8 are left for figures. PATH of --layers is bench_edge_layers. `learn` needs PyTorch and
-takes ten minutes.
+`make` makes three families, of which the seeds of bench/image.py, 0 to 9, and rough valves 1 to 8 are left for figures. "drawn": generated
+mitral valves, voxels of 0.5 mm without dropout and of 0.7 mm with 15 % dropout in turns, three in five with chords to the free edge and the
+rough zone, the others with those of the generator or none. "rough": `--rough` valves, mitral and tricuspid in turns, voxels as before. "dense":
+valves of all three kinds, scaled along their axes, most with up to 95 % of the vertices of the edge at chords of 0.1 to 2 mm2, in images of
+many kinds. PATH of --layers is bench_edge_layers. `learn` needs PyTorch and takes ten minutes.
 
 The network's logits, summed down a column, are the logarithms of the probabilities of an end at each place; it learns the least expected
 distance from the true end, with a share of the cross-entropies of ends and places. It must not learn how long leaflets are: columns are
-stretched, shortened and lengthened in their middle, and the distance from the annulus is withheld (its channel is 0, and so are its taps).
+stretched, shortened and lengthened in their middle, and the distance from the annulus is withheld.
 """
 import argparse
 import json
+import math
 import pathlib
+import random
 import struct
 import subprocess
 import tempfile
@@ -25,55 +27,102 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 WEIGHTS = ROOT / "src/image/edge/edge_weights.inc"
 CASES = (["--voxel", "0.5mm", "--psf", "0.5mm", "0.5mm", "--dropout", "0"], ["--voxel", "0.7mm", "--psf", "0.8mm", "0.8mm", "--dropout", "0.15"])
 CHORDS = ("both", "both", "generator", "both", "none")
-STOPPING = range(200, 212)
-ROUGH, ROUGH_STOPPING = range(101, 158), range(201, 209)
-LENGTH, APART = 22, 23  # channels
-CHANNELS, HIDDEN, SPREADS = 25, 12, (1, 2, 4, 4)
+FAMILIES = {"drawn": (range(101, 190), range(201, 209)), "rough": (range(101, 158), range(201, 209)),
+            "dense": (range(101, 201), range(301, 313))}  # seeds to learn from, and to stop by
+SHARES = {"drawn": 0.4, "rough": 0.25, "dense": 0.35}  # of the steps
+STEPS, APART = 8000, 22  # the channel of the distance of columns
+CHANNELS, HIDDEN, SPREADS = 24, 12, (1, 2, 4, 8)
 STEP, SURE, TURNED = 0.5, 6, 6  # mm between places; places that are leaflet; after so many beyond the edge nothing is leaflet
 WINDOW, PLACES = 80, 64  # columns and places of a step
 
 
-def made(coapt: str, layers: str, seed: int, case: list[str], chords: str, output: pathlib.Path) -> None:
-    run = lambda *arguments: subprocess.run(list(map(str, arguments)), check=True, stdout=subprocess.DEVNULL)
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        run(coapt, "generate", "mitral", "--seed", seed, "--triangles", 2500, "-o", folder / "drawn")
-        source = folder / "drawn/valve.json"
-        if chords != "generator":
-            valve = json.loads(source.read_text())
-            for key in ("chords", "junctions", "membranes", "papillary_closed"):
-                valve.pop(key, None)
-            (folder / "bare.json").write_text(json.dumps(valve))
-            source = folder / "bare.json"
-        if chords == "both":
-            run(coapt, "chords", source, "--zones", "free_edge", "rough", "-o", folder / "valve/valve.json")
-            source = folder / "valve/valve.json"
-        run(coapt, "import", source, "-o", folder / "scene")
-        run(coapt, "phantom", folder / "scene/scene.json", *case, "--shadows", 0, "--thickness", "1mm", "--seed", seed, "-o", folder / "phantom")
-        run(layers, folder / "phantom/open", output)
+def run(*arguments) -> None:
+    subprocess.run(list(map(str, arguments)), check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def made_rough(coapt: str, layers: str, kind: str, seed: int, case: list[str], output: pathlib.Path) -> None:
-    run = lambda *arguments: subprocess.run(list(map(str, arguments)), check=True, stdout=subprocess.DEVNULL)
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        run(coapt, "generate", kind, "--rough", seed, "--triangles", 900, "-o", folder / "scene")
-        run(coapt, "phantom", folder / "scene/scene.json", *case, "--shadows", 0, "--thickness", "1mm", "--seed", seed, "-o", folder / "phantom")
-        run(layers, folder / "phantom/open", output)
+def phantom(coapt: str, scene: pathlib.Path, seed: int, case: list[str], folder: pathlib.Path) -> pathlib.Path:
+    extent = [] if "--thickness" in case else ["--shadows", 0, "--thickness", "1mm"]
+    run(coapt, "phantom", scene, *case, *extent, "--seed", seed, "-o", folder / "phantom")
+    return folder / "phantom/open"
+
+
+def without_chords(source: pathlib.Path, valve: dict) -> pathlib.Path:
+    for key in ("chords", "junctions", "membranes", "cables", "papillary_closed", "annulus_closed", "closed_reference"):
+        valve.pop(key, None)
+    bare = source.with_name("bare.json")
+    bare.write_text(json.dumps(valve))
+    return bare
+
+
+def drawn(coapt: str, seed: int, folder: pathlib.Path) -> pathlib.Path:
+    chords = CHORDS[(seed - 101) // 2 % 5]
+    run(coapt, "generate", "mitral", "--seed", seed, "--triangles", 2500, "-o", folder / "drawn")
+    source = folder / "drawn/valve.json"
+    if chords != "generator":
+        source = without_chords(source, json.loads(source.read_text()))
+    if chords == "both":
+        run(coapt, "chords", source, "--zones", "free_edge", "rough", "-o", folder / "valve/valve.json")
+        source = folder / "valve/valve.json"
+    run(coapt, "import", source, "-o", folder / "scene")
+    return phantom(coapt, folder / "scene/scene.json", seed, CASES[(seed + 1) % 2], folder)
+
+
+def rough(coapt: str, seed: int, folder: pathlib.Path) -> pathlib.Path:
+    number = (seed - 101) % 100
+    run(coapt, "generate", ("mitral", "tricuspid")[number % 2], "--rough", seed, "--triangles", 900, "-o", folder / "scene")
+    return phantom(coapt, folder / "scene/scene.json", seed, CASES[number // 2 % 2], folder)
+
+
+def dense(coapt: str, seed: int, folder: pathlib.Path) -> pathlib.Path:
+    """A valve of any kind, scaled along three axes, most with many thick chords, in an image of any kind."""
+    draw = random.Random(seed)
+    kind = [["mitral", "--seed", seed], ["mitral", "--rough", seed], ["tricuspid", "--rough", seed]][seed % 3]
+    run(coapt, "generate", *kind, "--triangles", draw.choice((1500, 2500, 4000)), "-o", folder / "drawn")
+    source, scales = folder / "drawn/valve.json", [draw.uniform(0.8, 1.25) for _ in range(3)]
+    valve = json.loads(source.read_text())
+    scaled = lambda point: [x * scale for x, scale in zip(point, scales)]
+    mesh = source.with_name(valve["leaflets"])
+    lines = [line.split() for line in mesh.read_text().splitlines()]
+    mesh.write_text("\n".join(" ".join(["v", *map(repr, scaled(map(float, line[1:4])))] if line[:1] == ["v"] else line) for line in lines) + "\n")
+    for key in ("papillary", "junctions"):
+        valve[key] = [scaled(point) for point in valve.get(key, [])]
+    what = draw.random()
+    if what < 0.2:  # its own chords
+        for key in ("papillary_closed", "annulus_closed"):
+            valve.pop(key, None)
+        source.write_text(json.dumps(valve))
+    else:
+        source = without_chords(source, valve)
+    if what > 0.32:  # else none
+        branches, levels, zones = draw.randint(2, 5), draw.randint(1, 2), ["free_edge"] + ["rough"] * (draw.random() < 0.8)
+        areas = [math.exp(draw.uniform(math.log(0.1), math.log(2))) for _ in range(levels)]
+        ends = draw.uniform(0.35, 0.95) * len(valve["free_edge"])
+        for fewer in (1, 0.7, 0.5, 0.3, 0.15):  # the zone may have fewer vertices
+            count = max(4, int(fewer * ends / branches ** (levels - 1)))
+            try:
+                run(coapt, "chords", source, "--zones", *zones, "--count", count, "--levels", levels, "--branches", branches, "--level-areas",
+                    *areas, "--seed", seed, "-o", folder / "valve/valve.json")
+                source = folder / "valve/valve.json"
+                break
+            except subprocess.CalledProcessError:
+                pass
+    run(coapt, "import", source, "-o", folder / "scene")
+    millimetres = lambda least, greatest: f"{draw.uniform(least, greatest):.2f}mm"
+    case = ["--voxel", millimetres(0.5, 0.8), "--psf", millimetres(0.4, 0.8), millimetres(0.4, 1.0), "--dropout",
+            f"{draw.choice((0, 0.1, 0.15, 0.25)):g}", "--shadows", draw.choice((0, 0, 2)), "--thickness", millimetres(0.7, 1.4),
+            "--probe-distance", f"{draw.uniform(45, 90):.0f}mm"]
+    return phantom(coapt, folder / "scene/scene.json", seed, case, folder)
 
 
 def make(folder: pathlib.Path, coapt: str, layers: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    for number, seed in enumerate([*range(100, 190), *STOPPING]):
-        output = folder / f"{seed}.bin"
-        if not output.exists():
-            made(coapt, layers, seed, CASES[number % 2], CHORDS[number // 2 % 5], output)
-            print(output, flush=True)
-    for seed in [*ROUGH, *ROUGH_STOPPING]:
-        output = folder / f"rough_{seed}.bin"
-        number = seed - (201 if seed in ROUGH_STOPPING else 101)
-        if not output.exists():
-            made_rough(coapt, layers, ("mitral", "tricuspid")[number % 2], seed, CASES[number // 2 % 2], output)
+    for draw in (drawn, rough, dense):
+        for seed in [seed for seeds in FAMILIES[draw.__name__] for seed in seeds]:
+            output = folder / f"{draw.__name__}_{seed}.bin"
+            if output.exists():
+                continue
+            with tempfile.TemporaryDirectory() as name:
+                run(layers, draw(coapt, seed, pathlib.Path(name)), output)
             print(output, flush=True)
 
 
@@ -85,7 +134,6 @@ def read(path: pathlib.Path):
     numbers = np.frombuffer(data, np.float32, offset=12)
     count = channels * places * columns
     x = numbers[:count].reshape(places, columns, channels).transpose(2, 0, 1).copy()
-    x[LENGTH] = 0
     away, inside = numbers[count:].reshape(2, places, columns)
     side = np.where(away < 3, np.clip(inside, -1, 1), -1)
     side[:SURE] = 1
@@ -154,7 +202,7 @@ def changed(x, ends, side, random):
     return x[:, :places].astype(np.float32), np.minimum(ends, places), side[:places]
 
 
-def learn(folder: pathlib.Path, steps: int) -> None:
+def learn(folder: pathlib.Path, steps: int, without: str) -> None:
     import numpy as np
     import torch
     from torch import nn
@@ -192,25 +240,25 @@ def learn(folder: pathlib.Path, steps: int) -> None:
     torch.manual_seed(0)
     torch.set_num_threads(1)
     random = np.random.default_rng(0)
-    groups = [[folder / f"{name}{seed}.bin" for seed in seeds] for name, seeds in
-              (("", range(100, 190)), ("rough_", ROUGH), ("", STOPPING), ("rough_", ROUGH_STOPPING))]
-    layers = [[read(path) for path in group if path.exists()] for group in groups]
-    taught, stopping = layers[:2], layers[2:]
+    families = [name for name in FAMILIES if name != without]
+    taught, stopping = ([[read(folder / f"{name}_{seed}.bin") for seed in FAMILIES[name][which]] for name in families] for which in (0, 1))
+    shares = np.array([SHARES[name] for name in families])
     network, best, kept = Network(), float("inf"), {}
     descent = torch.optim.Adam(network.parameters(), weight_decay=1e-5)
     for step in range(steps):
         for group in descent.param_groups:
             group["lr"] = 0.002 * min(1, (step + 1) / 50) * (1 + np.cos(np.pi * step / steps)) + 1e-5
-        group = taught[random.integers(2)]
+        group = taught[random.choice(len(taught), p=shares / shares.sum())]
         loss, _ = losses(network, *changed(*group[random.integers(len(group))], random))
         descent.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(network.parameters(), 1)
         descent.step()
-        if (step + 1) % max(1, steps // 16) == 0:
+        if (step + 1) % max(1, steps // 8) == 0:
             with torch.no_grad():
-                off = np.mean([np.mean([losses(network, *layer)[1].item() for layer in group]) for group in stopping])
-            print(f"step {step + 1}: {off:.3f} mm down the columns, on valves to stop by", flush=True)
+                each = [np.mean([losses(network, *layer)[1].item() for layer in group]) for group in stopping]
+            off = np.mean(each)
+            print(f"step {step + 1}: {', '.join(f'{name} {mean:.3f}' for name, mean in zip(families, each))} mm down the columns", flush=True)
             if off < best:
                 best, kept = off, {name: values.clone() for name, values in network.state_dict().items()}
     network.load_state_dict(kept)
@@ -219,7 +267,6 @@ def learn(folder: pathlib.Path, steps: int) -> None:
 
 def written(network) -> None:
     """Of each layer its taps, outputs fastest, then its offsets."""
-    network.first.weight.data[:, LENGTH] = 0
     numbers: list[float] = []
     for layer in (network.first, *network.middle, network.last):
         numbers += layer.weight.detach().permute(2, 3, 1, 0).reshape(-1).tolist() + layer.bias.detach().tolist()
@@ -234,12 +281,13 @@ def main() -> None:
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--coapt", default="build/ci/bin/coapt")
     parser.add_argument("--layers", default="build/separate/bench/bench_edge_layers")
-    parser.add_argument("--steps", type=int, default=10000)
+    parser.add_argument("--steps", type=int, default=STEPS)
+    parser.add_argument("--without", default="", choices=FAMILIES, help="a family that is not learnt from")
     options = parser.parse_args()
     if options.what == "make":
         make(options.folder, options.coapt, options.layers)
     else:
-        learn(options.folder, options.steps)
+        learn(options.folder, options.steps, options.without)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kOffsets = 21, kOnLayer = 8, kInnerSide = 0, kOuterSide = 16;  // along the normal; of these
 constexpr double kFirstOffset = -4, kOffsetStep = 0.5;                       // [mm]
-constexpr int kFirstLevel = 4, kLastLevel = 11;        // places from which levels are read: 2 to 6 mm
-constexpr double kLengthUnit = 20, kApartUnit = 0.75;  // [mm]
-constexpr float kStrongest = 3, kGreatestLogit = 4;    // counted
-constexpr int kInputs = kOffsets + 4, kHidden = 12;    // channels
-constexpr std::array kSpreads = {0, 1, 2, 4, 4, 0};    // of the taps of each layer, in places; 0: one tap
+constexpr int kFirstLevel = 4, kLastLevel = 11;      // places from which levels are read: 2 to 6 mm
+constexpr double kApartUnit = 0.75;                  // [mm]
+constexpr float kStrongest = 3, kGreatestLogit = 4;  // counted
+constexpr int kInputs = kOffsets + 3, kHidden = 12;  // channels
+constexpr std::array kSpreads = {0, 1, 2, 4, 8, 0};  // of the taps of each layer, in places; 0: one tap
 constexpr float kWeights[] = {
 #include "image/edge/edge_weights.inc"
 };
@@ -80,9 +80,8 @@ Eigen::MatrixXf layer_channels(const Volume& volume, const SheetEvidence& eviden
       channels(k, place) =
           static_cast<float>(sample(volume, x + (kFirstOffset + kOffsetStep * k) * normal, kNaN));
     channels(kOffsets, place) = static_cast<float>(sheet_strength(evidence, x, normal));
-    channels(kOffsets + 1, place) = static_cast<float>(length / kLengthUnit);
-    channels(kOffsets + 2, place) = static_cast<float>(0.5 * across.norm() / kApartUnit);
-    channels(kOffsets + 3, place) = length > lengths(grid.rows - 1, column) ? 0.0F : 1.0F;
+    channels(kOffsets + 1, place) = static_cast<float>(0.5 * across.norm() / kApartUnit);
+    channels(kOffsets + 2, place) = length > lengths(grid.rows - 1, column) ? 0.0F : 1.0F;
   }
   const float blood =
       std::min(level_near_annulus(channels, kInnerSide, n), level_near_annulus(channels, kOuterSide, n));

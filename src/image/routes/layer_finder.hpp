@@ -23,9 +23,6 @@ struct FoundLayer {
   LayerGrid grid;
   LayerFit fit;
   FreeEdge edge;
-  // Down each column, to where chords begin beside it [mm]: blur and thickness are read above; empty: to the
-  // edge.
-  Vector clear = {};
 };
 
 using LayerFinder = std::function<FoundLayer(const LayerImage&)>;

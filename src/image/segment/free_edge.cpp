@@ -203,6 +203,11 @@ Vector found_ends(const Eigen::MatrixXd& strength, const Eigen::MatrixXd& contra
   return moved_to_blood(ends, shown, lengths);
 }
 
+// Lengths that leaflets can have, within the layer [mm].
+Vector within(const Vector& ends, const Eigen::MatrixXd& lengths) {
+  return ends.cwiseMax(0.5 * kShortest).cwiseMin(lengths.bottomRows(1).transpose());
+}
+
 // Along each column, by the network [mm].
 Vector learnt_ends(const Volume& volume, const SheetEvidence& evidence, const LayerGrid& grid) {
   Eigen::MatrixXd logits = leaflet_logits(layer_channels(volume, evidence, grid), grid.columns);
@@ -229,13 +234,15 @@ FreeEdge free_edge(const Volume& volume, const SheetEvidence& evidence, const La
         "no layer that is brighter than its sides hangs from the annulus; does the annulus lie in the "
         "volume's frame (LPS), and are the leaflets bright in it?");
   const Eigen::MatrixXd strength = over_level(strengths(evidence, grid), lengths);
-  const Vector found = rule == EdgeRule::Learnt
-                           ? learnt_ends(volume, evidence, grid)
-                           : found_ends(strength, over_level(contrast, lengths), lengths);
+  Vector found = found_ends(strength, over_level(contrast, lengths), lengths);
   edge.lengths = smoothed(found, grid, lengths);
+  if (rule == EdgeRule::Learnt) {
+    edge.clear = within(edge.lengths, lengths);
+    found = learnt_ends(volume, evidence, grid);
+    edge.lengths = smoothed(found, grid, lengths);
+  }
   edge.deviation = std::sqrt((found - edge.lengths).squaredNorm() / grid.columns);
-  for (int column = 0; column < grid.columns; ++column)
-    edge.lengths[column] = std::clamp(edge.lengths[column], 0.5 * kShortest, lengths(grid.rows - 1, column));
+  edge.lengths = within(edge.lengths, lengths);
   return edge;
 }
 

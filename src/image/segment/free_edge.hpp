@@ -14,6 +14,9 @@ struct FreeEdge {
   Vector lengths;        // along each column, from the annulus [mm]
   double deviation = 0;  // standard deviation of a length, before the edge was smoothed [mm]
   double contrast = 0;   // of the layer and what lies on the darker of its sides, in values of the volume
+  // Of Learnt: where Contrast ends each column, because chords begin beside it [mm]; blur and thickness are
+  // read above. Else empty: they are read to the edge.
+  Vector clear = {};
 };
 
 // At each point of the layer the evidence is two thirds that of a sheet and one third the contrast (half and

@@ -28,6 +28,14 @@ constexpr double kLeastAngle = 20;    // below which the mesh is doubtful [degre
 constexpr double kMostApart = 0.05;   // of the area, from which two routes do not agree
 constexpr double kLittleShown = 0.7;  // of the area, below which the result is doubtful
 
+bool is_route(SegmentMethod method) {
+  return method == SegmentMethod::Ridge || method == SegmentMethod::Template;
+}
+
+bool can_be_learnt(const SegmentOptions& options) {
+  return options.dynamic_range > 0 && !options.mask && is_route(options.method);
+}
+
 void check(const Volume& volume, const SegmentOptions& options) {
   std::vector<std::string> defects;
   if (options.annulus.cols() < 5)
@@ -50,9 +58,12 @@ void check(const Volume& volume, const SegmentOptions& options) {
     defects.push_back("the edge length is " + number_text(options.edge_length, 3) + " mm; expected 0.3 to 5");
   if (!(options.smoothing >= 0.2 && options.smoothing <= 10))
     defects.push_back("the smoothing is " + number_text(options.smoothing, 3) + " mm; expected 0.2 to 10");
-  const bool is_route = options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template;
-  if (options.has_second_route && !is_route)
+  if (options.has_second_route && !is_route(options.method))
     defects.push_back("only `ridge` and `template` are two routes to the same layer, that can be compared");
+  if (options.edge == EdgeRule::Learnt && !can_be_learnt(options))
+    defects.push_back(
+        "the network that finds the free edge knows ultrasound alone: it needs a dynamic range, no mask, and "
+        "the method `ridge`");
   if (!options.finder && (options.method == SegmentMethod::Template || options.has_second_route))
     defects.push_back("nobody said how the layer of a template is found");
   if (!defects.empty()) throw InputError(defects);
@@ -134,11 +145,7 @@ FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, con
   layer.grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
   layer.fit = fit_layer(layer.grid, ridge, options.smoothing, kFitRounds);
   phases.begin("free edge");
-  const bool is_ultrasound = options.dynamic_range > 0 && !options.mask;
-  const bool is_image = options.method == SegmentMethod::Ridge || options.method == SegmentMethod::Template;
-  const EdgeRule rule = is_ultrasound && is_image ? options.edge : EdgeRule::Contrast;
-  layer.edge = free_edge(seen, evidence, layer.grid, rule);
-  if (rule == EdgeRule::Learnt) layer.clear = free_edge(seen, evidence, layer.grid).lengths;
+  layer.edge = free_edge(seen, evidence, layer.grid, options.edge);
   return layer;
 }
 
@@ -287,8 +294,8 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const LayerGrid& grid = layer.grid;
   const LayerFit& fit = layer.fit;
   const FreeEdge& edge = layer.edge;
-  const bool has_clear_part = layer.clear.size() > 0;
-  const std::vector<char> is_seen = seen_points(grid, fit, has_clear_part ? layer.clear : edge.lengths);
+  const bool has_clear_part = edge.clear.size() > 0;
+  const std::vector<char> is_seen = seen_points(grid, fit, has_clear_part ? edge.clear : edge.lengths);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
   result.blur = mean_of(blur, is_seen);
   result.edge_deviation = edge.deviation;

@@ -34,7 +34,7 @@ struct SegmentOptions {
   std::optional<double> blur = {};     // standard deviation across the sheet [mm]; none: found
   double edge_length = 1.2;            // of the mesh [mm]
   double smoothing = 1.2;              // below which shapes are taken for noise [mm]
-  EdgeRule edge = EdgeRule::Contrast;  // of Ridge; Learnt only with a dynamic range and without a mask
+  EdgeRule edge = EdgeRule::Contrast;  // of Ridge; Learnt needs a dynamic range and no mask
   LayerFinder finder = {};             // of Template, and of the second route
   bool has_second_route = false;       // Ridge is compared with Template, or Template with Ridge
   bool keeps_evidence = false;         // in the result

@@ -1,7 +1,9 @@
 #include "image/edge/edge_network.hpp"
 
-#include "image/phantom.hpp"
+#include "core/error.hpp"
 #include "image/segment/segment_leaflets.hpp"
+#include "image/support/speckle_phantom.hpp"
+#include "image/support/valve_image.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 #include "valve/generators/mitral.hpp"
 #include "valve/generators/rough_valve.hpp"
@@ -10,12 +12,11 @@
 
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace coapt {
 namespace {
 
-constexpr int kChannels = 25, kColumns = 20, kPlaces = 16;
+constexpr int kChannels = 24, kColumns = 20, kPlaces = 16;
 
 // Smooth numbers without meaning; the last channel says that there is a layer.
 Eigen::MatrixXf made_up_channels() {
@@ -51,46 +52,12 @@ TEST(EdgeNetwork, TakesNothingBeyondTheEndOfAColumnForLeaflet) {
   EXPECT_LE(logits.cwiseAbs().maxCoeff(), 4);
 }
 
-// Voxels of 0.5 mm, between walls.
-struct Imaged {
-  Valve valve;
-  Volume image;
-};
-
-Imaged imaged(Valve valve, unsigned seed) {
-  Imaged made{std::move(valve), {}};
-  PhantomOptions options;
-  options.axial = options.lateral = 0.5;
-  options.dropout = 0;
-  options.shadows = 0;
-  options.seed = seed;
-  PhantomValve state;
-  state.surface = made.valve.leaflets;
-  state.annulus = made.valve.annulus;
-  state.upstream = upstream_direction(state.surface, state.annulus);
-  const ChordNetwork& network = made.valve.chords;
-  const auto place = [&](const ChordEnd& end) -> Vec3 {
-    if (end.kind == ChordEnd::Kind::Papillary) return network.papillary.col(end.index);
-    if (end.kind == ChordEnd::Kind::Junction) return network.junctions.col(end.index);
-    return made.valve.leaflets.vertices.col(end.index);
-  };
-  state.line_ends.resize(3, 2 * static_cast<Eigen::Index>(network.chords.size()));
-  for (size_t k = 0; k < network.chords.size(); ++k) {
-    state.line_ends.col(static_cast<Eigen::Index>(2 * k)) = place(network.chords[k].from);
-    state.line_ends.col(static_cast<Eigen::Index>(2 * k + 1)) = place(network.chords[k].to);
-    state.line_radii.push_back(std::sqrt(network.chords[k].area / std::numbers::pi));
-  }
-  const PhantomPattern pattern = phantom_pattern(state.surface, options);
-  made.image = make_phantom(state, pattern, phantom_grid({state}, options), options).image;
-  return made;
-}
-
-Imaged valve_with_rough_chords(unsigned seed) {
+Valve valve_with_rough_chords(unsigned seed) {
   Valve valve = mitral_valve(MitralOptions{.triangles = 2500, .seed = seed});
   LeafletChordOptions chords;
   chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
   valve.chords = leaflet_chords(valve, chords);
-  return imaged(std::move(valve), seed);
+  return valve;
 }
 
 Points ring_points(const Valve& valve, const std::vector<int>& loop) {
@@ -98,14 +65,14 @@ Points ring_points(const Valve& valve, const std::vector<int>& loop) {
 }
 
 // Mean distance of the found edge's vertices from those of the true one [mm].
-double edge_error(const Imaged& made, EdgeRule rule) {
+double edge_error(const Valve& valve, const Volume& image, EdgeRule rule) {
   SegmentOptions options;
-  options.annulus = ring_points(made.valve, made.valve.annulus);
+  options.annulus = ring_points(valve, valve.annulus);
   options.dynamic_range = 50;
   options.edge = rule;
-  const Segmentation found = segment_leaflets(made.image, options);
+  const Segmentation found = segment_leaflets(image, options);
   const Points from = ring_points(found.valve, found.valve.free_edge);
-  const Points to = ring_points(made.valve, made.valve.free_edge);
+  const Points to = ring_points(valve, valve.free_edge);
   double sum = 0;
   for (Eigen::Index k = 0; k < from.cols(); ++k)
     sum += (to.colwise() - from.col(k)).colwise().norm().minCoeff();
@@ -114,15 +81,28 @@ double edge_error(const Imaged& made, EdgeRule rule) {
 
 // Seeds that were not learnt from. Of one kind of shape alone a network may know the lengths by heart.
 TEST(EdgeNetwork, FindsTheEdgeAmongChordsOfTheRoughZone) {
-  const Imaged made = valve_with_rough_chords(1);
-  const double learnt = edge_error(made, EdgeRule::Learnt);
+  const Valve valve = valve_with_rough_chords(1);
+  const Volume image = testing::image_with_chords(valve, testing::clear_phantom(1));
+  const double learnt = edge_error(valve, image, EdgeRule::Learnt);
   EXPECT_LT(learnt, 1.3);
-  EXPECT_LT(learnt, 0.7 * edge_error(made, EdgeRule::Contrast));
+  EXPECT_LT(learnt, 0.7 * edge_error(valve, image, EdgeRule::Contrast));
 }
 
 TEST(EdgeNetwork, FindsTheEdgeOfARoughValve) {
-  const Imaged made = imaged(rough_valve({.kind = RoughKind::Mitral, .seed = 2, .triangles = 900}), 1);
-  EXPECT_LT(edge_error(made, EdgeRule::Learnt), edge_error(made, EdgeRule::Contrast));
+  const Valve valve = rough_valve({.kind = RoughKind::Mitral, .seed = 2, .triangles = 900});
+  const Volume image = testing::image_with_chords(valve, testing::clear_phantom(1));
+  EXPECT_LT(edge_error(valve, image, EdgeRule::Learnt), edge_error(valve, image, EdgeRule::Contrast));
+}
+
+TEST(EdgeNetwork, IsRefusedWhereValuesAreNoUltrasound) {
+  const Valve valve = valve_with_rough_chords(1);
+  SegmentOptions options;
+  options.annulus = ring_points(valve, valve.annulus);
+  options.edge = EdgeRule::Learnt;
+  const Volume image = testing::plain_volume(valve.leaflets, {.voxel = 1.5});
+  EXPECT_THROW(segment_leaflets(image, options), InputError);
+  options.edge = EdgeRule::Contrast;
+  EXPECT_NO_THROW(segment_leaflets(image, options));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "image/segment/segment_leaflets.hpp"
 
 #include "core/error.hpp"
-#include "image/phantom.hpp"
 #include "image/support/speckle_phantom.hpp"
+#include "image/support/valve_image.hpp"
 #include "mesh/distance/surface_distance.hpp"
 #include "mesh/distance/triangle_tree.hpp"
 #include "mesh/mesh_check.hpp"
@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace coapt {
 namespace {
@@ -84,42 +83,11 @@ TEST(SegmentLeaflets, FindsTheGeneratedValveInSpeckle) {
   EXPECT_GT(out.dot(Vec3(outward[0], outward[1], 0)), 0);
 }
 
-// The valve as `coapt phantom` images it: with its chords, between walls.
-Volume image_with_chords(const Valve& valve, const PhantomOptions& options) {
-  PhantomValve state;
-  state.surface = valve.leaflets;
-  state.annulus = valve.annulus;
-  state.upstream = upstream_direction(valve.leaflets, valve.annulus);
-  const ChordNetwork& network = valve.chords;
-  const auto place = [&](const ChordEnd& end) -> Vec3 {
-    if (end.kind == ChordEnd::Kind::Papillary) return network.papillary.col(end.index);
-    if (end.kind == ChordEnd::Kind::Junction) return network.junctions.col(end.index);
-    return valve.leaflets.vertices.col(end.index);
-  };
-  state.line_ends.resize(3, 2 * static_cast<Eigen::Index>(network.chords.size()));
-  for (size_t k = 0; k < network.chords.size(); ++k) {
-    state.line_ends.col(static_cast<Eigen::Index>(2 * k)) = place(network.chords[k].from);
-    state.line_ends.col(static_cast<Eigen::Index>(2 * k + 1)) = place(network.chords[k].to);
-    state.line_radii.push_back(std::sqrt(network.chords[k].area / std::numbers::pi));
-  }
-  return make_phantom(state, phantom_pattern(state.surface, options), phantom_grid({state}, options), options)
-      .image;
-}
-
-// Voxels of 0.5 mm, without gaps.
-PhantomOptions clear_phantom(unsigned seed) {
-  PhantomOptions options;
-  options.axial = options.lateral = 0.5;
-  options.dropout = 0;
-  options.shadows = 0;
-  options.seed = seed;
-  return options;
-}
-
 TEST(SegmentLeaflets, EndsWhereChordsFanOut) {
   const Valve valve = mitral_valve(MitralOptions{.triangles = 2500, .seed = 8});
-  const PhantomOptions phantom = clear_phantom(8);
-  const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
+  const PhantomOptions phantom = testing::clear_phantom(8);
+  const Segmentation found =
+      segment_leaflets(testing::image_with_chords(valve, phantom), speckle_options(valve));
   const Errors errors = errors_of(found, valve);
   EXPECT_LT(errors.there.p95, 0.8);
   EXPECT_LT(errors.back.mean, 0.25);
@@ -134,8 +102,9 @@ TEST(SegmentLeaflets, GoesOnWhereChordsOfTheRoughZoneLeave) {
   LeafletChordOptions chords;
   chords.zones = {chord_zone("free_edge"), chord_zone("rough")};
   valve.chords = leaflet_chords(valve, chords);
-  const PhantomOptions phantom = clear_phantom(4);
-  const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
+  const PhantomOptions phantom = testing::clear_phantom(4);
+  const Segmentation found =
+      segment_leaflets(testing::image_with_chords(valve, phantom), speckle_options(valve));
   const Errors errors = errors_of(found, valve);
   EXPECT_LT(errors.back.mean, 0.35);
   EXPECT_LT(std::abs(errors.area), 0.09);
@@ -149,14 +118,11 @@ TEST(SegmentLeaflets, FindsTheThicknessWithinAFifth) {
   };
   for (const Case& one : {Case{0.5, 0.8, 11}, Case{0.5, 1, 12}, Case{0.7, 1.5, 13}, Case{0.7, 2, 14}}) {
     const Valve valve = mitral_valve(MitralOptions{.triangles = 1500, .seed = one.seed});
-    PhantomOptions phantom;
-    phantom.axial = phantom.lateral = 0.5;
-    phantom.dropout = 0;
-    phantom.shadows = 0;
+    PhantomOptions phantom = testing::clear_phantom(one.seed);
     phantom.voxel = one.voxel;
     phantom.thickness = one.thickness;
-    phantom.seed = one.seed;
-    const Segmentation found = segment_leaflets(image_with_chords(valve, phantom), speckle_options(valve));
+    const Segmentation found =
+        segment_leaflets(testing::image_with_chords(valve, phantom), speckle_options(valve));
     EXPECT_NEAR(found.thickness_median, one.thickness, 0.2 * one.thickness) << one.voxel << " " << one.seed;
     EXPECT_NEAR(found.blur, 0.41, 0.04);  // of power, 15 mm behind the annulus, where it is wider
   }
