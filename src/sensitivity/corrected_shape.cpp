@@ -95,13 +95,12 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
   if (!near_.assemble(objective_, q, g)) return false;
   const int negative = system_.negative_modes();
-  const bool is_definite = near_.factorise_definite();
-  if (!is_definite &&
-      (negative == 0 || !near_.factorise(objective_, q) || near_.negative_modes() != negative))
-    return false;
+  const bool is_factorised = near_.factorise_exactly();
+  if (!is_factorised && (negative == 0 || !near_.factorise(objective_, q))) return false;
+  if (near_.negative_modes() != negative) return false;
   double before = kInfinity;
   bool was_near = false;
-  bool is_exact = !is_definite;  // else by the factor alone, without the skew part of the tangent
+  bool is_exact = !is_factorised;  // else by the factor alone
   for (bool is_first = true; found.steps < kMostSteps && found.distance <= most; is_first = false) {
     if (!is_first && (!std::isfinite(objective_.gradient(q, g)) || !g.allFinite())) return false;
     ++found.steps;
@@ -113,7 +112,7 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
     const double length = greatest(x - found.x, nodes), ratio = length / before;
     if (!std::isfinite(length)) return false;
     if (!(ratio <= kClosingIn || length <= kNothing * until)) {
-      if (is_exact || !objective_.has_skew_tangent()) return true;
+      if (is_exact || near_.is_of_all()) return true;
       is_exact = true;  // what the skew part moves has not come in yet: counted anew
       before = kInfinity;
       was_near = false;

@@ -1,5 +1,7 @@
 #include "sensitivity/tangent_system.hpp"
 
+#include "optim/linear/skew_part.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,13 +45,16 @@ bool TangentSystem::factorise_definite() {
   const Vector diagonal = h_.diagonal();
   shift_diagonal(h_, kLeastShift * mean_stiffness());
   negative_modes_ = 0;
+  is_bordered_ = false;
   has_factor_ = factor_->factorise(h_);
   set_diagonal(h_, diagonal);
   return has_factor_;
 }
 
+bool TangentSystem::factorise_exactly() { return factorise_bordered() || factorise_definite(); }
+
 bool TangentSystem::factorise(Objective& objective, const Vector& q) {
-  if (factorise_definite()) return true;
+  if (factorise_exactly()) return true;
   const double mean = mean_stiffness();
   SparseMatrix shifted = h_;
   shift_diagonal(shifted, kLeastShift * mean);
@@ -65,6 +70,38 @@ bool TangentSystem::factorise(Objective& objective, const Vector& q) {
     has_factor_ = factor_->factorise(shifted);
   }
   return has_factor_;
+}
+
+// What W couples last: the negative eigenvalues of H at a stable equilibrium lie there too.
+bool TangentSystem::factorise_bordered() {
+  if (!objective_->has_skew_tangent()) return false;
+  const SkewProduct skew = [this](const Vector& v, Vector& product) {
+    objective_->add_skew_product(v, product);
+  };
+  std::vector<int> border = coupled_nodes(skew, Vector::LinSpaced(h_.rows(), 1, 2));
+  if (border.size() > kMostBorder) return false;
+  if (objective_->pattern_version() != bordered_analysed_ || border != border_) {
+    border_ = std::move(border);
+    bordered_.use_threads(factor_->team());
+    bordered_.analyse(h_, border_);
+    bordered_analysed_ = objective_->pattern_version();
+  }
+  const Vector diagonal = h_.diagonal();
+  shift_diagonal(h_, kLeastShift * mean_stiffness());
+  has_factor_ = bordered_.factorise(h_, skew_entries(skew, border_, h_.rows()));
+  set_diagonal(h_, diagonal);
+  if (has_factor_) negative_modes_ = bordered_.negative_eigenvalues();
+  has_factor_ = is_bordered_ = has_factor_ && negative_modes_ >= 0;
+  return has_factor_;
+}
+
+void TangentSystem::apply_factor(const Vector& b, Vector& x, double skew_sign) {
+  if (!is_bordered_)
+    factor_->solve(b, x);
+  else if (skew_sign > 0)
+    bordered_.solve(b, x);
+  else
+    bordered_.solve_transposed(b, x);
 }
 
 void TangentSystem::multiply(const Vector& v, double skew_sign, Vector& product) {
@@ -83,11 +120,11 @@ double TangentSystem::solve(const Vector& b, Vector& x, double tolerance, double
   left_ = b;
   double residual = 1;
   for (int k = 0; k < kRefinements && residual > tolerance; ++k) {
-    factor_->solve(left_, start_);
+    apply_factor(left_, start_, skew_sign);
     applications_ += 1 + gmres_.solve(
                              [&](const Vector& v, Vector& out) {
                                multiply(v, skew_sign, work_);
-                               factor_->solve(work_, out);
+                               apply_factor(work_, out, skew_sign);
                                out -= v;
                              },
                              start_, std::max(kInner * tolerance / residual, kLeastInner), correction_);

@@ -2,14 +2,18 @@
 #pragma once
 
 #include "energy/objective.hpp"
+#include "optim/linear/bordered_factor.hpp"
 #include "optim/linear/factorisation.hpp"
 #include "optim/linear/gmres.hpp"
 
+#include <vector>
+
 namespace coapt {
 
-// K = H + W, H the exact Hessian (symmetric part), W its skew rest from loads without a potential. H is
-// factorised by Cholesky where it is positive definite, else the sum of its projected elements is, and GMRES
-// with that factor solves with K itself: also one of a state nearby will do.
+// K = H + W, H the exact Hessian (symmetric part), W its skew rest from loads without a potential, which
+// couples few nodes. Where H is positive definite but for these K is factorised, with these last; without
+// such loads H by Cholesky where it is positive definite; else the sum of its projected elements. GMRES with
+// that factor solves with K itself: also one of a state nearby will do.
 class TangentSystem {
  public:
   explicit TangentSystem(const FactorisationFactory& make) : make_(make), factor_(make()), gmres_(kVectors) {}
@@ -21,21 +25,26 @@ class TangentSystem {
   // Makes a factor for the last K. Returns false when that fails. Evaluates projected elements where needed.
   bool factorise(Objective& objective, const Vector& q);
 
-  // The same for a K that is positive definite: returns false for any other, which costs no second assembly.
-  bool factorise_definite();
+  // The same without projected elements, which cost a second assembly: returns false where it would take
+  // them.
+  bool factorise_exactly();
 
-  // H^-1 b by the factor alone. Pre: has_factor().
-  void apply_factor(const Vector& b, Vector& x) { factor_->solve(b, x); }
+  // b by the inverse of the factor alone. Pre: has_factor().
+  void apply_factor(const Vector& b, Vector& x) { apply_factor(b, x, 1); }
 
   // Whether there is a factor, of this K or of an earlier one on the same pattern.
   bool has_factor() const { return has_factor_; }
+
+  // Whether that is of all of K, and not of its symmetric part.
+  bool is_of_all() const { return is_bordered_ || !objective_->has_skew_tangent(); }
 
   // x = K^-1 b or K^-T b, to a residual of `tolerance` relative to |b|, as far as round-off lets it. Returns
   // that residual. Pre: has_factor().
   double solve(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, 1); }
   double solve_transposed(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, -1); }
 
-  // Applications of the factor in the last solve: few, unless it belongs to a state far away.
+  // Applications of the factor in the last solve: few, unless it belongs to a state far away, or to projected
+  // elements.
   int applications() const { return applications_; }
 
   // Of H at the last assembly: zero where an unknown has no stiffness.
@@ -48,11 +57,18 @@ class TangentSystem {
   static constexpr int kVectors = 40;  // of GMRES
 
   double solve(const Vector& b, Vector& x, double tolerance, double skew_sign);
+  void apply_factor(const Vector& b, Vector& x, double skew_sign);
+  bool factorise_definite();
+  bool factorise_bordered();
   double mean_stiffness() const;
   void multiply(const Vector& v, double skew_sign, Vector& product);
 
   FactorisationFactory make_;
   std::unique_ptr<Factorisation> factor_;
+  BorderedFactor bordered_;  // of K, in its place
+  std::vector<int> border_;  // of the pattern that was analysed for it last
+  long bordered_analysed_ = -1;
+  bool is_bordered_ = false;
   Gmres gmres_;
   SparseMatrix h_;
   Objective* objective_ = nullptr;  // of the last assembly: holds the skew part

@@ -358,6 +358,10 @@ TEST(BorderedFactor, SolvesWithASkewPartOfItsBorder) {
     Vector x;
     factor.solve(b, x);
     EXPECT_LT((whole * x - b).norm(), 1e-12 * b.norm());
+    EXPECT_EQ(factor.negative_eigenvalues(), 0);
+    Vector transposed;
+    factor.solve_transposed(b, transposed);
+    EXPECT_LT((whole.transpose() * transposed - b).norm(), 1e-12 * b.norm());
     if (count > 0) {
       EXPECT_GT((lower.selfadjointView<Eigen::Lower>() * x - b).norm(), 0.01 * b.norm());
     }
@@ -373,6 +377,7 @@ TEST(BorderedFactor, RefusesWhatIsNotPositiveDefiniteOutsideItsBorder) {
   EXPECT_FALSE(factor.factorise(lower, Eigen::MatrixXd::Zero(3, 3)));
   factor.analyse(lower, {5});
   EXPECT_TRUE(factor.factorise(lower, Eigen::MatrixXd::Zero(3, 3)));
+  EXPECT_EQ(factor.negative_eigenvalues(), 1);
 }
 
 }  // namespace

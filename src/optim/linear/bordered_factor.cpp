@@ -2,25 +2,30 @@
 
 #include "optim/linear/node_ordering.hpp"
 
-#include <algorithm>
-
 namespace coapt {
 
 void BorderedFactor::analyse(const SparseMatrix& lower, const std::vector<int>& border) {
   const NodeGraph graph = node_graph(lower);
-  std::vector<int> order = node_order(graph);
-  std::vector<char> is_border(order.size(), 0);
-  for (const int node : border) is_border[node] = 1;
-  order.erase(std::remove_if(order.begin(), order.end(), [&](int node) { return is_border[node] != 0; }),
-              order.end());
-  order.insert(order.end(), border.begin(), border.end());
+  const auto border_last = [&] {
+    std::vector<int> order = node_order(graph);
+    std::vector<char> is_border(order.size(), 0);
+    for (const int node : border) is_border[node] = 1;
+    std::erase_if(order, [&](int node) { return is_border[node] != 0; });
+    order.insert(order.end(), border.begin(), border.end());
+    return order;
+  };
+  const std::vector<int> last = border == border_ ? factor_.nodes().order : std::vector<int>{};
+  border_ = border;
   const auto count = static_cast<int>(border.size());
-  factor_.analyse(graph, supernodes_of(graph, order, count), count);
+  factor_.analyse(graph, kept_.supernodes(graph, last, border_last, count), count);
 }
 
 bool BorderedFactor::factorise(const SparseMatrix& lower, const Eigen::MatrixXd& border_part) {
   if (!factor_.factorise(lower.valuePtr())) return false;
-  if (border_part.size() == 0) return true;
+  if (border_part.size() == 0) {
+    schur_ = {};
+    return true;
+  }
   Eigen::MatrixXd schur = factor_.schur_complement().selfadjointView<Eigen::Lower>();
   schur += border_part;
   if (!schur.allFinite()) return false;
@@ -29,10 +34,22 @@ bool BorderedFactor::factorise(const SparseMatrix& lower, const Eigen::MatrixXd&
          (schur_.matrixLU().diagonal().array() != 0).all();
 }
 
-void BorderedFactor::solve(const Vector& b, Vector& x) {
+int BorderedFactor::negative_eigenvalues() {
+  const auto size = static_cast<int>(schur_.rows());
+  if (size == 0) return 0;
+  const int stride = DenseFront::stride(size);
+  front_.assign(static_cast<size_t>(stride) * static_cast<size_t>(size) + 3, 0.0);
+  Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+      front_.data(), size, size, Eigen::OuterStride<>(stride)) = factor_.schur_complement();
+  int negative = 0, positive = 0;
+  return eliminate_indefinite({size, 0, front_.data(), nullptr}, scaled_, negative, positive) ? negative : -1;
+}
+
+void BorderedFactor::solve(const Vector& b, Vector& x, bool is_transposed) {
   factor_.permute(b, work_);
   factor_.solve_forward(work_);
-  if (auto border = work_.tail(schur_.rows()); border.size() > 0) border = schur_.solve(border).eval();
+  if (auto border = work_.tail(schur_.rows()); border.size() > 0)
+    border = is_transposed ? Vector(schur_.transpose().solve(border)) : Vector(schur_.solve(border));
   factor_.solve_backward(work_);
   factor_.restore(work_, x);
 }

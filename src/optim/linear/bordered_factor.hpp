@@ -23,13 +23,23 @@ class BorderedFactor {
   // positive definite on the other nodes, or the Schur complement is not finite.
   bool factorise(const SparseMatrix& lower, const Eigen::MatrixXd& border_part);
 
-  // x = (K + W)^-1 b. Pre: factorise() returned true.
-  void solve(const Vector& b, Vector& x);
+  // Negative eigenvalues of K, by the pivots of L D L^T of the symmetric part of its Schur complement without
+  // pivoting; -1 where one is zero. Pre: factorise() returned true.
+  int negative_eigenvalues();
+
+  // x = (K + W)^-1 b, or (K + W)^-T b. Pre: factorise() returned true.
+  void solve(const Vector& b, Vector& x) { solve(b, x, false); }
+  void solve_transposed(const Vector& b, Vector& x) { solve(b, x, true); }
 
  private:
+  void solve(const Vector& b, Vector& x, bool is_transposed);
+
   MultifrontalFactor factor_;
+  KeptOrder kept_;
+  std::vector<int> border_;
   Eigen::PartialPivLU<Eigen::MatrixXd> schur_;
   Vector work_;
+  std::vector<double> front_, scaled_;  // a Schur complement eliminated, to count signs
 };
 
 }  // namespace coapt

@@ -1,37 +1,11 @@
 #include "optim/linear/inverse_tangent.hpp"
 
+#include "optim/linear/skew_part.hpp"
+
 #include <vector>
 
 namespace coapt {
 namespace {
-
-constexpr size_t kMostBorder = 1000;  // nodes: the time of a dense factor grows with their cube
-
-// The nodes that W couples: `start` has no zero in a free direction.
-std::vector<int> coupled_nodes(const SkewProduct& skew, const Vector& start) {
-  Vector coupled = Vector::Zero(start.size());
-  skew(start, coupled);
-  std::vector<int> nodes;
-  for (int node = 0; node < static_cast<int>(start.size()) / 3; ++node)
-    if ((coupled.segment<3>(3 * node).array() != 0).any()) nodes.push_back(node);
-  return nodes;
-}
-
-// W between these nodes. It is not given by its entries: it is applied to each coordinate.
-Eigen::MatrixXd part_of(const SkewProduct& skew, const std::vector<int>& nodes, Eigen::Index size) {
-  const auto count = static_cast<int>(nodes.size());
-  Eigen::MatrixXd part(3 * count, 3 * count);
-  Vector unit = Vector::Zero(size), product(size);
-  for (int column = 0; column < 3 * count; ++column) {
-    const int unknown = 3 * nodes[column / 3] + column % 3;
-    unit[unknown] = 1;
-    product.setZero();
-    skew(unit, product);
-    unit[unknown] = 0;
-    for (int k = 0; k < count; ++k) part.block<3, 1>(3 * k, column) = product.segment<3>(3 * nodes[k]);
-  }
-  return part;
-}
 
 // K + W + shift. W is not given by its entries: it is applied to each unknown that it couples.
 SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
@@ -74,7 +48,7 @@ InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& ske
     bordered_.emplace();
     bordered_->use_threads(team);
     bordered_->analyse(shifted, border);
-    is_made_ = bordered_->factorise(shifted, part_of(skew, border, size_));
+    is_made_ = bordered_->factorise(shifted, skew_entries(skew, border, size_));
     return;
   }
   sparse_.emplace();

@@ -7,13 +7,6 @@
 namespace coapt {
 namespace {
 
-double entries_of(const Supernodes& nodes) {
-  double entries = 0;
-  for (int s = 0; s < nodes.size(); ++s)
-    entries += static_cast<double>(nodes.columns(s)) * (nodes.columns(s) + nodes.rows_below(s));
-  return entries;
-}
-
 class Multifrontal final : public Factorisation {
  public:
   std::string_view name() const override { return "multifrontal"; }
@@ -21,7 +14,9 @@ class Multifrontal final : public Factorisation {
   void analyse(const SparseMatrix& lower) override {
     const NodeGraph graph = node_graph(lower);
     factor_.use_threads(team());
-    factor_.analyse(graph, ordered(graph));
+    factor_.analyse(graph, kept_.supernodes(graph, factor_.nodes().order, [&] {
+      return order() ? order()->of(graph) : node_order(graph);
+    }));
   }
 
   bool factorise(const SparseMatrix& lower) override { return factor_.factorise(lower.valuePtr()); }
@@ -45,22 +40,8 @@ class Multifrontal final : public Factorisation {
   }
 
  private:
-  // By the order of the last pattern, as most differ by a few pairs in contact: an ordering takes longer than
-  // the rest of an analysis; anew where that order is none of this graph or fills more.
-  Supernodes ordered(const NodeGraph& graph) {
-    constexpr double kMostFill = 1.1;  // of an order that is kept, over that of the pattern it was made for
-    const std::vector<int>& last = factor_.nodes().order;
-    if (last.size() == static_cast<size_t>(graph.size())) {
-      Supernodes nodes = supernodes_of(graph, last);
-      if (entries_of(nodes) <= kMostFill * fill_) return nodes;
-    }
-    Supernodes nodes = supernodes_of(graph, order() ? order()->of(graph) : node_order(graph));
-    fill_ = entries_of(nodes);
-    return nodes;
-  }
-
   MultifrontalFactor factor_;
-  double fill_ = 0;  // entries of the pattern that was ordered last
+  KeptOrder kept_;
   Vector work_;
 };
 

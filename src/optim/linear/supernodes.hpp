@@ -6,6 +6,7 @@
 
 #include "optim/linear/permuted_matrix.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace coapt {
@@ -31,5 +32,17 @@ struct Supernodes {
 // changes no entry of the factor. Small supernodes are merged with their parents where few zeros come in. The
 // last `border` nodes of the order stay the last ones, and are one supernode whatever couples them.
 Supernodes supernodes_of(const NodeGraph& graph, const std::vector<int>& order, int border = 0);
+
+// The order of one pattern after another. Most differ by a few pairs in contact, and an ordering takes longer
+// than the rest of an analysis.
+class KeptOrder {
+ public:
+  // By `last`, the order of the pattern before; anew where it is none of this graph or fills more.
+  Supernodes supernodes(const NodeGraph& graph, const std::vector<int>& last,
+                        const std::function<std::vector<int>()>& order, int border = 0);
+
+ private:
+  double fill_ = 0;  // entries of the pattern that was ordered last
+};
 
 }  // namespace coapt
