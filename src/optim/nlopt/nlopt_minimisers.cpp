@@ -11,6 +11,8 @@ namespace coapt {
 namespace {
 
 constexpr double kFirstProbe = 0.05;  // of the width of the bounds, without derivatives
+constexpr double kLastProbe =
+    0.25;  // of COBYLA, over the least step: it ends by the reach of its probes, no less than its error
 
 // What NLopt minimises: the function over its value at the start, so that its own scales fit. Where it cannot
 // be evaluated there is a wall that leads back to the best place so far.
@@ -84,6 +86,7 @@ class NloptMinimiser final : public BoundedMinimiser {
     optimiser.set_ftol_rel(stop.gain);
     if (stop.enough > 0) optimiser.set_stopval(stop.enough / hosted.unit);
     if (algorithm_ == nlopt::LN_COBYLA) {
+      optimiser.set_xtol_abs(kLastProbe * stop.step);
       const double width = (function.high() - function.low()).maxCoeff();
       if (width > 0) optimiser.set_initial_step(std::max(kFirstProbe * width, stop.step));
     }
