@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFirstProbe = 0.05;  // of the width of the bounds, without derivatives
 constexpr double kLastProbe =
-    0.25;  // of COBYLA, over the least step: it ends by the reach of its probes, no less than its error
+    0.25;  // of COBYLA, over the least step: its error is as large as its probes reach
 
 // What NLopt minimises: the function over its value at the start, so that its own scales fit. Where it cannot
 // be evaluated there is a wall that leads back to the best place so far.
