@@ -31,7 +31,7 @@ void set_diagonal(SparseMatrix& h, const Vector& diagonal) {
 bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
   objective_ = &objective;
   const double energy = objective.hessian(q, g, h_, Projection::None);
-  if (objective.pattern_version() != analysed_) has_factor_ = false;
+  if (objective.pattern_version() != (is_bordered_ ? bordered_analysed_ : analysed_)) has_factor_ = false;
   return std::isfinite(energy) && g.allFinite() && std::isfinite(h_.sum());
 }
 

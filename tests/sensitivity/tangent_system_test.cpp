@@ -65,5 +65,26 @@ TEST(TangentSystem, FactorisesATangentThatIsIndefiniteAtItsRimAlone) {
   EXPECT_EQ(indefinite, 3);
 }
 
+TEST(TangentSystem, KeepsItsFactorForAStateNearby) {
+  Objective objective = disc_with_a_free_rim(0.1);
+  const Vector q = objective.unknowns();
+  objective.set_path_anchor(q);
+  TangentSystem system(make_multifrontal_factorisation);
+  Vector g;
+  ASSERT_TRUE(system.assemble(objective, q, g));
+  EXPECT_FALSE(system.has_factor());
+  ASSERT_TRUE(system.factorise(objective, q));
+  ASSERT_TRUE(system.is_of_all());
+
+  const Vector nearby = 1.0001 * q;
+  objective.set_path_anchor(nearby);
+  ASSERT_TRUE(system.assemble(objective, nearby, g));
+  ASSERT_TRUE(system.has_factor());
+  Vector x;
+  EXPECT_LT(system.solve(Vector::LinSpaced(q.size(), -1, 2), x, 1e-9), 1e-9);
+  EXPECT_GT(system.applications(), 1);
+  EXPECT_LE(system.applications(), 8);
+}
+
 }  // namespace
 }  // namespace coapt
