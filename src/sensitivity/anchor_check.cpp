@@ -58,13 +58,14 @@ void TrackedEquilibrium::take_up(const Place& place) {
   is_tangent_ready_ = false;
   is_solved_ = true;
   solved_value_ = place.value;
+  negative_modes_ = place.negative;
   residual_at(q_);
   ready_tangent();
 }
 
 void TrackedEquilibrium::anchor_here() {
   require_solved();
-  anchor_ = Place{q_, positions(), value(), system_.negative_modes()};
+  anchor_ = Place{q_, positions(), value(), negative_modes_};
   steps_since_anchor_check_ = 0;
 }
 
@@ -86,7 +87,7 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
   require_solved();
   ready_tangent();
   AnchorCheck check;
-  const Place now{q_, positions(), value(), system_.negative_modes()};
+  const Place now{q_, positions(), value(), negative_modes_};
   if (!anchor_) anchor_here();
   const Place anchor = *anchor_;
   check.travel = held_distance(anchor.x);
@@ -121,7 +122,7 @@ AnchorCheck TrackedEquilibrium::check_anchor() {
 
 void TrackedEquilibrium::check_anchor_in_time(WarmSolve& report) {
   if (!anchor_) {
-    anchor_ = Place{q_, positions(), value(), system_.negative_modes()};
+    anchor_ = Place{q_, positions(), value(), negative_modes_};
     return;
   }
   if (options_.anchor_steps == 0 || ++steps_since_anchor_check_ < options_.anchor_steps) return;

@@ -94,7 +94,7 @@ bool TrackedEquilibrium::close_in_by_one_tangent(CorrectedShape& found, const Po
   Vector q = objective_.unknowns(found.x), g, step;
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q);
   if (!near_.assemble(objective_, q, g)) return false;
-  const int negative = system_.negative_modes();
+  const int negative = negative_modes_;
   const bool is_factorised = near_.factorise_exactly();
   if (!is_factorised && (negative == 0 || !near_.factorise(objective_, q))) return false;
   if (near_.negative_modes() != negative) return false;

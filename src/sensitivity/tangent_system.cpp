@@ -29,9 +29,10 @@ void set_diagonal(SparseMatrix& h, const Vector& diagonal) {
 }  // namespace
 
 bool TangentSystem::assemble(Objective& objective, const Vector& q, Vector& g) {
+  if (objective_ != &objective) has_factor_ = false;
+  is_fresh_ = false;
   objective_ = &objective;
   const double energy = objective.hessian(q, g, h_, Projection::None);
-  if (objective.pattern_version() != (is_bordered_ ? bordered_analysed_ : analysed_)) has_factor_ = false;
   return std::isfinite(energy) && g.allFinite() && std::isfinite(h_.sum());
 }
 
@@ -51,7 +52,10 @@ bool TangentSystem::factorise_definite() {
   return has_factor_;
 }
 
-bool TangentSystem::factorise_exactly() { return factorise_bordered() || factorise_definite(); }
+bool TangentSystem::factorise_exactly() {
+  is_fresh_ = true;
+  return factorise_bordered() || factorise_definite();
+}
 
 bool TangentSystem::factorise(Objective& objective, const Vector& q) {
   if (factorise_exactly()) return true;
@@ -112,14 +116,14 @@ void TangentSystem::multiply(const Vector& v, double skew_sign, Vector& product)
   product += skew_sign * skew_;
 }
 
-double TangentSystem::solve(const Vector& b, Vector& x, double tolerance, double skew_sign) {
+double TangentSystem::solve(const Vector& b, Vector& x, double tolerance, double skew_sign, int most) {
   x = Vector::Zero(b.size());
   applications_ = 0;
   const double size = b.norm();
   if (size == 0) return 0;
   left_ = b;
   double residual = 1;
-  for (int k = 0; k < kRefinements && residual > tolerance; ++k) {
+  for (int k = 0; k < kRefinements && residual > tolerance && applications_ < most; ++k) {
     apply_factor(left_, start_, skew_sign);
     applications_ += 1 + gmres_.solve(
                              [&](const Vector& v, Vector& out) {
@@ -127,7 +131,8 @@ double TangentSystem::solve(const Vector& b, Vector& x, double tolerance, double
                                apply_factor(work_, out, skew_sign);
                                out -= v;
                              },
-                             start_, std::max(kInner * tolerance / residual, kLeastInner), correction_);
+                             start_, std::max(kInner * tolerance / residual, kLeastInner), correction_,
+                             most - applications_ - 1);
     x += correction_;
     multiply(x, skew_sign, work_);
     left_ = b - work_;

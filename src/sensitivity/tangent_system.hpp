@@ -6,6 +6,7 @@
 #include "optim/linear/factorisation.hpp"
 #include "optim/linear/gmres.hpp"
 
+#include <limits>
 #include <vector>
 
 namespace coapt {
@@ -16,6 +17,8 @@ namespace coapt {
 // that factor solves with K itself: also one of a state nearby will do.
 class TangentSystem {
  public:
+  static constexpr int kUnlimited = std::numeric_limits<int>::max();  // applications of the factor
+
   explicit TangentSystem(const FactorisationFactory& make) : make_(make), factor_(make()), gmres_(kVectors) {}
 
   // Evaluates K at q. g: gradient there. Returns false when it is not finite. Pre: an objective with loads
@@ -32,16 +35,21 @@ class TangentSystem {
   // b by the inverse of the factor alone. Pre: has_factor().
   void apply_factor(const Vector& b, Vector& x) { apply_factor(b, x, 1); }
 
-  // Whether there is a factor, of this K or of an earlier one on the same pattern.
+  // Whether there is a factor, and whether it is of the last K, not of an earlier one.
   bool has_factor() const { return has_factor_; }
+  bool is_fresh() const { return has_factor_ && is_fresh_; }
 
   // Whether that is of all of K, and not of its symmetric part.
   bool is_of_all() const { return is_bordered_ || !objective_->has_skew_tangent(); }
 
-  // x = K^-1 b or K^-T b, to a residual of `tolerance` relative to |b|, as far as round-off lets it. Returns
-  // that residual. Pre: has_factor().
-  double solve(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, 1); }
-  double solve_transposed(const Vector& b, Vector& x, double tolerance) { return solve(b, x, tolerance, -1); }
+  // x = K^-1 b or K^-T b, to a residual of `tolerance` relative to |b|, as far as round-off and `most`
+  // applications of the factor let it. Returns that residual. Pre: has_factor().
+  double solve(const Vector& b, Vector& x, double tolerance, int most = kUnlimited) {
+    return solve(b, x, tolerance, 1, most);
+  }
+  double solve_transposed(const Vector& b, Vector& x, double tolerance, int most = kUnlimited) {
+    return solve(b, x, tolerance, -1, most);
+  }
 
   // Applications of the factor in the last solve: few, unless it belongs to a state far away, or to projected
   // elements.
@@ -56,7 +64,7 @@ class TangentSystem {
  private:
   static constexpr int kVectors = 40;  // of GMRES
 
-  double solve(const Vector& b, Vector& x, double tolerance, double skew_sign);
+  double solve(const Vector& b, Vector& x, double tolerance, double skew_sign, int most);
   void apply_factor(const Vector& b, Vector& x, double skew_sign);
   bool factorise_definite();
   bool factorise_bordered();
@@ -73,7 +81,7 @@ class TangentSystem {
   SparseMatrix h_;
   Objective* objective_ = nullptr;  // of the last assembly: holds the skew part
   long analysed_ = -1;              // version of the pattern
-  bool has_factor_ = false;
+  bool has_factor_ = false, is_fresh_ = false;
   int negative_modes_ = 0;
   int applications_ = 0;
   Vector work_, skew_, left_, correction_, start_;

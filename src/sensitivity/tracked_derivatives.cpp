@@ -12,7 +12,6 @@ namespace {
 constexpr double kExact =
     TrackedEquilibrium::kExactResponse;  // residual of the linear systems of derivatives
 constexpr double kSolved = 1e-6;         // relative residual beyond which a linear system counts as singular
-constexpr int kStaleFactor = 30;         // applications of a factor from nearby; a fresh one needs half
 
 // Displacements of nodes from those of unknowns.
 Points nodal_motion(const Objective& objective, const Vector& direction) {
@@ -60,7 +59,7 @@ Points TrackedEquilibrium::predict(const Vector& change, double tolerance) {
   const Points x = positions(), none = Points::Zero(3, x.cols());
   const Vector b = -objective_.unknowns(objective_.fixed().select(none, force_change(x, change)));
   Vector dq;
-  check_solved(system_.solve(b, dq, tolerance), tolerance);
+  check_solved(solve_tangent(b, dq, tolerance, false), tolerance);
   Points motion = none;
   for (size_t k = 0; k < parameters_.size(); ++k)
     parameters_[k]->push_forward_motion(numbers_of(*parameters_[k], k, change), motion);
@@ -73,11 +72,7 @@ Vector TrackedEquilibrium::pull_back(const Eigen::Ref<const Points>& weights) {
   const Points x = positions(), none = Points::Zero(3, x.cols());
   const Vector b = objective_.unknowns(objective_.fixed().select(none, weights));
   Vector lambda;
-  double residual = system_.solve_transposed(b, lambda, kExact);
-  if (system_.applications() > kStaleFactor) {  // the factor is that of a shape too far away
-    system_.factorise(objective_, q_);
-    residual = system_.solve_transposed(b, lambda, kExact);
-  }
+  const double residual = solve_tangent(b, lambda, kExact, true);
   check_solved(residual, kExact);
   adjoint_residual_ = residual;
   const Points nodal = nodal_motion(objective_, lambda);

@@ -11,13 +11,16 @@ namespace coapt {
 namespace {
 
 // Residuals of linear systems: of a prediction, whose own error is of second order; and of a Newton step, as
-// a share of what is asked of its end and within these limits.
+// a share of what is asked of its end, or of what second order leaves, and within these limits.
 constexpr double kPrediction = 1e-5;
-constexpr double kStepShare = 0.1, kLeastStep = 1e-9, kMostStep = 1e-2;
+constexpr double kStepShare = 0.1, kForcing = 0.03, kLeastStep = 1e-9, kMostStep = 1e-2;
 constexpr double kSuspicious = 1;  // jump over the predicted travel
 constexpr double kNotBack = 0.1;   // of the jump, that a shape may miss its start by when it comes back
 constexpr double kNoise = 1e-7;    // of the extent: jumps below say nothing
 constexpr int kHalvings = 6;       // of a Newton step that betters nothing
+constexpr int kMostNearby = 10;    // applications of a factor of a state nearby: a fresh one costs as much
+constexpr char kSingular[] =
+    "equilibrium: the tangent is singular or not finite, derivatives are not defined here";
 
 double greatest(const Points& v) {
   return v.cols() == 0 ? 0 : std::sqrt(v.colwise().squaredNorm().maxCoeff());
@@ -127,9 +130,28 @@ void TrackedEquilibrium::ready_tangent() {
   if (is_tangent_ready_) return;
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q_);
   if (!system_.assemble(objective_, q_, g_) || (!system_.has_factor() && !system_.factorise(objective_, q_)))
-    throw InputError("equilibrium: the tangent is singular or not finite, derivatives are not defined here");
+    throw InputError(kSingular);
   is_tangent_ready_ = true;
   is_nodal_ready_ = false;
+}
+
+// Each factor counts the negative eigenvalues of its own state.
+void TrackedEquilibrium::factorise_tangent() {
+  ready_tangent();
+  if (!system_.is_fresh() && !system_.factorise(objective_, q_)) throw InputError(kSingular);
+  negative_modes_ = system_.negative_modes();
+}
+
+// By the factor of a state nearby where few applications of it do. Pre: the tangent is assembled at q_.
+double TrackedEquilibrium::solve_tangent(const Vector& b, Vector& x, double tolerance, bool is_transposed) {
+  const auto solve = [&](int most) {
+    return is_transposed ? system_.solve_transposed(b, x, tolerance, most)
+                         : system_.solve(b, x, tolerance, most);
+  };
+  if (system_.is_fresh()) return solve(TangentSystem::kUnlimited);
+  if (system_.has_factor())
+    if (const double residual = solve(kMostNearby); residual <= tolerance) return residual;
+  return system_.factorise(objective_, q_) ? solve(TangentSystem::kUnlimited) : kInfinity;
 }
 
 void TrackedEquilibrium::require_solved() const {
@@ -155,12 +177,19 @@ WarmSolve TrackedEquilibrium::solve() {
 // Pre: the numbers are `now`.
 WarmSolve TrackedEquilibrium::solve_at(const Vector& now) {
   const double start = wall_seconds();
-  Place from{q_, positions(), solved_value_, system_.negative_modes()};
+  Place from{q_, positions(), solved_value_, negative_modes_};
   const bool is_followed = is_solved_ && is_tangent_ready_;
   const Points none = Points::Zero(3, from.x.cols());
   const Points predicted =
       is_followed ? predicted_change(from, now) : objective_.fixed().select(prescribed() - from.x, none);
   WarmSolve report = move_to(from, predicted);
+  if (is_solved_) {
+    try {
+      factorise_tangent();
+    } catch (const InputError& error) {
+      report.message += std::string("; ") + error.what();
+    }
+  }
   if (report.status == Status::Converged && is_followed && options_.checks_branch)
     report.lost_branch = check_branch(from, report);
   if (report.lost_branch)
@@ -206,13 +235,6 @@ WarmSolve TrackedEquilibrium::move_to(const Place& from, const Points& predicted
   report.travel = greatest(moved);
   report.jump = greatest(moved - predicted);
   is_solved_ = report.status == Status::Converged;
-  if (is_solved_) {
-    try {
-      ready_tangent();
-    } catch (const InputError& error) {
-      report.message += std::string("; ") + error.what();
-    }
-  }
   return report;
 }
 
@@ -238,9 +260,12 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report
     if (options_.observer &&
         !options_.observer({.iteration = report.iterations, .residual = report.residual}, q_))
       return false;  // the whole method asks again, and ends there
-    if (!system_.assemble(objective_, q_, g_) || !system_.factorise(objective_, q_)) return false;
-    const double asked = std::clamp(kStepShare * options_.tolerance / report.residual, kLeastStep, kMostStep);
-    if (!(system_.solve(-g_, direction, asked) < 2 * kMostStep)) return false;
+    if (!system_.assemble(objective_, q_, g_)) return false;
+    const double asked =
+        std::clamp(std::max(kStepShare * options_.tolerance, kForcing * report.residual * report.residual) /
+                       report.residual,
+                   kLeastStep, kMostStep);
+    if (!(solve_tangent(-g_, direction, asked, false) < 2 * kMostStep)) return false;
     double step = objective_.step_limit(q_, direction, 1);
     bool is_better = false;
     for (int halving = 0; halving < kHalvings && !is_better; ++halving, step *= 0.5) {
@@ -260,7 +285,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report
 std::optional<LostBranch> TrackedEquilibrium::check_branch(const Place& from, const WarmSolve& report) {
   const double extent = objective_.extent(q_);
   const bool has_jumped = report.jump > std::max(kSuspicious * report.predicted, kNoise * extent);
-  const int negative = system_.negative_modes();
+  const int negative = negative_modes_;
   if (!has_jumped && negative == from.negative) return std::nullopt;
   const Place now{q_, positions(), value(), negative};
   const Points home = from.x - now.x, none = Points::Zero(3, home.cols());

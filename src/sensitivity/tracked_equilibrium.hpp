@@ -204,7 +204,9 @@ class TrackedEquilibrium {
   template <typename Work>
   void with_numbers(const Vector& numbers, Points& start, const Work& work);
   Points prescribed() const;  // positions with prescribed nodes where the parameters want them
-  void ready_tangent();       // assembled at q_, with a factor that will do
+  void ready_tangent();       // assembled at q_, with a factor of it or of a state nearby
+  void factorise_tangent();   // the same with a factor of it
+  double solve_tangent(const Vector& b, Vector& x, double tolerance, bool is_transposed);
   void require_sound(const Vector& value) const;
   void require_solved() const;
   void require_wanted() const;
@@ -235,6 +237,7 @@ class TrackedEquilibrium {
   std::optional<ElementStates> states_;       // of the shape solved last
   std::optional<std::vector<Switch>> kinks_;  // of this shape, once they were looked for
   std::optional<Place> anchor_;
+  int negative_modes_ = 0;  // of the solved shape
   int steps_since_anchor_check_ = 0;
   double adjoint_residual_ = 0;
   bool is_solved_ = false, is_tangent_ready_ = false, is_nodal_ready_ = false;

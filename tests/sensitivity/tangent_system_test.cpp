@@ -80,10 +80,17 @@ TEST(TangentSystem, KeepsItsFactorForAStateNearby) {
   objective.set_path_anchor(nearby);
   ASSERT_TRUE(system.assemble(objective, nearby, g));
   ASSERT_TRUE(system.has_factor());
+  EXPECT_FALSE(system.is_fresh());
+  const Vector b = Vector::LinSpaced(q.size(), -1, 2);
   Vector x;
-  EXPECT_LT(system.solve(Vector::LinSpaced(q.size(), -1, 2), x, 1e-9), 1e-9);
-  EXPECT_GT(system.applications(), 1);
+  EXPECT_LT(system.solve(b, x, 1e-9), 1e-9);
+  EXPECT_GT(system.applications(), 2);
   EXPECT_LE(system.applications(), 8);
+  EXPECT_GT(system.solve(b, x, 1e-9, 2), 1e-9);
+  EXPECT_EQ(system.applications(), 2);
+  ASSERT_TRUE(system.factorise(objective, nearby));
+  EXPECT_TRUE(system.is_fresh());
+  EXPECT_LT(system.solve_transposed(b, x, 1e-9, 2), 1e-9);
 }
 
 }  // namespace

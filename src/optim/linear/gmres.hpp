@@ -3,7 +3,9 @@
 
 #include "core/types.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace coapt {
 
@@ -14,9 +16,10 @@ class Gmres {
   explicit Gmres(int max_vectors) : max_vectors_(max_vectors) {}
 
   // apply(v, out): out = B v. On return the residual |b - x - B x| <= tolerance |b|, or the space is
-  // exhausted. Returns the number of applications.
+  // exhausted, or B was applied `most` times. Returns the number of applications.
   template <typename Apply>
-  int solve(const Apply& apply, const Vector& b, double tolerance, Vector& x);
+  int solve(const Apply& apply, const Vector& b, double tolerance, Vector& x,
+            int most = std::numeric_limits<int>::max());
 
   // Of the last solution, relative to |b|.
   double residual() const { return residual_; }
@@ -30,7 +33,7 @@ class Gmres {
 };
 
 template <typename Apply>
-int Gmres::solve(const Apply& apply, const Vector& b, double tolerance, Vector& x) {
+int Gmres::solve(const Apply& apply, const Vector& b, double tolerance, Vector& x, int most) {
   const int m = max_vectors_;
   basis_.resize(b.size(), m + 1);
   hessenberg_.resize(m + 1, m);
@@ -47,7 +50,7 @@ int Gmres::solve(const Apply& apply, const Vector& b, double tolerance, Vector& 
   basis_.col(0) = b / norm;
   rotated_[0] = norm;
   int used = 0;
-  while (used < m && std::abs(rotated_[used]) > tolerance * norm) {
+  while (used < std::min(m, most) && std::abs(rotated_[used]) > tolerance * norm) {
     const int j = used++;
     direction_ = basis_.col(j);
     apply(direction_, product_);
