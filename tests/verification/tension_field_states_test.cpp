@@ -113,8 +113,10 @@ Inflated inflate(const Bag& bag, double bulge, const Continuation& continuation 
 Inflated mylar_balloon(int n, double stiffness) {
   Bag bag{quarter_disc_mesh(n), stiffness, 0.3, 1,
           [](const Vec3& X) { return X.head<2>().norm() > 1 - 1e-9; }};
-  Continuation continuation;  // from 1e2 p a: the stiff sheet goes a third of the way in fewer iterations
-  continuation.stiffness_steps = 3;
+  // By tenfold steps at most: the stiff sheet goes a third of the way in fewer iterations. Steps of 22 times
+  // leap to other pleats at 1e6, of 3e-4 less energy and a seam 0.5 % shorter on average.
+  Continuation continuation;
+  continuation.stiffness_steps = 4;
   continuation.first_stiffness = 1e2 / stiffness;
   return inflate(bag, 0.4, continuation);
 }
