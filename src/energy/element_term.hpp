@@ -86,7 +86,9 @@ concept HasRestLength = IsLine<K> && requires(typename K::Rest& rest, const Axia
   { K::slope_by_rest(rest, law, 1.0) } -> std::same_as<RestSlope>;
 };
 template <class K>
-concept HasRestShape = requires(const typename K::Rest& rest, const Corners& X) {
+concept HasRestShape = (K::kKind == TermKind::Bending ||
+                        requires(const typename K::Rest& rest) { K::shape(rest); }) &&
+                       requires(const typename K::Rest& rest, const Corners& X) {
   { K::reshaped(rest, X, X) } -> std::same_as<typename K::Rest>;
 };
 
@@ -221,13 +223,6 @@ class ElementTerm final : public EnergyTerm, public TermAccess {
   }
   void reshape(int element, const Corners& from, const Corners& to) override {
     if constexpr (HasRestShape<K>) changed(element) = K::reshaped(rest_at(element), from, to);
-  }
-  double evaluate_reshaped(int element, const Corners& from, const Corners& to, const double* x,
-                           double* g) const override {
-    if constexpr (HasRestShape<K>)
-      return evaluate_at(K::reshaped(rest_at(element), from, to), x, g, nullptr);
-    else
-      return 0;
   }
 
   std::optional<MembraneRegime> regime(int element, const double* x) const override {

@@ -74,12 +74,6 @@ class TermAccess {
   // Moves the nodes at rest; material and thickness stay.
   virtual void reshape(int /*element*/, const Corners& /*from*/, const Corners& /*to*/) {}
 
-  // evaluate_element() of the element as reshape() would make it.
-  virtual double evaluate_reshaped(int /*element*/, const Corners& /*from*/, const Corners& /*to*/,
-                                   const double* /*x*/, double* /*g*/) const {
-    return 0;
-  }
-
   // --- What a kind has of its own -----------------------------------------------------------------------
   // Of a membrane that does not resist compression; nothing for any other.
   virtual std::optional<MembraneRegime> regime(int /*element*/, const double* /*x*/) const { return {}; }

@@ -1,5 +1,7 @@
-// Parameters by themselves: dead loads, the rest shape of fibrous membranes, and which of them go together.
+// Parameters by themselves: dead loads, the rest shape of fibrous membranes and hinges, and which of them go
+// together.
 #include "energy/element_term.hpp"
+#include "energy/kernels/bending.hpp"
 #include "energy/kernels/cst_fibrous.hpp"
 #include "energy/kernels/spring.hpp"
 #include "energy/load_dead.hpp"
@@ -16,6 +18,8 @@
 #include "support/equilibrium.hpp"
 
 #include <gtest/gtest.h>
+
+#include <functional>
 
 namespace coapt {
 namespace {
@@ -133,39 +137,67 @@ struct FibrousPatch {
     }
     return std::make_unique<ElementTerm<Fibrous>>("tissue", nodes, rest);
   }
-  // Gradient at x, then the energy.
-  Vector derivatives(const EnergyTerm& term) const {
-    Points g = Points::Zero(3, 4);
-    Sink sink(g.data());
-    Vector all(13);
-    all[12] = term.evaluate(x, sink);
-    all.head<12>() = g.reshaped();
-    return all;
-  }
 };
 
-TEST(ReferencePositions, OfFibrousMembranesHaveExactDerivatives) {
-  const FibrousPatch patch;
-  Objective objective(patch.X, fixed_nodes(4, {}), terms_of(FibrousPatch::term(patch.X)));
+using MakeTerm = std::function<std::unique_ptr<EnergyTerm>(const Points& X)>;
+
+// Gradient at x of four nodes, then the energy.
+Vector derivatives_at(const EnergyTerm& term, const Points& x) {
+  Points g = Points::Zero(3, 4);
+  Sink sink(g.data());
+  Vector all(13);
+  all[12] = term.evaluate(x, sink);
+  all.head<12>() = g.reshaped();
+  return all;
+}
+
+// By the places of three of the nodes at rest: of gradient and energy at x, against differences of terms that
+// are made anew.
+void expect_derivatives_by_rest_shape(const Points& X, const Points& x, const MakeTerm& make) {
+  Objective objective(X, fixed_nodes(4, {}), terms_of(make(X)));
   const EnergyTerm& term = *objective.terms().front();
-  const auto rest = make_reference_positions("rest", objective, patch.X, {1, 3, 0});
+  const auto rest = make_reference_positions("rest", objective, X, {1, 3, 0});
   Points motion = Points::Zero(3, 4);
   motion(Eigen::all, {1, 3, 0}) << 1, -2, 0.5, 0.3, 1, -1, -0.7, 0.4, 0.9;
   const Vector change = motion(Eigen::all, {1, 3, 0}).reshaped();
-  const Vector slope =
-      slope_of([&](double s) { return patch.derivatives(*FibrousPatch::term(patch.X + s * motion)); }, 1e-3);
+  const Vector slope = slope_of([&](double s) { return derivatives_at(*make(X + s * motion), x); }, 1e-3);
   Points forward = Points::Zero(3, 4);
-  rest->push_forward(patch.x, change, forward);
+  rest->push_forward(x, change, forward);
   EXPECT_LT((forward.reshaped() - slope.head<12>()).norm(), 1e-8 * slope.norm());
-  EXPECT_NEAR(rest->energy_derivative(patch.x, term).dot(change), slope[12], 1e-8 * slope.norm());
+  EXPECT_NEAR(rest->energy_derivative(x, term).dot(change), slope[12], 1e-8 * slope.norm());
   const Points weights = (Points(3, 4) << 1, 2, -1, 0.5, 0.2, 1, -0.3, 0.7, 1, 1.5, -2, 0.1).finished();
-  EXPECT_NEAR(rest->pull_back(patch.x, weights).dot(change), forward.cwiseProduct(weights).sum(),
+  EXPECT_NEAR(rest->pull_back(x, weights).dot(change), forward.cwiseProduct(weights).sum(),
               1e-12 * slope.norm());
   EXPECT_GT(slope.head<12>().norm(), 0.01);
 
   rest->set(rest->value() + 0.2 * change);
-  const Vector wanted = patch.derivatives(*FibrousPatch::term(patch.X + 0.2 * motion));
-  EXPECT_LT((patch.derivatives(term) - wanted).norm(), 1e-12 * wanted.norm());
+  const Vector wanted = derivatives_at(*make(X + 0.2 * motion), x);
+  EXPECT_LT((derivatives_at(term, x) - wanted).norm(), 1e-12 * wanted.norm());
+}
+
+TEST(ReferencePositions, OfFibrousMembranesHaveExactDerivatives) {
+  const FibrousPatch patch;
+  expect_derivatives_by_rest_shape(patch.X, patch.x, FibrousPatch::term);
+}
+
+// The two facets of a patch, flat at rest, folded to a ridge, to a valley, and nearly shut.
+TEST(ReferencePositions, OfHingesHaveExactDerivatives) {
+  const FibrousPatch patch;
+  int folded = 0;
+  for (const double height : {0.0, 0.9, -0.9, 5.0}) {
+    Points X = patch.X;
+    X.row(2).setZero();
+    X(2, 0) = X(2, 3) = -height;
+    const auto make = [&](const Points& at) -> std::unique_ptr<EnergyTerm> {
+      std::vector<BendingHinge::Rest> rest = {
+          BendingHinge::rest(at.col(1), at.col(2), at.col(0), at.col(3), 0.7)};
+      return std::make_unique<ElementTerm<BendingHinge>>("fold", std::vector<int>{1, 2, 0, 3},
+                                                         std::move(rest));
+    };
+    expect_derivatives_by_rest_shape(X, patch.x, make);
+    if (std::abs(BendingHinge::angle(X.col(1), X.col(2), X.col(0), X.col(3))) > 2) ++folded;
+  }
+  EXPECT_EQ(folded, 1);
 }
 
 TEST(ReferencePositions, OfSpringsAreRefusedByNameOfWhatIsCovered) {

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "energy/term_access.hpp"
 #include "sensitivity/detail/element_positions.hpp"
+#include "sensitivity/detail/rest_hinge.hpp"
 #include "sensitivity/detail/rest_triangle.hpp"
 
 #include <algorithm>
@@ -10,26 +11,6 @@
 
 namespace coapt {
 namespace {
-
-constexpr double kStep = 3e-4;  // of differences, over the edge
-
-using HingeVector = Eigen::Vector<double, 12>;
-
-// Derivative of energy, in the first place, and gradient by a motion of the corners at rest.
-Eigen::Vector<double, 13> hinge_slope(const TermAccess& access, int element, const Corners& X,
-                                      const HingeVector& motion, const ElementVector& x) {
-  const double size = motion.lpNorm<Eigen::Infinity>();
-  if (size == 0) return Eigen::Vector<double, 13>::Zero();
-  const double step = kStep * (X[1] - X[0]).norm() / size;
-  const auto at = [&](double s) {
-    Corners moved = X;
-    for (int a = 0; a < 4; ++a) moved[static_cast<size_t>(a)] += s * step * motion.segment<3>(3 * a);
-    Eigen::Vector<double, 13> all;
-    all[0] = access.evaluate_reshaped(element, X, moved, x.data(), all.data() + 1);
-    return all;
-  };
-  return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * step);
-}
 
 class ReferencePositions final : public Parameter {
  public:
@@ -89,17 +70,8 @@ class ReferencePositions final : public Parameter {
 
   Vector pull_back(const Points& x, const Points& weights) const override {
     Vector result = none();
-    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
-      add(term, e, t.pulled_back(element_positions(term, e, weights)), result);
-    });
-    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
-      const HingeVector w = element_positions(term, e, weights);
-      const ElementVector at = element_positions(term, e, x);
-      HingeVector slope = HingeVector::Zero();
-      for (int i = 0; i < 12; ++i)
-        if (numbers(nodes_of(term, e)[i / 3]) >= 0)
-          slope[i] = hinge_slope(access, e, X, HingeVector::Unit(i), at).tail<12>().dot(w);
-      add(term, e, slope, result);
+    visit(x, [&](const EnergyTerm& term, int e, const auto& rest) {
+      add(term, e, rest.pulled_back(element_positions(term, e, weights)), result);
     });
     return result;
   }
@@ -108,30 +80,17 @@ class ReferencePositions final : public Parameter {
     Points motion = Points::Zero(3, X_.cols());
     for (size_t k = 0; k < nodes_.size(); ++k)
       motion.col(nodes_[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k));
-    const auto scatter = [&](const EnergyTerm& term, int e, const ElementVector& slope) {
-      for (int a = 0; a < slope.size() / 3; ++a) g.col(nodes_of(term, e)[a]) += slope.segment<3>(3 * a);
-    };
-    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
-      scatter(term, e, t.pushed_forward(element_positions(term, e, motion)));
-    });
-    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
-      const Eigen::Vector<double, 13> slope =
-          hinge_slope(access, e, X, element_positions(term, e, motion), element_positions(term, e, x));
-      scatter(term, e, slope.tail<12>());
+    visit(x, [&](const EnergyTerm& term, int e, const auto& rest) {
+      const auto slope = rest.pushed_forward(element_positions(term, e, motion));
+      for (int a = 0; a < slope.size() / 3; ++a)
+        g.col(nodes_of(term, e)[a]) += slope.template segment<3>(3 * a);
     });
   }
 
   Vector energy_derivative(const Points& x, const EnergyTerm& wanted) const override {
     Vector result = none();
-    visit(x, [&](const EnergyTerm& term, int e, const RestTriangle& t) {
-      if (&term == &wanted) add(term, e, t.energy_slope(), result);
-    });
-    visit_hinges([&](const EnergyTerm& term, const TermAccess& access, int e, const Corners& X) {
-      if (&term != &wanted) return;
-      HingeVector slope;
-      for (int i = 0; i < 12; ++i)
-        slope[i] = hinge_slope(access, e, X, HingeVector::Unit(i), element_positions(term, e, x))[0];
-      add(term, e, slope, result);
+    visit(x, [&](const EnergyTerm& term, int e, const auto& rest) {
+      if (&term == &wanted) add(term, e, rest.energy_slope(), result);
     });
     return result;
   }
@@ -164,23 +123,18 @@ class ReferencePositions final : public Parameter {
         result.segment<3>(first) += slope.template segment<3>(3 * a);
   }
 
-  // visit_triangle(term, element, derivatives) of every triangle that has one of the nodes.
+  // visit_element(term, element, its derivatives) of every triangle and hinge that has one of the nodes.
   template <typename Visit>
-  void visit(const Points& x, const Visit& visit_triangle) const {
+  void visit(const Points& x, const Visit& visit_element) const {
     for (size_t k = 0; k < terms_.size(); ++k)
-      for (const int e : touched_[k])
+      for (const int e : touched_[k]) {
+        const Corners X = corners(*terms_[k], e, X_);
+        const ElementVector at = element_positions(*terms_[k], e, x);
         if (access_[k]->rest_frame(e) != nullptr)
-          visit_triangle(*terms_[k], e,
-                         RestTriangle::at(*access_[k], e, corners(*terms_[k], e, X_),
-                                          element_positions(*terms_[k], e, x).data()));
-  }
-
-  template <typename Visit>
-  void visit_hinges(const Visit& visit_hinge) const {
-    for (size_t k = 0; k < terms_.size(); ++k)
-      for (const int e : touched_[k])
-        if (access_[k]->rest_frame(e) == nullptr)
-          visit_hinge(*terms_[k], *access_[k], e, corners(*terms_[k], e, X_));
+          visit_element(*terms_[k], e, RestTriangle::at(*access_[k], e, X, at.data()));
+        else
+          visit_element(*terms_[k], e, RestHinge::at(*access_[k], e, X, at.data()));
+      }
   }
 
   std::vector<EnergyTerm*> terms_;
