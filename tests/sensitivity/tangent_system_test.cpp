@@ -27,17 +27,24 @@ Objective disc_with_a_free_rim(double pressure) {
                             make_follower_pressure("p", mesh.vertices, mesh.triangles, pressure, fixed)));
 }
 
+struct FactorisedDisc {
+  explicit FactorisedDisc(double pressure) : objective(disc_with_a_free_rim(pressure)) {
+    objective.set_path_anchor(q);
+    if (system.assemble(objective, q, g)) system.factorise(objective, q);
+  }
+
+  Objective objective;
+  Vector q = objective.unknowns(), g;
+  TangentSystem system{make_multifrontal_factorisation};
+};
+
 TEST(TangentSystem, FactorisesATangentThatIsIndefiniteAtItsRimAlone) {
   int indefinite = 0;
   for (const double pressure : {0.1, 6.0, 10.0, 20.0}) {
-    Objective objective = disc_with_a_free_rim(pressure);
-    const Vector q = objective.unknowns();
-    objective.set_path_anchor(q);
-    TangentSystem system(make_multifrontal_factorisation);
-    Vector g;
-    ASSERT_TRUE(system.assemble(objective, q, g));
+    FactorisedDisc disc(pressure);
+    auto& [objective, q, g, system] = disc;
     ASSERT_TRUE(objective.has_skew_tangent());
-    ASSERT_TRUE(system.factorise(objective, q));
+    ASSERT_TRUE(system.is_fresh());
 
     SparseMatrix lower;
     objective.hessian(q, g, lower, Projection::None);
@@ -66,15 +73,9 @@ TEST(TangentSystem, FactorisesATangentThatIsIndefiniteAtItsRimAlone) {
 }
 
 TEST(TangentSystem, KeepsItsFactorForAStateNearby) {
-  Objective objective = disc_with_a_free_rim(0.1);
-  const Vector q = objective.unknowns();
-  objective.set_path_anchor(q);
-  TangentSystem system(make_multifrontal_factorisation);
-  Vector g;
-  ASSERT_TRUE(system.assemble(objective, q, g));
-  EXPECT_FALSE(system.has_factor());
-  ASSERT_TRUE(system.factorise(objective, q));
-  ASSERT_TRUE(system.is_of_all());
+  FactorisedDisc disc(0.1);
+  auto& [objective, q, g, system] = disc;
+  ASSERT_TRUE(system.is_fresh() && system.is_of_all());
 
   const Vector nearby = 1.0001 * q;
   objective.set_path_anchor(nearby);

@@ -4,7 +4,7 @@
 #include "energy/kernels/bending.hpp"
 #include "energy/term_access.hpp"
 
-#include <array>
+#include <cmath>
 
 namespace coapt {
 
@@ -21,7 +21,7 @@ class RestHinge {
     h.rest_ = BendingHinge::rest(X[0], X[1], X[2], X[3], access.hinge_stiffness(element) / unit);
     h.differentiate(X);
     h.now_ = edges_of(Eigen::Map<const Vector12>(x));
-    h.r_ = h.residual(h.now_, h.rest_);
+    h.r_ = residual(h.now_, h.rest_);
     return h;
   }
 

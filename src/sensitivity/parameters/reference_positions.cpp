@@ -89,9 +89,10 @@ class ReferencePositions final : public Parameter {
 
   Vector energy_derivative(const Points& x, const EnergyTerm& wanted) const override {
     Vector result = none();
-    visit(x, [&](const EnergyTerm& term, int e, const auto& rest) {
-      if (&term == &wanted) add(term, e, rest.energy_slope(), result);
-    });
+    visit(
+        x,
+        [&](const EnergyTerm& term, int e, const auto& rest) { add(term, e, rest.energy_slope(), result); },
+        &wanted);
     return result;
   }
 
@@ -123,10 +124,12 @@ class ReferencePositions final : public Parameter {
         result.segment<3>(first) += slope.template segment<3>(3 * a);
   }
 
-  // visit_element(term, element, its derivatives) of every triangle and hinge that has one of the nodes.
+  // visit_element(term, element, its derivatives) of every triangle and hinge that has one of the nodes; of
+  // one term alone where it is given.
   template <typename Visit>
-  void visit(const Points& x, const Visit& visit_element) const {
-    for (size_t k = 0; k < terms_.size(); ++k)
+  void visit(const Points& x, const Visit& visit_element, const EnergyTerm* only = nullptr) const {
+    for (size_t k = 0; k < terms_.size(); ++k) {
+      if (only != nullptr && terms_[k] != only) continue;
       for (const int e : touched_[k]) {
         const Corners X = corners(*terms_[k], e, X_);
         const ElementVector at = element_positions(*terms_[k], e, x);
@@ -135,6 +138,7 @@ class ReferencePositions final : public Parameter {
         else
           visit_element(*terms_[k], e, RestHinge::at(*access_[k], e, X, at.data()));
       }
+    }
   }
 
   std::vector<EnergyTerm*> terms_;
