@@ -1,6 +1,6 @@
 // Analysis, factorisation and solve of a valve's stiffness, on one core. The pattern is that of a membrane,
 // or of a membrane with bending: every edge then couples the four nodes of its two triangles.
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include "energy/kernels/cst_stvk.hpp"
 #include "valve_sheet.hpp"

@@ -33,7 +33,7 @@ function(coapt_sources target)
   target_sources(${target} PRIVATE ${ARG_SOURCES}
                            PUBLIC FILE_SET HEADERS FILES ${ARG_HEADERS})
   if(COAPT_UNITY_BUILD)
-    if(target MATCHES "_(mesh|energy|optim|sensitivity|valve|stress|study)$")
+    if(target MATCHES "_(mesh|energy|linear|optim|sensitivity|valve|stress|study)$")
       coapt_unite(${target} 8 ${ARG_SOURCES})
     else()
       coapt_unite(${target} 16 ${ARG_SOURCES})

@@ -14,7 +14,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/constants.md"
-FOLDERS = ("src/mesh/distance", "src/mesh/remesh", "src/energy", "src/optim", "src/xpbd", "src/sensitivity", "src/registration",
+FOLDERS = ("src/mesh/distance", "src/mesh/remesh", "src/energy", "src/linear", "src/optim", "src/xpbd", "src/sensitivity", "src/registration",
            "src/solve", "src/run", "src/tuning", "src/image")
 NUMBER = re.compile(r"^ *(?:static |inline )*constexpr (?:double|float|int|unsigned|size_t|std::size_t|Eigen::Index|std::array) "
                     r"(k[A-Z]\w* *=[^;]*);[ \t]*(?://[ \t]*(.*))?$", re.MULTILINE)

@@ -1,8 +1,8 @@
 // What another module, such as coapt_gpl, adds to this one when both are installed.
 #pragma once
 
+#include "linear/factorisation.hpp"
 #include "mesh/distance/intersections.hpp"
-#include "optim/linear/factorisation.hpp"
 
 #include <coapt/version.hpp>
 #include <string>

@@ -1,6 +1,6 @@
 #include "optim/damped_path.hpp"
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 #include "optim/move_prescribed.hpp"
 
 #include <algorithm>

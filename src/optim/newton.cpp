@@ -1,7 +1,7 @@
 #include "optim/newton.hpp"
 
+#include "linear/gmres.hpp"
 #include "optim/line_search.hpp"
-#include "optim/linear/gmres.hpp"
 #include "optim/shifted_hessian.hpp"
 #include "optim/worst_part.hpp"
 

@@ -1,7 +1,7 @@
 // The Hessian of an objective, shifted until it is positive definite, and its factor.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 #include "optim/monitor.hpp"
 
 #include <vector>

@@ -3,9 +3,9 @@
 
 #include "core/timing.hpp"
 #include "energy/objective.hpp"
+#include "linear/factorisation.hpp"
 #include "mesh/triangle_mesh.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
-#include "optim/linear/factorisation.hpp"
 #include "optim/stability/certificate.hpp"
 
 #include <functional>

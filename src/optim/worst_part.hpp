@@ -1,7 +1,7 @@
 // Which few nodes bear nearly all of the force out of balance.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <optional>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "sensitivity/tangent_system.hpp"
 
-#include "optim/linear/skew_part.hpp"
+#include "linear/skew_part.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "energy/objective.hpp"
-#include "optim/linear/bordered_factor.hpp"
-#include "optim/linear/factorisation.hpp"
-#include "optim/linear/gmres.hpp"
+#include "linear/bordered_factor.hpp"
+#include "linear/factorisation.hpp"
+#include "linear/gmres.hpp"
 
 #include <limits>
 #include <vector>

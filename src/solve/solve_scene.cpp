@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "formats/json/suggestion.hpp"
-#include "optim/linear/node_ordering.hpp"
+#include "linear/node_ordering.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/masses.hpp"
 #include "scene/build/xpbd_body.hpp"

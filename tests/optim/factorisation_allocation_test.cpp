@@ -1,5 +1,5 @@
 // Counts what a factorisation allocates once its pattern is known, and what a whole iteration of newton does.
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #ifdef COAPT_HAS_CHOLMOD
 #include "optim/cholmod/cholmod_factorisation.hpp"

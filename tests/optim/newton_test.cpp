@@ -2,9 +2,9 @@
 #include "optim/newton.hpp"
 
 #include "energy/load_dead.hpp"
+#include "linear/gmres.hpp"
 #include "optim/harmonic_extension.hpp"
 #include "optim/lbfgs.hpp"
-#include "optim/linear/gmres.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"

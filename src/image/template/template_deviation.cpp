@@ -1,7 +1,7 @@
 #include "image/template/template_deviation.hpp"
 
 #include "image/segment/gap_deviation.hpp"
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "optim/cholmod/cholmod_factorisation.hpp"
 
+#include "linear/permuted_matrix.hpp"
+#include "linear/pivots.hpp"
 #include "optim/cholmod/detail/blas_threads.hpp"
 #include "optim/cholmod/detail/node_analysis.hpp"
-#include "optim/linear/permuted_matrix.hpp"
-#include "optim/linear/pivots.hpp"
 
 #include <algorithm>
 #include <cholmod.h>

@@ -2,7 +2,7 @@
 // hence a library of its own.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <string>
 

@@ -1,5 +1,5 @@
+#include "linear/gmres.hpp"
 #include "optim/dynamic/time_integrator.hpp"
-#include "optim/linear/gmres.hpp"
 #include "optim/shifted_hessian.hpp"
 
 #include <Eigen/IterativeLinearSolvers>

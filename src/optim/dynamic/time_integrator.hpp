@@ -1,8 +1,8 @@
 // One step of the motion of lumped masses, M a + (M/T) v + dE/dq = 0.
 #pragma once
 
+#include "linear/factorisation.hpp"
 #include "optim/dynamic/dynamic_options.hpp"
-#include "optim/linear/factorisation.hpp"
 #include "optim/monitor.hpp"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // The softest modes of an equilibrium: lowest eigenvalues of its Hessian.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #include "optim/stability/stability.hpp"
 
-#include "optim/linear/lowest_eigenvalues.hpp"
+#include "linear/lowest_eigenvalues.hpp"
 #include "optim/stability/smallest_modes.hpp"
 
 #include <algorithm>

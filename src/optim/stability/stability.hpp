@@ -1,8 +1,8 @@
 // Whether an equilibrium is stable: the signs of the eigenvalues of its tangent.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
-#include "optim/linear/free_directions.hpp"
+#include "linear/factorisation.hpp"
+#include "linear/free_directions.hpp"
 
 #include <complex>
 #include <functional>

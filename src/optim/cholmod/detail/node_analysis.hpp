@@ -1,7 +1,7 @@
 // Symbolic factorisation on the graph of nodes, a ninth of the matrix, carried over to the unknowns.
 #pragma once
 
-#include "optim/linear/permuted_matrix.hpp"
+#include "linear/permuted_matrix.hpp"
 
 #include <cholmod.h>
 #include <vector>

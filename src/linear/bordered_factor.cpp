@@ -1,6 +1,6 @@
-#include "optim/linear/bordered_factor.hpp"
+#include "linear/bordered_factor.hpp"
 
-#include "optim/linear/node_ordering.hpp"
+#include "linear/node_ordering.hpp"
 
 namespace coapt {
 

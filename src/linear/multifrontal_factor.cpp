@@ -1,4 +1,4 @@
-#include "optim/linear/multifrontal_factor.hpp"
+#include "linear/multifrontal_factor.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
-#include "optim/linear/inverse_tangent.hpp"
+#include "linear/inverse_tangent.hpp"
 
-#include "optim/linear/skew_part.hpp"
+#include "linear/skew_part.hpp"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 // relaxed supernode partitions on the multifrontal method, ACM Trans. Math. Softw. 15 (1989).
 #pragma once
 
-#include "optim/linear/permuted_matrix.hpp"
+#include "linear/permuted_matrix.hpp"
 
 #include <functional>
 #include <vector>

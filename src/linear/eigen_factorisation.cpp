@@ -1,6 +1,6 @@
-#include "optim/linear/node_ordering.hpp"
-#include "optim/linear/permuted_matrix.hpp"
-#include "optim/linear/pivots.hpp"
+#include "linear/node_ordering.hpp"
+#include "linear/permuted_matrix.hpp"
+#include "linear/pivots.hpp"
 
 #include <Eigen/SparseCholesky>
 

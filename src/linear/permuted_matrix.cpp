@@ -1,4 +1,4 @@
-#include "optim/linear/permuted_matrix.hpp"
+#include "linear/permuted_matrix.hpp"
 
 #include "core/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "optim/linear/supernodes.hpp"
+#include "linear/supernodes.hpp"
 
 #include <algorithm>
 #include <numeric>

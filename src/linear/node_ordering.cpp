@@ -1,4 +1,4 @@
-#include "optim/linear/node_ordering.hpp"
+#include "linear/node_ordering.hpp"
 
 #include <Eigen/OrderingMethods>
 

@@ -1,7 +1,7 @@
 // The eigenvalues with the lowest real parts of a tangent that is not symmetric: those of a follower load.
 #pragma once
 
-#include "optim/linear/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 #include <Eigen/Core>
 

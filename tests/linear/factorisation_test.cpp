@@ -1,5 +1,5 @@
 // What a factorisation promises, for each that the build has.
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include "energy/objective.hpp"
 #include "support/sheets.hpp"

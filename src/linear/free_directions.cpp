@@ -1,4 +1,4 @@
-#include "optim/linear/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>

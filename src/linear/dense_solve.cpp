@@ -1,5 +1,5 @@
 #include "core/quad.hpp"
-#include "optim/linear/dense_front.hpp"
+#include "linear/dense_front.hpp"
 
 namespace coapt {
 namespace {

@@ -2,8 +2,8 @@
 // for it.
 #pragma once
 
-#include "optim/linear/bordered_factor.hpp"
-#include "optim/linear/free_directions.hpp"
+#include "linear/bordered_factor.hpp"
+#include "linear/free_directions.hpp"
 
 #include <Eigen/SparseLU>
 

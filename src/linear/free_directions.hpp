@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/types.hpp"
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <functional>
 #include <vector>

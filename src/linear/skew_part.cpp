@@ -1,4 +1,4 @@
-#include "optim/linear/skew_part.hpp"
+#include "linear/skew_part.hpp"
 
 namespace coapt {
 

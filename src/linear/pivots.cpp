@@ -1,4 +1,4 @@
-#include "optim/linear/pivots.hpp"
+#include "linear/pivots.hpp"
 
 #include <Eigen/SparseCholesky>
 

@@ -2,8 +2,8 @@
 // pressure. These are eliminated last, by L U of their Schur complement; all others by Cholesky.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
-#include "optim/linear/multifrontal_factor.hpp"
+#include "linear/factorisation.hpp"
+#include "linear/multifrontal_factor.hpp"
 
 #include <Eigen/LU>
 

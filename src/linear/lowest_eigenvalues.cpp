@@ -1,7 +1,7 @@
-#include "optim/linear/lowest_eigenvalues.hpp"
+#include "linear/lowest_eigenvalues.hpp"
 
 #include "core/bounded_int.hpp"
-#include "optim/linear/inverse_tangent.hpp"
+#include "linear/inverse_tangent.hpp"
 
 #include <Eigen/Eigenvalues>
 

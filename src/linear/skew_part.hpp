@@ -2,7 +2,7 @@
 // the rim of a surface under follower pressure.
 #pragma once
 
-#include "optim/linear/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 #include <vector>
 

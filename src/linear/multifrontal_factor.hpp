@@ -5,8 +5,8 @@
 
 #include "core/scratch.hpp"
 #include "core/thread_team.hpp"
-#include "optim/linear/dense_front.hpp"
-#include "optim/linear/supernodes.hpp"
+#include "linear/dense_front.hpp"
+#include "linear/supernodes.hpp"
 
 #include <memory>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "optim/linear/dense_front.hpp"
+#include "linear/dense_front.hpp"
 
-#include "optim/linear/front_kernels.hpp"
+#include "linear/front_kernels.hpp"
 
 #include <algorithm>
 

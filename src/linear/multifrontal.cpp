@@ -1,6 +1,6 @@
-#include "optim/linear/factorisation.hpp"
-#include "optim/linear/multifrontal_factor.hpp"
-#include "optim/linear/node_ordering.hpp"
+#include "linear/factorisation.hpp"
+#include "linear/multifrontal_factor.hpp"
+#include "linear/node_ordering.hpp"
 
 #include <string_view>
 

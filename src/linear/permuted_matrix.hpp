@@ -2,7 +2,7 @@
 // factorisations work on.
 #pragma once
 
-#include "optim/linear/factorisation.hpp"
+#include "linear/factorisation.hpp"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
-#include "optim/linear/bordered_factor.hpp"
-#include "optim/linear/dense_front.hpp"
-#include "optim/linear/factorisation.hpp"
-#include "optim/linear/front_kernels.hpp"
-#include "optim/linear/node_ordering.hpp"
-#include "optim/linear/supernodes.hpp"
+#include "linear/bordered_factor.hpp"
+#include "linear/dense_front.hpp"
+#include "linear/factorisation.hpp"
+#include "linear/front_kernels.hpp"
+#include "linear/node_ordering.hpp"
+#include "linear/supernodes.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // L D L^T without pivoting on a permuted matrix, for the signs of its pivots.
 #pragma once
 
-#include "optim/linear/permuted_matrix.hpp"
+#include "linear/permuted_matrix.hpp"
 
 namespace coapt {
 

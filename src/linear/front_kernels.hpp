@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/quad.hpp"
-#include "optim/linear/dense_front.hpp"
+#include "linear/dense_front.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // In which order the nodes of a sparse symmetric matrix are eliminated.
 #pragma once
 
-#include "optim/linear/permuted_matrix.hpp"
+#include "linear/permuted_matrix.hpp"
 
 #include <vector>
 
