@@ -36,17 +36,27 @@ Objective::Objective(Points start, FixedMask fixed, std::vector<std::unique_ptr<
 }
 
 Vector Objective::unknowns(const Points& x) const {
-  Vector q(unknown_count());
-  for (size_t k = 0; k < active_.size(); ++k) q.segment<3>(3 * k) = x.col(active_[k]);
+  Vector q;
+  unknowns(x, q);
   return q;
 }
 
+void Objective::unknowns(const Points& x, Vector& q) const {
+  q.resize(unknown_count());
+  for (size_t k = 0; k < active_.size(); ++k) q.segment<3>(3 * k) = x.col(active_[k]);
+}
+
 Points Objective::positions(const Vector& q) const {
-  Points x = x_;
+  Points x;
+  positions(q, x);
+  return x;
+}
+
+void Objective::positions(const Vector& q, Points& x) const {
+  x = x_;
   for (size_t k = 0; k < active_.size(); ++k)
     for (int c = 0; c < 3; ++c)
       if (!fixed_(c, active_[k])) x(c, active_[k]) = q[3 * k + c];
-  return x;
 }
 
 double Objective::extent(const Vector& q) const {

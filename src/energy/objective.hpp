@@ -52,6 +52,8 @@ class Objective {
   Vector unknowns(const Points& x) const;
   Vector unknowns() const { return unknowns(x_); }  // of the last evaluation, or of the start
   Points positions(const Vector& q) const;
+  void unknowns(const Points& x, Vector& q) const;  // the same, in place
+  void positions(const Vector& q, Points& x) const;
   // Longest side of the box around all nodes [length], whatever the place and the unknowns are.
   double extent(const Vector& q) const;
 

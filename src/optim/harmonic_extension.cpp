@@ -118,15 +118,16 @@ Vector extended_harmonically(const Objective& objective, const Vector& q, const 
   const int n = objective.node_count();
   Points displacement = objective.fixed().select(x - from, Points::Zero(3, n));
   const Couplings couplings = couplings_at(objective, from);
-  std::vector<int> row(static_cast<size_t>(n), -1);
+  std::vector<int> row;
   LaplacianFactor factor;
   for (int c = 0; c < 3; ++c) {
-    const auto held = objective.fixed().row(c);
     if (displacement.row(c).isZero(0)) continue;
-    const bool is_factored = c > 0 && factor.rows() > 0 && (held == objective.fixed().row(c - 1)).all();
-    if (!is_factored) {
-      int free_count = 0;
-      for (int node = 0; node < n; ++node) row[static_cast<size_t>(node)] = held[node] ? -1 : free_count++;
+    int free_count = 0;
+    std::vector<int> free_row(static_cast<size_t>(n), -1);
+    for (int node = 0; node < n; ++node)
+      if (!objective.fixed()(c, node)) free_row[static_cast<size_t>(node)] = free_count++;
+    if (free_row != row) {
+      row = free_row;
       factor.compute(laplacian(couplings, row, free_count));
     }
     const Vector rhs = drawn(couplings, row, factor.rows(), displacement.row(c));

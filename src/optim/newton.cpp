@@ -3,10 +3,12 @@
 #include "linear/gmres.hpp"
 #include "optim/line_search.hpp"
 #include "optim/shifted_hessian.hpp"
+#include "optim/slack_junctions.hpp"
 #include "optim/worst_part.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace coapt {
 namespace {
@@ -40,6 +42,9 @@ constexpr int kParts = 3, kPartIterations = 15;
 constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
 
+// Share of the residual that a step towards a double root leaves: a quarter where it is the only one.
+constexpr double kLeastLeft = 0.2, kMostLeft = 0.6;
+
 // Rounding of the kinks, as a share of the element's length.
 constexpr double kOverloaded = 3;                            // residual of a start that asks for it
 constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;  // widest and least rounding
@@ -54,7 +59,9 @@ class Newton {
         monitor_(monitor),
         options_(options),
         is_part_(is_part),
-        hessian_(options.factorisation) {}
+        hessian_(options.factorisation) {
+    if (!is_part && !objective.is_damped()) junctions_.emplace(objective);
+  }
   ~Newton() {
     if (is_part_) return;
     if (rounding_ > 0) objective_.round_kinks(0);
@@ -72,6 +79,8 @@ class Newton {
       evaluate();
     }
     while (true) {
+      slacken_junctions();
+      q = at_.q;
       if (const auto status = accept()) return *status;
       if (is_at_round_off()) return Status::Stalled;
       if (unit_ == 0) start_shift();
@@ -86,7 +95,6 @@ class Newton {
           return Status::LineSearchFailed;
       }
       std::swap(at_, next_);
-      q = at_.q;
       raise_limits();
     }
   }
@@ -99,6 +107,12 @@ class Newton {
 
  private:
   void evaluate() { at_.energy = monitor_.gradient(at_.q, at_.g); }
+
+  // Not on rounded kinks, which are no double roots.
+  void slacken_junctions() {
+    if (!junctions_ || rounding_ > 0 || objective_.relative_residual(at_.q, at_.g) >= kNear) return;
+    if (junctions_->slacken(at_.q)) evaluate();
+  }
 
   // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium they follow to
   // the end, and go.
@@ -158,7 +172,9 @@ class Newton {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
     shift_ = kFirstShift * unit_;
-    for (Vector* vector : {&left_, &conjugate_, &image_}) vector->resize(at_.q.size());
+    for (Vector* vector : {&left_, &conjugate_, &image_, &better_.q, &better_.g})
+      vector->resize(at_.q.size());
+    worst_ = WorstPart(at_.q.size() / 3);
   }
 
   // (K + shift) d = -g; the skew part of K, where there is one, by GMRES. With a positive definite symmetric
@@ -233,6 +249,7 @@ class Newton {
     Replacement balance_parts;
     if (!is_part_) balance_parts = [this](LinePoint& to) { return balance_worst_parts(to); };
     if (!search_line(monitor_, at_, direction_, first_step(), next_, balance_parts)) return false;
+    if (!is_part_ && residual_ < kNear) balance_double_root();
     const double step = std::min(next_.step, 1.0);  // the model promises nothing more beyond its minimum
     const double kept = (at_.energy - next_.energy) / at_.promised(step);
     if (next_.step >= 0.9 && kept > kKept)
@@ -247,12 +264,11 @@ class Newton {
   // measured (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
   // at `to` then keeps enough of what was promised.
   bool balance_worst_parts(LinePoint& to) {
-    PhaseTimer timer(monitor_.phases(), "parts");
-    LinePoint better = to;
+    better_ = to;
     for (int k = 0; k < kParts; ++k) {
-      if (!balance_worst_part(better)) return false;
-      if (at_.energy - better.energy < kFewKept * at_.promised(std::min(better.step, 1.0))) continue;
-      std::swap(to, better);
+      if (!balance_worst_part(better_)) return false;
+      if (at_.energy - better_.energy < kFewKept * at_.promised(std::min(better_.step, 1.0))) continue;
+      std::swap(to, better_);
       return true;
     }
     return false;
@@ -260,20 +276,30 @@ class Newton {
 
   // Returns false where there is no such part, or the point cannot be evaluated any more.
   bool balance_worst_part(LinePoint& at) {
-    const auto worst = worst_part(at.g, hessian_.matrix());
-    if (!worst) return false;
-    const auto part = objective_.part(at.q, worst->blocks, kPartReach * objective_.extent(at.q));
+    if (!worst_.find(at.g, hessian_.matrix())) return false;
+    PhaseTimer timer(monitor_.phases(), "parts");
+    const auto part = objective_.part(at.q, worst_.blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
-    const double elsewhere = worst->outside / objective_.reference_force(at.q);
+    const double elsewhere = worst_.outside / objective_.reference_force(at.q);
     const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), kPartIterations};
     const Observer nobody;
     Monitor monitor(*part, stop, nobody);
     Vector q = part->unknowns();
     Newton(options_, *part, monitor, true).minimize(q);
-    for (size_t k = 0; k < worst->blocks.size(); ++k)
-      at.q.segment<3>(3 * worst->blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
+    for (size_t k = 0; k < worst_.blocks.size(); ++k)
+      at.q.segment<3>(3 * worst_.blocks[k]) = q.segment<3>(3 * static_cast<Eigen::Index>(k));
     at.energy = monitor_.gradient(at.q, at.g);
     return std::isfinite(at.energy) && at.g.allFinite();
+  }
+
+  // Where the force falls by halves or quarters, lines between more than junctions are at their onset, which
+  // is a double root: the part around them ends the series.
+  void balance_double_root() {
+    const double residual = objective_.relative_residual(next_.q, next_.g), left = residual / residual_;
+    if (residual <= monitor_.tolerance() || left < kLeastLeft || left > kMostLeft) return;
+    better_ = next_;
+    if (balance_worst_part(better_) && better_.energy <= next_.energy + monitor_.energy_noise(next_.energy))
+      std::swap(next_, better_);
   }
 
   // One, but for a double root, such as a slack chord's onset of tension, which Newton's method approaches by
@@ -317,6 +343,7 @@ class Newton {
   Monitor& monitor_;
   const SolverOptions& options_;
   const bool is_part_;
+  std::optional<SlackJunctions> junctions_;  // of a whole objective without dampers
   ShiftedHessian hessian_;
   Gmres gmres_{kKrylovVectors};
   double unit_ = 0, shift_ = 0;  // [force/length]
@@ -324,7 +351,8 @@ class Newton {
   double residual_ = kInfinity;                                   // of this iterate
   double least_energy_ = kInfinity, least_residual_ = kInfinity;  // that counted as a gain
   int idle_ = 0;                                                  // iterates since
-  LinePoint at_, next_;
+  LinePoint at_, next_, better_;
+  WorstPart worst_{0};  // nodes out of balance at `better_`
   Vector work_, symmetric_, direction_, last_;
   Vector left_, conjugate_, image_;  // of the conjugate gradients
 };

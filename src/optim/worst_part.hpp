@@ -3,19 +3,25 @@
 
 #include "linear/factorisation.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace coapt {
 
 struct WorstPart {
+  explicit WorstPart(Eigen::Index nodes);  // of the whole
+
+  // The nodes that bear more than a tenth of the greatest nodal force of g, and their neighbours in the graph
+  // of `lower`. False where these are more than a few dozen, or with their neighbours a great share of all
+  // nodes, or nothing is out of balance. lower: lower triangle of a Hessian by whole blocks. Allocates
+  // nothing.
+  bool find(const Vector& g, const SparseMatrix& lower);
+
   std::vector<int> blocks;  // of unknowns, ascending
   double outside = 0;       // greatest nodal force elsewhere [force]
-};
 
-// The nodes that bear more than a tenth of the greatest nodal force of g, and their neighbours in the graph
-// of `lower`; none where these are more than a few dozen, or nothing is out of balance. lower: lower triangle
-// of a Hessian by whole blocks.
-std::optional<WorstPart> worst_part(const Vector& g, const SparseMatrix& lower);
+ private:
+  Vector force_;
+  std::vector<bool> is_in_;
+};
 
 }  // namespace coapt

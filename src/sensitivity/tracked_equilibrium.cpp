@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "optim/newton.hpp"
+#include "optim/slack_junctions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -245,6 +246,9 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report
   if (objective_.step_limit(x, predicted, 1) < 1) return false;
   objective_.prescribe(x + predicted);
   q_ = objective_.unknowns(x + predicted);
+  // The prediction leaves what is slack where it is, and lines may have become shorter.
+  SlackJunctions junctions(objective_);
+  junctions.slacken(q_);
   if (objective_.has_circulatory_force()) objective_.set_path_anchor(q_);
   if (!std::isfinite(objective_.gradient(q_, g_)) || !g_.allFinite()) return false;
   Vector direction, next_q, next_g;
@@ -276,6 +280,7 @@ bool TrackedEquilibrium::move_quickly(const Points& predicted, WarmSolve& report
     if (!is_better) return false;
     q_.swap(next_q);
     g_.swap(next_g);
+    if (junctions.slacken(q_)) objective_.gradient(q_, g_);
     objective_.advance(q_);
   }
 }

@@ -99,15 +99,28 @@ TEST(WorstPart, IsWhatBearsTheForceAndItsNeighbours) {
   g[3 * 6] = 1;
   g[3 * 6 + 2] = 1;
   g[3 * 12] = 0.5;
-  const auto worst = worst_part(g, chain(20));
-  ASSERT_TRUE(worst);
-  EXPECT_EQ(worst->blocks, (std::vector<int>{4, 5, 6, 7}));
-  EXPECT_EQ(worst->outside, 0.5);
+  WorstPart worst(20);
+  ASSERT_TRUE(worst.find(g, chain(20)));
+  EXPECT_EQ(worst.blocks, (std::vector<int>{4, 5, 6, 7}));
+  EXPECT_EQ(worst.outside, 0.5);
 }
 
 TEST(WorstPart, IsNoneWhereAllIsOutOfBalanceOrNothing) {
-  EXPECT_FALSE(worst_part(Vector::Ones(3 * 100), chain(100)));
-  EXPECT_FALSE(worst_part(Vector::Zero(3 * 100), chain(100)));
+  EXPECT_FALSE(WorstPart(100).find(Vector::Ones(3 * 100), chain(100)));
+  EXPECT_FALSE(WorstPart(100).find(Vector::Zero(3 * 100), chain(100)));
+}
+
+// 40 nodes, each third of a chain, bear the force; with their neighbours they are the first 120 of it.
+TEST(WorstPart, IsNoneWhereItIsAGreatShareOfAll) {
+  const auto every_third = [](int count) {
+    Vector g = Vector::Zero(3 * count);
+    for (int node = 1; node < 120; node += 3) g[3 * node] = 1;
+    return g;
+  };
+  EXPECT_FALSE(WorstPart(120).find(every_third(120), chain(120)));
+  WorstPart worst(400);
+  ASSERT_TRUE(worst.find(every_third(400), chain(400)));
+  EXPECT_EQ(worst.blocks.size(), 120u);
 }
 
 }  // namespace

@@ -350,6 +350,21 @@ TEST(Continuation, EndsAtTheFullProblem) {
   EXPECT_EQ(objective.gradient(q, scaled), energy);
 }
 
+// Coordinates may be prescribed at other nodes each: of those, one that stays leaves the next alone.
+TEST(CarryAlong, TakesEachCoordinateBySupportsOfItsOwn) {
+  const TriangleMesh mesh = disc_mesh(6);
+  FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
+  for (const auto& loop : boundary_loops(mesh.triangles))
+    for (const int node : loop) fixed.col(node).setConstant(true);
+  for (int node = 0; node < mesh.vertex_count(); node += 2) fixed(0, node) = true;
+  Objective objective(mesh.vertices, fixed,
+                      terms_of(sheet_term(SheetLaw::StVK, mesh.vertices, mesh.triangles, {})));
+  const Vec3 shift(0.3, 0, 5);
+  const Points target = mesh.vertices.colwise() + shift;
+  const Vector carried = extended_harmonically(objective, objective.unknowns(mesh.vertices), target);
+  EXPECT_LT((carried - objective.unknowns(target)).lpNorm<Eigen::Infinity>(), 1e-6);
+}
+
 TEST(CarryAlong, TakesASheetWhereItsRimGoesAndLeavesTheRestAlone) {
   const TriangleMesh mesh = disc_mesh(6);
   FixedMask fixed = FixedMask::Constant(3, mesh.vertex_count(), false);
