@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/vertex_graph.hpp"
+#include "valve/detail/along_edge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,33 +13,24 @@
 namespace coapt {
 namespace {
 
-// The distance of each vertex from the nearest source along edges, and which source that is (its place in the
-// list); infinity and -1 where no way leads. Dijkstra.
-struct Distances {
-  std::vector<double> length;
-  std::vector<int> source;
-};
-
-Distances distances_from(const TriangleMesh& mesh, const VertexGraph& graph,
-                         const std::vector<int>& sources) {
-  Distances result{std::vector<double>(static_cast<size_t>(mesh.vertex_count()), kInfinity),
-                   std::vector<int>(static_cast<size_t>(mesh.vertex_count()), -1)};
+// The distance of each vertex from the nearest source along edges; infinity where no way leads. Dijkstra.
+std::vector<double> distances_from(const TriangleMesh& mesh, const VertexGraph& graph,
+                                   const std::vector<int>& sources) {
+  std::vector<double> result(static_cast<size_t>(mesh.vertex_count()), kInfinity);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (size_t k = 0; k < sources.size(); ++k) {
-    result.length[static_cast<size_t>(sources[k])] = 0;
-    result.source[static_cast<size_t>(sources[k])] = static_cast<int>(k);
-    open.emplace(0, sources[k]);
+  for (const int source : sources) {
+    result[static_cast<size_t>(source)] = 0;
+    open.emplace(0, source);
   }
   while (!open.empty()) {
     const auto [length, v] = open.top();
     open.pop();
-    if (length > result.length[static_cast<size_t>(v)]) continue;
+    if (length > result[static_cast<size_t>(v)]) continue;
     for (const int w : graph.of(v)) {
       const double way = length + (mesh.vertices.col(v) - mesh.vertices.col(w)).norm();
-      if (way >= result.length[static_cast<size_t>(w)]) continue;
-      result.length[static_cast<size_t>(w)] = way;
-      result.source[static_cast<size_t>(w)] = result.source[static_cast<size_t>(v)];
+      if (way >= result[static_cast<size_t>(w)]) continue;
+      result[static_cast<size_t>(w)] = way;
       open.emplace(way, w);
     }
   }
@@ -48,7 +40,7 @@ Distances distances_from(const TriangleMesh& mesh, const VertexGraph& graph,
 // A vertex at which a chord may end, in coordinates along and across the leaflets [mm].
 struct Site {
   int vertex = 0;
-  double along = 0;    // of the free edge's length, at its nearest point
+  double along = 0;    // of the free edge's length, by along_edge()
   double height = 1;   // 0 at the annulus, 1 at the free edge
   double leaflet = 0;  // from annulus to free edge there
 };
@@ -61,8 +53,8 @@ struct LeafletSites {
 LeafletSites sites_of(const Valve& valve) {
   const TriangleMesh& mesh = valve.leaflets;
   const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
-  const Distances from_annulus = distances_from(mesh, graph, valve.annulus);
-  const Distances from_edge = distances_from(mesh, graph, valve.free_edge);
+  const std::vector<double> from_annulus = distances_from(mesh, graph, valve.annulus);
+  const std::vector<double> from_edge = distances_from(mesh, graph, valve.free_edge);
   LeafletSites sites;
   std::vector<double> along;
   for (size_t k = 0; k < valve.free_edge.size(); ++k) {
@@ -78,12 +70,12 @@ LeafletSites sites_of(const Valve& valve) {
     if (!rims.contains(valve.free_edge[k])) sites.free_edge.push_back({valve.free_edge[k], along[k], 1, 0});
   }
   rims.insert(valve.free_edge.begin(), valve.free_edge.end());
+  const std::vector<double> inside = along_edge(mesh, valve.free_edge, along, sites.length);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto i = static_cast<size_t>(v);
-    const double whole = from_annulus.length[i] + from_edge.length[i];
+    const double whole = from_annulus[i] + from_edge[i];
     if (rims.contains(v) || !std::isfinite(whole)) continue;
-    sites.inside.push_back(
-        {v, along[static_cast<size_t>(from_edge.source[i])], from_annulus.length[i] / whole, whole});
+    sites.inside.push_back({v, inside[i], from_annulus[i] / whole, whole});
   }
   return sites;
 }

@@ -54,9 +54,9 @@ struct LeafletChordOptions {
 // changed to fit the open valve: with a small scale chords may pull from the start. Junctions start where no
 // chord pulls if there is such a place.
 //
-// Insertions lie at equal steps of the free edge's length (inside: at the vertices whose nearest point of it
-// is there, at the zone's height), each at a vertex of its own; count x branches^(levels - 1) of each zone.
-// Neighbours share a chord, which comes from the tip nearest to them. Deterministic.
+// Insertions lie at equal steps of the free edge's length (inside: at the zone's height, where a harmonic
+// map of the edge goes on with that length), each at a vertex of its own; count x branches^(levels - 1) of
+// each zone. Neighbours share a chord, which comes from the tip nearest to them. Deterministic.
 //
 // Throws InputError with all defects: options out of range, insertions that are no vertices, tips that are
 // not finite, beyond kGreatestCoordinate, or on or above the plane, no annulus or free edge, fewer vertices

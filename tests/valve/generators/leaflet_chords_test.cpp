@@ -226,6 +226,30 @@ TEST(LeafletChordsTest, PutsZonesAtTheirHeights) {
   for (const auto& [material, places] : columns) EXPECT_EQ(places.size(), 12u) << material;
 }
 
+// A funnel that is longer on one side: its cells are oblique.
+Valve oblique_funnel(bool has_other_diagonals) {
+  Valve valve = funnel_with_rims();
+  for (auto x : valve.leaflets.vertices.colwise()) x[2] *= (14 - 8 * std::cos(std::atan2(x[1], x[0]))) / 18;
+  valve.chords.papillary.row(2).setConstant(-40);
+  if (has_other_diagonals)
+    for (int t = 0; t < valve.leaflets.triangle_count(); t += 2) {
+      const int a = valve.leaflets.triangles(0, t), below = valve.leaflets.triangles(1, t),
+                b = valve.leaflets.triangles(2, t), below_b = valve.leaflets.triangles(2, t + 1);
+      valve.leaflets.triangles.col(t) << a, below, below_b;
+      valve.leaflets.triangles.col(t + 1) << a, below_b, b;
+    }
+  return valve;
+}
+
+TEST(LeafletChordsTest, EndsWhereItDidOnTheSameVerticesWithOtherTriangles) {
+  std::vector<int> ends[2];
+  for (const bool has_other_diagonals : {false, true})
+    for (const Chord& chord :
+         leaflet_chords(oblique_funnel(has_other_diagonals), {.zones = {chord_zone("rough")}}).chords)
+      ends[has_other_diagonals ? 1 : 0].push_back(chord.to.index);
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 TEST(LeafletChordsTest, RepeatsASeedAndOnlyThat) {
   const Valve valve = funnel_with_rims();
   const auto ends = [&](unsigned seed) {
