@@ -28,6 +28,17 @@ def positions(path):
     return [point["position"] for point in json.loads(path.read_text())["markups"][0]["controlPoints"]]
 
 
+def distance_to_polygon(point, corners):
+    """From the closed polygon through the corners."""
+    def to_side(a, b):
+        along = [y - x for x, y in zip(a, b)]
+        length = sum(x * x for x in along)
+        part = sum(x * (y - z) for x, y, z in zip(along, point, a)) / length if length > 0 else 0
+        return math.dist(point, [x + min(max(part, 0), 1) * y for x, y in zip(a, along)])
+
+    return min(to_side(a, b) for a, b in zip(corners, corners[1:] + corners[:1]))
+
+
 def turned(point, angle, shift):
     """About z."""
     c, s = math.cos(angle), math.sin(angle)
@@ -125,7 +136,7 @@ class CloseAnImage(CommandCase):
         self.assertIn('Name="in_image"', (out / "coaptation_lines.vtp").read_text(errors="replace"))
         self.assertIn('Name="distance_to_image_mm"', (out / "image_distance.vtp").read_text(errors="replace"))
         ring, given = json.loads((out / "scene/valve.json").read_text())["annulus_closed"], positions(closed / "annulus.mrk.json")
-        self.assertLess(max(min(math.dist(p, q) for q in given) for p in ring), 2)
+        self.assertLess(max(distance_to_polygon(p, given) for p in ring), 0.3)
 
     def test_a_mask_takes_the_place_of_the_image(self):
         fields, labels = fields_and_voxels(self.truth / "phantom/open/labels.nrrd")
