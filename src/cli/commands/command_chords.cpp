@@ -129,13 +129,17 @@ void say_tips(const Valve& valve, ChordLengths lengths) {
   std::printf("lengths: %s\n",
               lengths == ChordLengths::Sum
                   ? "distance of the insertion from the annulus plane and from the tip, summed"
-                  : "distance of the tip from where the insertion is expected on the plane");
+              : lengths == ChordLengths::ToPlane
+                  ? "distance of the tip from where the insertion is expected on the plane"
+                  : "distance of the tip from where the insertion is expected, free edges below the plane");
 }
 
 void choose_lengths(ChordsArguments& arguments, bool has_tips) {
-  const bool sums =
-      arguments.lengths.empty() ? !has_tips && arguments.options.levels == 1 : arguments.lengths == "sum";
-  arguments.options.lengths = sums ? ChordLengths::Sum : ChordLengths::ToPlane;
+  if (arguments.lengths.empty())
+    arguments.lengths = !has_tips && arguments.options.levels == 1 ? "sum" : "coapted";
+  arguments.options.lengths = arguments.lengths == "sum"     ? ChordLengths::Sum
+                              : arguments.lengths == "plane" ? ChordLengths::ToPlane
+                                                             : ChordLengths::ToCoapted;
 }
 
 std::string make_chords(ChordsArguments& arguments) {
@@ -213,11 +217,13 @@ void add_chords_command(CLI::App& app, Session& session) {
       ->excludes(count)
       ->take_all();
   command
-      ->add_option("--lengths", arguments->lengths,
-                   "Rest lengths: from the tip to the insertion's place on the annulus plane in the closed "
-                   "valve, or the sum of its distances from plane and tip (default: plane; sum for straight "
-                   "chords from tips that are not known)")
-      ->check(CLI::IsMember({"plane", "sum"}));
+      ->add_option(
+          "--lengths", arguments->lengths,
+          "Rest lengths: from the tip to the insertion's place in the closed valve, on the annulus "
+          "plane or, with `coapted`, free edges as far below as leaflets hang where they meet; or the "
+          "sum of its distances from plane and tip (default: coapted; sum for straight chords from "
+          "tips that are not known)")
+      ->check(CLI::IsMember({"coapted", "plane", "sum"}));
   command->add_option("--levels", options.levels, "1: straight chords, 2: trunks with fans, ...")
       ->capture_default_str();
   command->add_option("--branches", options.branches, "Branches at each branch point")->capture_default_str();

@@ -47,7 +47,8 @@ struct CloseArguments {
   std::string closed, annulus_closed, papillary_closed;
   std::optional<int> closed_frame;
   bool registers = false;
-  LeafletChordOptions chords = {.zones = {chord_zone("free_edge"), chord_zone("rough")}};
+  LeafletChordOptions chords = {.zones = {chord_zone("free_edge"), chord_zone("rough")},
+                                .lengths = ChordLengths::ToCoapted};
 };
 
 // What the files besides the open volume hold, all in its frame but for the closed volume.

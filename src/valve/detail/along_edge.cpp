@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <queue>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -42,8 +45,46 @@ double weight_at(const TriangleMesh& mesh, int apex, int a, int b) {
 
 }  // namespace
 
+EdgeLengths edge_lengths(const TriangleMesh& mesh, const std::vector<int>& edge) {
+  const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
+  EdgeLengths lengths;
+  for (size_t k = 0; k < edge.size(); ++k) {
+    const int v = edge[k], next = edge[(k + 1) % edge.size()];
+    lengths.along.push_back(lengths.length);
+    const auto near = graph.of(v);
+    if (std::find(near.begin(), near.end(), next) != near.end())
+      lengths.length += (mesh.vertices.col(v) - mesh.vertices.col(next)).norm();
+  }
+  return lengths;
+}
+
+// Dijkstra.
+std::vector<double> distances_along_edges(const TriangleMesh& mesh, const std::vector<int>& sources) {
+  const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
+  std::vector<double> result(static_cast<size_t>(mesh.vertex_count()), kInfinity);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  for (const int source : sources) {
+    result[static_cast<size_t>(source)] = 0;
+    open.emplace(0, source);
+  }
+  while (!open.empty()) {
+    const auto [length, v] = open.top();
+    open.pop();
+    if (length > result[static_cast<size_t>(v)]) continue;
+    for (const int w : graph.of(v)) {
+      const double way = length + (mesh.vertices.col(v) - mesh.vertices.col(w)).norm();
+      if (way >= result[static_cast<size_t>(w)]) continue;
+      result[static_cast<size_t>(w)] = way;
+      open.emplace(way, w);
+    }
+  }
+  return result;
+}
+
 std::vector<double> along_edge(const TriangleMesh& mesh, const std::vector<int>& edge,
-                               const std::vector<double>& along, double length) {
+                               const EdgeLengths& lengths) {
+  const auto& [along, length] = lengths;
   const Eigen::Index n = mesh.vertex_count();
   const double turn = 2 * std::numbers::pi / std::max(length, 1e-300);
   std::vector<char> is_free = joined_to(mesh, edge);

@@ -1,41 +1,15 @@
 #include "valve/generators/chord_insertions.hpp"
 
 #include "core/error.hpp"
-#include "mesh/vertex_graph.hpp"
 #include "valve/detail/along_edge.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 #include <random>
 #include <set>
 
 namespace coapt {
 namespace {
-
-// The distance of each vertex from the nearest source along edges; infinity where no way leads. Dijkstra.
-std::vector<double> distances_from(const TriangleMesh& mesh, const VertexGraph& graph,
-                                   const std::vector<int>& sources) {
-  std::vector<double> result(static_cast<size_t>(mesh.vertex_count()), kInfinity);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (const int source : sources) {
-    result[static_cast<size_t>(source)] = 0;
-    open.emplace(0, source);
-  }
-  while (!open.empty()) {
-    const auto [length, v] = open.top();
-    open.pop();
-    if (length > result[static_cast<size_t>(v)]) continue;
-    for (const int w : graph.of(v)) {
-      const double way = length + (mesh.vertices.col(v) - mesh.vertices.col(w)).norm();
-      if (way >= result[static_cast<size_t>(w)]) continue;
-      result[static_cast<size_t>(w)] = way;
-      open.emplace(way, w);
-    }
-  }
-  return result;
-}
 
 // A vertex at which a chord may end, in coordinates along and across the leaflets [mm].
 struct Site {
@@ -52,25 +26,19 @@ struct LeafletSites {
 
 LeafletSites sites_of(const Valve& valve) {
   const TriangleMesh& mesh = valve.leaflets;
-  const VertexGraph graph = vertex_graph(mesh.triangles, mesh.vertex_count());
-  const std::vector<double> from_annulus = distances_from(mesh, graph, valve.annulus);
-  const std::vector<double> from_edge = distances_from(mesh, graph, valve.free_edge);
+  const std::vector<double> from_annulus = distances_along_edges(mesh, valve.annulus);
+  const std::vector<double> from_edge = distances_along_edges(mesh, valve.free_edge);
+  const EdgeLengths edge = edge_lengths(mesh, valve.free_edge);
   LeafletSites sites;
-  std::vector<double> along;
-  for (size_t k = 0; k < valve.free_edge.size(); ++k) {
-    const int v = valve.free_edge[k], next = valve.free_edge[(k + 1) % valve.free_edge.size()];
-    along.push_back(sites.length);
-    const auto near = graph.of(v);
-    if (std::find(near.begin(), near.end(), next) != near.end())  // else the next leaflet begins
-      sites.length += (mesh.vertices.col(v) - mesh.vertices.col(next)).norm();
-  }
+  sites.length = edge.length;
   std::set<int> rims(valve.annulus.begin(), valve.annulus.end());
   for (size_t k = 0; k < valve.free_edge.size(); ++k) {
     // A vertex of both rims (a commissure down to the annulus) does not move: no chord ends there.
-    if (!rims.contains(valve.free_edge[k])) sites.free_edge.push_back({valve.free_edge[k], along[k], 1, 0});
+    if (!rims.contains(valve.free_edge[k]))
+      sites.free_edge.push_back({valve.free_edge[k], edge.along[k], 1, 0});
   }
   rims.insert(valve.free_edge.begin(), valve.free_edge.end());
-  const std::vector<double> inside = along_edge(mesh, valve.free_edge, along, sites.length);
+  const std::vector<double> inside = along_edge(mesh, valve.free_edge, edge);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto i = static_cast<size_t>(v);
     const double whole = from_annulus[i] + from_edge[i];

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "mesh/triangle_mesh.hpp"
+#include "valve/detail/along_edge.hpp"
 #include "valve/generators/chord_insertions.hpp"
 #include "valve/generators/chord_junctions.hpp"
 #include "valve/generators/unseen_tips.hpp"
@@ -9,10 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace coapt {
 namespace {
 
+constexpr double kHangingShare = 0.5;  // of the area that the annulus leaves over
+constexpr double kMostOfTheWay = 0.5;  // down to the highest tip
 constexpr int kMostLevels = 4, kMostBranches = 6, kMostChords = 10000;
 
 struct NamedZone {
@@ -31,8 +35,8 @@ const std::vector<NamedZone>& named_zones() {
 class LeafletChordBuilder {
  public:
   LeafletChordBuilder(const Valve& valve, const LeafletChordOptions& options, const Plane& plane,
-                      const Points& tips)
-      : X_(valve.leaflets.vertices), options_(options), plane_(plane) {
+                      const Points& tips, std::vector<double> drops)
+      : X_(valve.leaflets.vertices), options_(options), plane_(plane), drops_(std::move(drops)) {
     network_.papillary = tips;
     network_.papillary_closed = valve.chords.papillary_closed;
   }
@@ -63,8 +67,16 @@ class LeafletChordBuilder {
     return X(Eigen::all, vertices).rowwise().mean();
   }
 
-  Vec3 expected(const Vec3& x) const {
-    return x - ((x - plane_.centre).dot(plane_.normal) + options_.depth) * plane_.normal;
+  Vec3 expected(int vertex) const {
+    const Vec3 x = X_.col(vertex);
+    const double below = options_.depth + drops_[static_cast<size_t>(vertex)];
+    return x - ((x - plane_.centre).dot(plane_.normal) + below) * plane_.normal;
+  }
+
+  Vec3 expected_middle(const std::vector<int>& vertices) const {
+    Vec3 sum = Vec3::Zero();
+    for (const int v : vertices) sum += expected(v);
+    return sum / static_cast<double>(vertices.size());
   }
 
   double rest_length(const Vec3& a, const Vec3& b) const { return options_.scale * (a - b).norm(); }
@@ -81,7 +93,7 @@ class LeafletChordBuilder {
   }
 
   Place junction(const Place& from, const std::vector<int>& vertices) {
-    const Vec3 goal = expected(middle(X_, vertices));
+    const Vec3 goal = expected_middle(vertices);
     Place place;
     place.expected = from.expected + kJunctionPlace * (goal - from.expected);
     JunctionLimits limits;
@@ -91,7 +103,7 @@ class LeafletChordBuilder {
     for (size_t k = 0; k < vertices.size(); ++k) {
       const Vec3 x = X_.col(vertices[k]);
       limits.ends.col(static_cast<Eigen::Index>(k) + 1) = x;
-      limits.rest_lengths.push_back(rest_length(place.expected, expected(x)));
+      limits.rest_lengths.push_back(rest_length(place.expected, expected(vertices[k])));
     }
     place.start = place_junction(from.start + kJunctionPlace * (middle(X_, vertices) - from.start), limits);
     place.end = {ChordEnd::Kind::Junction, static_cast<int>(junctions_.size())};
@@ -102,7 +114,7 @@ class LeafletChordBuilder {
   void grow(const ChordZone& zone, const Place& from, const std::vector<int>& vertices, int level) {
     if (vertices.size() == 1) {
       const Vec3 x = X_.col(vertices[0]);
-      return join(zone, from, {{ChordEnd::Kind::Leaflet, vertices[0]}, x, expected(x)}, level);
+      return join(zone, from, {{ChordEnd::Kind::Leaflet, vertices[0]}, x, expected(vertices[0])}, level);
     }
     const Place place = junction(from, vertices);
     join(zone, from, place, level);
@@ -114,6 +126,7 @@ class LeafletChordBuilder {
   const Points& X_;
   const LeafletChordOptions& options_;
   const Plane& plane_;
+  std::vector<double> drops_;  // of each vertex below the depth
   ChordNetwork network_;
   std::vector<Vec3> junctions_;
 };
@@ -172,13 +185,40 @@ void check_tips(const Points& open, const Points& closed, const Plane& plane, do
   if (!defects.empty()) throw InputError(std::move(defects));
 }
 
-// The area that a loop encloses as seen along its area vector [length^2].
-double enclosed_area(const Points& X, const std::vector<int>& loop) {
+// The area that a polygon encloses as seen along its area vector [length^2].
+double enclosed_area(const Points& polygon) {
   Vec3 twice = Vec3::Zero();
-  const Vec3 origin = X.col(loop[0]);
-  for (size_t k = 0; k + 1 < loop.size(); ++k)
-    twice += (X.col(loop[k]) - origin).cross(X.col(loop[k + 1]) - origin);
+  const Vec3 origin = polygon.col(0);
+  for (Eigen::Index k = 0; k + 1 < polygon.cols(); ++k)
+    twice += (polygon.col(k) - origin).cross(polygon.col(k + 1) - origin);
   return 0.5 * twice.norm();
+}
+
+// How far below the line where leaflets meet their free edge hangs: half of the area that the annulus leaves
+// over, along the whole edge. It stays above the middle of the way to the highest tip.
+double hanging_height(const Valve& valve, const Plane& plane, const Points& tips, double depth) {
+  const Points annulus = valve.annulus_closed.cols() > 0
+                             ? valve.annulus_closed
+                             : Points(valve.leaflets.vertices(Eigen::all, valve.annulus));
+  const double left_over =
+      surface_area(valve.leaflets.vertices, valve.leaflets.triangles) - enclosed_area(annulus);
+  const double length = edge_lengths(valve.leaflets, valve.free_edge).length;
+  double most = kInfinity;
+  for (const auto tip : tips.colwise())
+    most = std::min(most, -(tip - plane.centre).dot(plane.normal) - depth);
+  return length > 0 ? std::clamp(kHangingShare * left_over / length, 0.0, kMostOfTheWay * most) : 0;
+}
+
+// How far below the others each vertex is expected in the closed valve.
+std::vector<double> drops_of(const Valve& valve, const LeafletChordOptions& options, const Plane& plane,
+                             const Points& tips) {
+  std::vector<double> drops(static_cast<size_t>(valve.leaflets.vertex_count()), 0);
+  if (options.lengths != ChordLengths::ToCoapted) return drops;
+  const double height = hanging_height(valve, plane, tips, options.depth);
+  const std::vector<double> from_edge = distances_along_edges(valve.leaflets, valve.free_edge);
+  std::transform(from_edge.begin(), from_edge.end(), drops.begin(),
+                 [&](double distance) { return std::max(0.0, height - distance); });
+  return drops;
 }
 
 }  // namespace
@@ -219,7 +259,8 @@ ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& optio
   std::vector<PlannedChord> planned = planned_chords(valve, options);
   const Points tips = tip_count > 0 ? valve.chords.papillary : unseen_tips(valve, plane, planned);
   check_tips(tips, valve.chords.papillary_closed, plane, options.depth);
-  LeafletChordBuilder builder(valve, options, plane, tips);
+  const Points& closed = valve.chords.papillary_closed.cols() > 0 ? valve.chords.papillary_closed : tips;
+  LeafletChordBuilder builder(valve, options, plane, tips, drops_of(valve, options, plane, closed));
   for (const PlannedChord& chord : planned) builder.add(chord);
   return builder.finish();
 }
@@ -236,7 +277,7 @@ void find_rims(Valve& valve) {
     double farthest = -1;
     for (const auto& loop : loops) {
       if (valve.chords.papillary.cols() == 0) {
-        const double enclosed = enclosed_area(valve.leaflets.vertices, loop);
+        const double enclosed = enclosed_area(valve.leaflets.vertices(Eigen::all, loop));
         if (enclosed > farthest) valve.annulus = loop;
         farthest = std::max(farthest, enclosed);
         continue;

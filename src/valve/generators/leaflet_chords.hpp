@@ -22,7 +22,8 @@ std::vector<std::string> chord_zone_names();
 
 // What the rest length of a chord is.
 enum class ChordLengths {
-  ToPlane,  // from the (closed) tip to where the vertex is expected on the annulus plane
+  ToPlane,    // from the (closed) tip to where the vertex is expected on the annulus plane
+  ToCoapted,  // the same, but the free edge is expected below, as the leaflets hang there where they meet
   Sum  // the vertex's distance from the plane and that from the tip, of the open valve: of straight chords
 };
 
@@ -49,10 +50,12 @@ struct LeafletChordOptions {
 // Source of the straight chords: Walczak et al. 2019, section 3.5. Sum is its rule; ToPlane, which knows
 // where the closed tips are, is ours: a leaflet vertex is expected where it projects onto the closed annulus'
 // best plane, `depth` below it; the rest length is `scale` times the distance from there to the closed
-// papillary tip. A branch point is expected at 0.55 of the way to the middle of the insertions that it
-// serves, and rest lengths are `scale` times the distances between expected places. Rest lengths are never
-// changed to fit the open valve: with a small scale chords may pull from the start. Junctions start where no
-// chord pulls if there is such a place.
+// papillary tip. With ToCoapted a vertex at the distance r from the free edge (along mesh edges) is expected
+// H - r lower, if that is above 0. H is half of the area that the leaflets have more than the closed annulus
+// encloses over the length of the free edge: the other half bulges. A branch point is expected at 0.55 of the
+// way to the middle of the insertions that it serves, and rest lengths are `scale` times the distances
+// between expected places. Rest lengths are never changed to fit the open valve: with a small scale chords
+// may pull from the start. Junctions start where no chord pulls if there is such a place.
 //
 // Insertions lie at equal steps of the free edge's length (inside: at the zone's height, where a harmonic
 // map of the edge goes on with that length), each at a vertex of its own; count x branches^(levels - 1) of

@@ -250,6 +250,42 @@ TEST(LeafletChordsTest, EndsWhereItDidOnTheSameVerticesWithOtherTriangles) {
   EXPECT_EQ(ends[0], ends[1]);
 }
 
+// Of the rest lengths, if the free edge hangs by this height. The funnel's columns are straight.
+double greatest_error_of_coapted_lengths(const Valve& valve, double height) {
+  const LeafletChordOptions options = {.zones = {chord_zone("free_edge"), {"secondary", 0.8, 0.8}},
+                                       .scale = 0.9,
+                                       .depth = 1,
+                                       .lengths = ChordLengths::ToCoapted};
+  double error = 0;
+  for (const Chord& chord : leaflet_chords(valve, options).chords) {
+    Vec3 expected = valve.leaflets.vertices.col(chord.to.index);
+    const double from_edge = (18 + expected.z()) * std::sqrt(6 * 6 + 18 * 18) / 18;
+    expected.z() = -1 - std::max(0.0, height - from_edge);
+    const Vec3 tip = valve.chords.papillary.col(chord.from.index);
+    error = std::max(error, std::abs(chord.rest_length - 0.9 * (tip - expected).norm()));
+  }
+  return error;
+}
+
+TEST(LeafletChordsTest, ExpectsTheFreeEdgeToHangByHalfOfTheAreaThatIsLeftOver) {
+  Valve valve = funnel_with_rims();
+  const double side = std::sin(std::numbers::pi / kColumns),
+               area = surface_area(valve.leaflets.vertices, valve.leaflets.triangles),
+               annulus = 0.5 * kColumns * 15 * 15 * std::sin(2 * std::numbers::pi / kColumns),
+               edge = kColumns * 2 * 9 * side;
+  EXPECT_LT(greatest_error_of_coapted_lengths(valve, 0.5 * (area - annulus) / edge), 1e-10);
+  // A wide closed annulus leaves nothing over.
+  for (const int v : valve.annulus) {
+    valve.annulus_closed.conservativeResize(3, valve.annulus_closed.cols() + 1);
+    valve.annulus_closed.rightCols<1>() = 2 * valve.leaflets.vertices.col(v);
+  }
+  EXPECT_LT(greatest_error_of_coapted_lengths(valve, 0), 1e-10);
+  // Ends stay above the middle of the way to the tips.
+  valve.annulus_closed.resize(3, 0);
+  valve.chords.papillary.row(2).setConstant(-9);
+  EXPECT_LT(greatest_error_of_coapted_lengths(valve, 0.5 * (9 - 1)), 1e-10);
+}
+
 TEST(LeafletChordsTest, RepeatsASeedAndOnlyThat) {
   const Valve valve = funnel_with_rims();
   const auto ends = [&](unsigned seed) {
