@@ -217,12 +217,12 @@ def distances(coapt: str, found: pathlib.Path, truth: pathlib.Path, folder: path
     return [apart[way][figure] for way in ("to_target", "from_target") for figure in ("mean_mm", "p95_mm")]
 
 
-def closure(coapt: str, folder: pathlib.Path, rule: str) -> dict[str, float]:
+def closure(coapt: str, folder: pathlib.Path, rule: list[str]) -> dict[str, float]:
     """The valve that was found, closed, beside the one that was imaged."""
     opened, closed = folder / "phantom/open", folder / "phantom/closed"
     code, _ = command(coapt, "close", str(opened / "image.nrrd"), "--annulus", str(opened / "annulus.mrk.json"), "--annulus-closed",
                       str(closed / "annulus.mrk.json"), "--papillary", str(folder / "tips.mrk.json"), "--dynamic-range", "50",
-                      "--edge", rule, "-o", str(folder / "closed"), may_fail=True)
+                      *rule, "-o", str(folder / "closed"), may_fail=True)
     figures = dict.fromkeys(("closed_to_truth_mean", "closed_to_truth_p95", "closed_from_truth_mean", "closed_from_truth_p95",
                              "orifice_error_mm2"), math.nan)
     if code not in (0, 4):
@@ -269,11 +269,11 @@ def made_phantom(coapt: str, case: Case, seed: int, folder: pathlib.Path) -> Non
             "-o", str(folder / "phantom"))
 
 
-def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str, rule: str) -> dict[str, float]:
+def measure(coapt: str, case: Case, seed: int, folder: pathlib.Path, method: str, rule: list[str]) -> dict[str, float]:
     made_phantom(coapt, case, seed, folder)
     truth, found = folder / "phantom/open", folder / "found"
     _, megabytes = command(coapt, "segment", str(truth / "image.nrrd"), "--annulus", str(truth / "annulus.mrk.json"), "--dynamic-range",
-                           "50", "--method", method, "--edge", rule, "-o", str(found))
+                           "50", "--method", method, *rule, "-o", str(found))
     apart = distances(coapt, found / "leaflets.obj", truth / "surface.obj", folder / "registered")
     code, _ = command(coapt, "import", str(found / "valve.json"), "-o", str(folder / "scene"), may_fail=True)
     dice = [math.nan, math.nan]  # where what was found passes through itself, which is refused
@@ -339,15 +339,16 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--case", action="append", choices=CASES)
     parser.add_argument("--method", default="ridge")
-    parser.add_argument("--edge", default="contrast")
+    parser.add_argument("--edge")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     options = parser.parse_args()
     names = options.case or list(CASES)
+    rule = ["--edge", options.edge] if options.edge else []
     rows: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     for seed in range(options.seeds):
         for name in names:
             with tempfile.TemporaryDirectory() as folder:
-                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder), options.method, options.edge))
+                rows[name].append(measure(options.coapt, CASES[name], seed, pathlib.Path(folder), options.method, rule))
             print(name, seed, {key: round(value, 3) for key, value in rows[name][-1].items()}, file=sys.stderr, flush=True)
     print_table(names, rows)
     kept = [{"case": name, "seed": seed} | row for name in names for seed, row in enumerate(rows[name])]

@@ -137,9 +137,7 @@ void say_tips(const Valve& valve, ChordLengths lengths) {
 void choose_lengths(ChordsArguments& arguments, bool has_tips) {
   if (arguments.lengths.empty())
     arguments.lengths = !has_tips && arguments.options.levels == 1 ? "sum" : "coapted";
-  arguments.options.lengths = arguments.lengths == "sum"     ? ChordLengths::Sum
-                              : arguments.lengths == "plane" ? ChordLengths::ToPlane
-                                                             : ChordLengths::ToCoapted;
+  arguments.options.lengths = chord_lengths(arguments.lengths);
 }
 
 std::string make_chords(ChordsArguments& arguments) {

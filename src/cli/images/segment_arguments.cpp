@@ -81,7 +81,7 @@ SegmentOptions segment_options(const SegmentArguments& arguments) {
   options.finder = template_finder({.shape = template_shape(arguments)});
   options.has_second_route = arguments.has_second_route;
   options.inhibition = value_named(inhibitions(), arguments.inhibition);
-  options.edge = value_named(edge_rules(), arguments.edge);
+  if (!arguments.edge.empty()) options.edge = value_named(edge_rules(), arguments.edge);
   if (!arguments.seeds.empty()) {
     options.seeds = papillary_points(arguments.seeds);
     if (options.seeds->cols() != 2)
@@ -124,13 +124,12 @@ void print_found(const Segmentation& found) {
 }
 
 void add_edge_options(CLI::App& command, SegmentArguments& arguments) {
-  arguments.edge = edge_rules().front().first;
   command
       .add_option("--edge", arguments.edge,
                   "What the free edge of ridge is found by: contrast, with the strength of the sheet, or "
-                  "learnt, a network that knows generated phantoms of ultrasound alone")
-      ->check(CLI::IsMember(edge_rules()))
-      ->capture_default_str();
+                  "learnt, a network that knows generated phantoms of ultrasound alone (default: learnt with "
+                  "--dynamic-range and without --mask, else contrast)")
+      ->check(CLI::IsMember(edge_rules()));
   command.add_option("--edge-length", arguments.edge_length, "Of the mesh")->capture_default_str();
 }
 
@@ -215,7 +214,7 @@ Segmentation find_leaflets(const SegmentArguments& arguments, const Volume& volu
   if (!arguments.shape.empty()) needs_method(SegmentMethod::Template, "--template");
   if (arguments.has_second_route && !arguments.mask.empty())
     throw InputError("--second-route: is of what the image shows, and not of a --mask");
-  const bool is_learnt = value_named(edge_rules(), arguments.edge) == EdgeRule::Learnt;
+  const bool is_learnt = arguments.edge == name_of(edge_rules(), EdgeRule::Learnt);
   if (is_learnt && (!arguments.dynamic_range || !arguments.mask.empty()))
     throw InputError("--edge learnt: is of ultrasound, with --dynamic-range and without a --mask");
   if (is_learnt) needs_method(SegmentMethod::Ridge, "--edge learnt");

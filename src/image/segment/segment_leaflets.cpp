@@ -145,7 +145,8 @@ FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, con
   layer.grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
   layer.fit = fit_layer(layer.grid, ridge, options.smoothing, kFitRounds);
   phases.begin("free edge");
-  layer.edge = free_edge(seen, evidence, layer.grid, options.edge);
+  const EdgeRule rule = options.edge.value_or(can_be_learnt(options) ? EdgeRule::Learnt : EdgeRule::Contrast);
+  layer.edge = free_edge(seen, evidence, layer.grid, rule);
   return layer;
 }
 

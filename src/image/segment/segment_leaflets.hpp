@@ -28,16 +28,17 @@ struct SegmentOptions {
   std::optional<Vec3> ventricle = {};  // a place on the side of the ventricle [mm]; none: where leaflets hang
   std::optional<double> threshold = {};           // of the isosurface, in values; none: Otsu's
   Inhibition inhibition = Inhibition::Intensity;  // of Burlina2010
-  std::optional<Points> seeds = {};    // of its contours: in the atrium, in the ventricle; 3 x 2 [mm]
-  std::optional<Volume> mask = {};     // above 0.5: leaflet; takes the place of what the volume shows
-  double dynamic_range = 0;            // between least and greatest value [dB]; 0: values are linear
-  std::optional<double> blur = {};     // standard deviation across the sheet [mm]; none: found
-  double edge_length = 1.2;            // of the mesh [mm]
-  double smoothing = 1.2;              // below which shapes are taken for noise [mm]
-  EdgeRule edge = EdgeRule::Contrast;  // of Ridge; Learnt needs a dynamic range and no mask
-  LayerFinder finder = {};             // of Template, and of the second route
-  bool has_second_route = false;       // Ridge is compared with Template, or Template with Ridge
-  bool keeps_evidence = false;         // in the result
+  std::optional<Points> seeds = {};  // of its contours: in the atrium, in the ventricle; 3 x 2 [mm]
+  std::optional<Volume> mask = {};   // above 0.5: leaflet; takes the place of what the volume shows
+  double dynamic_range = 0;          // between least and greatest value [dB]; 0: values are linear
+  std::optional<double> blur = {};   // standard deviation across the sheet [mm]; none: found
+  double edge_length = 1.2;          // of the mesh [mm]
+  double smoothing = 1.2;            // below which shapes are taken for noise [mm]
+  // Of Ridge. Learnt needs a dynamic range and no mask; none: Learnt where it can be, else Contrast.
+  std::optional<EdgeRule> edge = {};
+  LayerFinder finder = {};        // of Template, and of the second route
+  bool has_second_route = false;  // Ridge is compared with Template, or Template with Ridge
+  bool keeps_evidence = false;    // in the result
   std::function<void(const std::string& phase)> on_phase = {};
 };
 

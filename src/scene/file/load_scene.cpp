@@ -141,6 +141,7 @@ std::optional<SceneChords> chords_from(const Parameters& scene, bool has_mesh, R
   integer("levels", options.levels);
   integer("branches", options.branches);
   integer("seed", options.seed);
+  options.lengths = chord_lengths(values.has("lengths") ? values.text("lengths") : "coapted");
   options.scale = values.number_or("scale", 1);
   options.depth = values.number_or("depth", 0);
   if (reading.defects.size() == before && !options.level_areas.empty() &&

@@ -235,6 +235,13 @@ std::vector<std::string> chord_zone_names() {
   return names;
 }
 
+ChordLengths chord_lengths(const std::string& name) {
+  if (name == "coapted") return ChordLengths::ToCoapted;
+  if (name == "plane") return ChordLengths::ToPlane;
+  if (name == "sum") return ChordLengths::Sum;
+  throw InputError("chords: lengths \"" + name + "\": expected one of coapted, plane, sum");
+}
+
 ChordNetwork leaflet_chords(const Valve& valve, const LeafletChordOptions& options) {
   std::vector<std::string> defects = option_defects(options);
   if (valve.annulus.size() < 3)

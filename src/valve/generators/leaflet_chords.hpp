@@ -27,6 +27,9 @@ enum class ChordLengths {
   Sum  // the vertex's distance from the plane and that from the tip, of the open valve: of straight chords
 };
 
+// By its name: coapted, plane or sum; throws InputError for any other.
+ChordLengths chord_lengths(const std::string& name);
+
 struct LeafletChordOptions {
   std::vector<ChordZone> zones = {ChordZone{"primary", 1, 0.4}};
   int count = 24;    // chords of each zone that leave the tips, over all tips together
