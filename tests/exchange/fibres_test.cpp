@@ -243,21 +243,29 @@ TEST_F(MitralFibresTest, PassToTheCoarserMeshesOfACascade) {
 TEST_F(MitralFibresTest, ClosesOnChordsMadeByTheScene) {
   const std::vector<std::pair<std::string, std::string>> changes{
       {R"("network": "valve.json")", R"("network": "generated")"}};
-  const Scene generated =
-      scene(625, R"("chords": {"zones": ["free_edge", "rough"], "count": 12, "depth": "8 mm"}, )", changes);
-  const Model model = build(generated);
-  ASSERT_EQ(model.lines.size(), 24u);
-  ASSERT_EQ(model.sets.at("papillary").size(), 8u);
-  RunOptions options;
-  options.writes = false;
-  const RunReport run = coapt::run(generated, scene_solvers(), options);
-  EXPECT_EQ(run.report.result.status, Status::Converged) << run.report.result.message;
-  EXPECT_LE(run.report.result.residual, 1e-8);
-  ASSERT_TRUE(run.report.metrics.orifice_area_percent);
-  EXPECT_LT(*run.report.metrics.orifice_area_percent, 2);
-  ASSERT_TRUE(run.report.metrics.tenting_height_mm);
-  EXPECT_NEAR(*run.report.metrics.tenting_height_mm, 8, 2) << "the depth that was asked for";
-  EXPECT_GT(run.report.fields.line_force.maxCoeff(), 0.05);
+  std::map<std::string, double> heights;  // of coaptation
+  for (const std::string lengths : {R"(, "lengths": "plane")", ""}) {
+    const Scene generated = scene(
+        625, R"("chords": {"zones": ["free_edge", "rough"], "count": 12, "depth": "8 mm")" + lengths + "}, ",
+        changes);
+    const Model model = build(generated);
+    ASSERT_EQ(model.lines.size(), 24u);
+    ASSERT_EQ(model.sets.at("papillary").size(), 8u);
+    RunOptions options;
+    options.writes = false;
+    const RunReport run = coapt::run(generated, scene_solvers(), options);
+    EXPECT_EQ(run.report.result.status, Status::Converged) << run.report.result.message;
+    EXPECT_LE(run.report.result.residual, 1e-8);
+    const Metrics& metrics = run.report.metrics;
+    ASSERT_TRUE(metrics.orifice_area_percent && metrics.tenting_height_mm && metrics.coaptation_height_mm);
+    EXPECT_LT(*metrics.orifice_area_percent, 2);
+    if (!lengths.empty()) {
+      EXPECT_NEAR(*metrics.tenting_height_mm, 8, 2) << "the depth that was asked for";
+    }
+    EXPECT_GT(run.report.fields.line_force.maxCoeff(), 0.05);
+    heights[lengths] = *metrics.coaptation_height_mm;
+  }
+  EXPECT_GT(heights[""], heights.rbegin()->second) << "the free edge hangs";
 }
 
 TEST_F(MitralFibresTest, NamesDefectsOfGeneratedChords) {

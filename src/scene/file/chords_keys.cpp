@@ -44,9 +44,9 @@ KeySpec depth_key() {
           .fallback = "0",
           .min = 0,
           .doc =
-              "How far below the annulus plane the ends are expected in the closed valve: a rest "
-              "length is "
-              "the scale times the distance from the tip to there."};
+              "How far below the annulus plane the ends are expected in the closed valve, free edges "
+              "lower still where `lengths` is coapted: a rest length is the scale times the distance "
+              "from the tip to there."};
 }
 
 }  // namespace
