@@ -1,13 +1,16 @@
 #include "image/segment/layer_mesh.hpp"
 
 #include "core/error.hpp"
-#include "image/segment/round_triangles.hpp"
+#include "image/segment/trim_crossings.hpp"
 #include "image/segment/unfold_rows.hpp"
+#include "mesh/distance/intersections.hpp"
 #include "mesh/distance/triangle_tree.hpp"
 #include "mesh/remesh/coarsen.hpp"
 #include "mesh/remesh/cut_away.hpp"
+#include "mesh/remesh/round_triangles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace coapt {
@@ -16,6 +19,7 @@ namespace {
 constexpr double kCutSnap = 0.3;    // of an edge, within which the cut goes through a vertex
 constexpr double kShortEdge = 0.5;  // of the wanted length
 constexpr int kRoundings = 30;      // of making triangles round
+constexpr int kTrims = 10;          // meshes at most, each cut shorter where the last one crosses itself
 
 // Without the vertices that belong to nothing.
 TriangleMesh compacted(const TriangleMesh& mesh) {
@@ -66,18 +70,9 @@ void place_on_grid(LayerMesh& mesh, const TriangleMesh& whole) {
   }
 }
 
-}  // namespace
-
-LayerMesh layer_mesh(const LayerGrid& found, const Vector& ends, double edge_length) {
-  LayerGrid grid = found;
-  const Eigen::MatrixXd lengths = lengths_along_columns(grid);
-  Vector level(grid.points.cols());
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      level[grid.node(column, row)] = ends[column] - lengths(row, column);
-  unfold_rows(grid, level);
-  const TriangleMesh whole = triangles_of(grid);
-  const TriangleMesh fine = compacted(cut_away(whole, level, kCutSnap).mesh);
+LayerMesh mesh_above(const LayerGrid& grid, const TriangleMesh& whole, const Vector& ends,
+                     double edge_length) {
+  const TriangleMesh fine = compacted(cut_away(whole, length_left(grid, ends), kCutSnap).mesh);
   const double area = surface_area(fine.vertices, fine.triangles);
   const double wanted = area / (0.25 * std::sqrt(3.0) * edge_length * edge_length);
   LayerMesh mesh;
@@ -93,6 +88,47 @@ LayerMesh layer_mesh(const LayerGrid& found, const Vector& ends, double edge_len
   name_rims(mesh, grid);
   place_on_grid(mesh, whole);
   return mesh;
+}
+
+// Ends half an edge shorter where triangles of the mesh cross: in the columns of that which is nearer to the
+// end.
+Vector shortened(const LayerGrid& grid, const LayerMesh& mesh,
+                 const std::vector<std::array<int, 2>>& crossing, const Vector& ends, double edge_length) {
+  const Vector left = at_vertices(mesh, length_left(grid, ends));
+  const Triangles& triangles = mesh.mesh.triangles;
+  Vector wanted = Vector::Constant(grid.columns, kInfinity);
+  for (const auto& [s, t] : crossing) {
+    const bool goes_first = left(triangles.col(s)).sum() < left(triangles.col(t)).sum();
+    for (const int v : triangles.col(goes_first ? s : t))
+      for (const int node : mesh.nodes.col(v)) {
+        const int column = node % grid.columns;
+        wanted[column] = ends[column] - 0.5 * edge_length;
+      }
+  }
+  return wanted;
+}
+
+}  // namespace
+
+LayerMesh layer_mesh(const LayerGrid& found, const Vector& ends, double edge_length) {
+  LayerGrid grid = found;
+  unfold_rows(grid, length_left(grid, ends));
+  const TriangleMesh whole = triangles_of(grid);
+  Vector kept = trim_crossings(grid, ends);
+  LayerMesh best;
+  size_t least = 0;
+  // Sheets that lie close may cross where the triangles are greater.
+  for (int round = 0; round < kTrims; ++round) {
+    LayerMesh mesh = mesh_above(grid, whole, kept, edge_length);
+    const auto crossing = intersecting_pairs(mesh.mesh.vertices, mesh.mesh.triangles);
+    const Vector wanted = shortened(grid, mesh, crossing, kept, edge_length);
+    if (round == 0 || crossing.size() < least) {
+      least = crossing.size();
+      best = std::move(mesh);
+    }
+    if (least == 0 || !lower_ends(grid, ends, wanted, kept)) break;
+  }
+  return best;
 }
 
 Vector at_vertices(const LayerMesh& mesh, const Vector& of_nodes) {

@@ -6,9 +6,9 @@
 #include "image/segment/fit_layer.hpp"
 #include "image/segment/free_edge.hpp"
 #include "image/segment/leaflet_thickness.hpp"
-#include "image/segment/round_triangles.hpp"
 #include "image/segment/track_layer.hpp"
 #include "mesh/distance/intersections.hpp"
+#include "mesh/remesh/round_triangles.hpp"
 
 #include <Eigen/Geometry>
 

@@ -11,17 +11,6 @@ namespace {
 constexpr int kRounds = 200;     // of smoothing at most
 constexpr int kVainRounds = 20;  // without fewer bad triangles, after which the rest is no pleat
 
-TriangleMesh kept_part(const LayerGrid& grid, const Vector& level) {
-  TriangleMesh mesh = triangles_of(grid);
-  Eigen::Index count = 0;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const Eigen::Vector3i corners = mesh.triangles.col(t);
-    if (level(corners).maxCoeff() > 0) mesh.triangles.col(count++) = corners;
-  }
-  mesh.triangles.conservativeResize(3, count);
-  return mesh;
-}
-
 // Triangles that are folded onto a neighbour, or pass through another.
 std::vector<char> bad_triangles(const TriangleMesh& mesh) {
   std::vector<char> is_bad(static_cast<size_t>(mesh.triangle_count()), 0);
@@ -73,6 +62,17 @@ TriangleMesh triangles_of(const LayerGrid& grid) {
       mesh.triangles.col(t++) << a, d, is_short ? c : b;
       mesh.triangles.col(t++) << (is_short ? a : d), c, b;
     }
+  return mesh;
+}
+
+TriangleMesh kept_part(const LayerGrid& grid, const Vector& level) {
+  TriangleMesh mesh = triangles_of(grid);
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Eigen::Vector3i corners = mesh.triangles.col(t);
+    if (level(corners).maxCoeff() > 0) mesh.triangles.col(count++) = corners;
+  }
+  mesh.triangles.conservativeResize(3, count);
   return mesh;
 }
 

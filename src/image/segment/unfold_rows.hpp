@@ -10,6 +10,9 @@ namespace coapt {
 // normals those of the grid.
 TriangleMesh triangles_of(const LayerGrid& grid);
 
+// Those of them that reach above the level line (`level` above 0 at a node).
+TriangleMesh kept_part(const LayerGrid& grid, const Vector& level);
+
 // At the tip of a leaflet columns come together, and some cross: the layer lies in pleats there, narrower
 // than what the image shows. Points at triangles that are folded onto a neighbour or pass through another
 // move towards the middle of their neighbours in the row, in rounds, and with each round that does not help

@@ -2,13 +2,15 @@
 #include "core/closed_path.hpp"
 #include "core/random_source.hpp"
 #include "image/segment/closed_polygon.hpp"
-#include "image/segment/round_triangles.hpp"
+#include "image/segment/layer_mesh.hpp"
 #include "image/segment/sheet_evidence.hpp"
 #include "image/segment/speckle_blur.hpp"
+#include "image/segment/trim_crossings.hpp"
 #include "image/segment/unfold_rows.hpp"
 #include "image/segment/wall_profile.hpp"
 #include "image/support/speckle_phantom.hpp"
 #include "mesh/distance/intersections.hpp"
+#include "mesh/remesh/round_triangles.hpp"
 #include "mesh/shapes.hpp"
 
 #include <Eigen/Geometry>
@@ -45,31 +47,6 @@ TEST(ClosedPath, IsTheCheapestOfAll) {
     }
     EXPECT_NEAR(cost_of(costs, found, 0.2), least, 1e-12);
   }
-}
-
-TEST(CollapseShortEdges, MakesAPointOfTwoThatAllButCoincide) {
-  constexpr int kColumns = 40, kRows = 6;
-  TriangleMesh mesh;
-  mesh.vertices.resize(3, kColumns * kRows);
-  mesh.triangles.resize(3, 2 * kColumns * (kRows - 1));
-  Eigen::Index t = 0;
-  for (int row = 0; row < kRows; ++row)
-    for (int column = 0; column < kColumns; ++column) {
-      const double angle = 2 * std::numbers::pi * column / kColumns;
-      mesh.vertices.col(row * kColumns + column) = Vec3(6 * std::cos(angle), 6 * std::sin(angle), row);
-      if (row + 1 == kRows) continue;
-      const int next = (column + 1) % kColumns, a = row * kColumns + column, b = row * kColumns + next;
-      mesh.triangles.col(t++) << a, b, b + kColumns;
-      mesh.triangles.col(t++) << a, b + kColumns, a + kColumns;
-    }
-  const int moved = 2 * kColumns + 10;
-  mesh.vertices.col(moved) = 0.03 * mesh.vertices.col(moved) + 0.97 * mesh.vertices.col(moved + 1);
-  ASSERT_LT(least_angle(mesh), 3);
-  const Eigen::Index before = mesh.triangles.cols();
-  collapse_short_edges(mesh, 0.5);
-  EXPECT_GT(least_angle(mesh), 15);
-  EXPECT_EQ(mesh.triangles.cols(), before - 2);
-  EXPECT_EQ(boundary_loops(mesh.triangles).size(), 2u);
 }
 
 // A tube whose columns 17 to 23 lie in reverse order from row 4 on.
@@ -116,6 +93,64 @@ TEST(UnfoldRows, LeavesWhatLiesBeyondTheEdge) {
   level.tail(7 * grid.columns).setConstant(-1);  // from row 3 on
   unfold_rows(grid, level);
   EXPECT_EQ(grid.points, given.points);
+}
+
+// Two leaflets, the upper one flatter: beyond the middle each goes on below or above the other, and row 21 of
+// the upper one passes through row 11 of the lower one.
+LayerGrid funnel_that_crosses() {
+  LayerGrid grid{.columns = 80, .rows = 28, .points = Points(3, 80 * 28), .normals = Points(3, 0)};
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double angle = 2 * std::numbers::pi * column / grid.columns, side = std::sin(angle);
+      grid.points.col(grid.node(column, row)) =
+          Vec3(10 * std::cos(angle), side * (8 - 0.5 * row), -0.3 * row * (1.5 - 0.5 * side));
+    }
+  update_normals(grid);
+  return grid;
+}
+
+// Where the upper leaflet is longer than it can be beside the lower one.
+Vector ends_that_cross(const LayerGrid& grid) {
+  const Eigen::MatrixXd lengths = lengths_along_columns(grid);
+  Vector ends(grid.columns);
+  for (int column = 0; column < grid.columns; ++column)
+    ends[column] = lengths(column < grid.columns / 2 ? 25 : 20, column);
+  return ends;
+}
+
+size_t crossing_pairs(const LayerGrid& grid, const Vector& ends) {
+  const TriangleMesh kept = kept_part(grid, length_left(grid, ends));
+  return intersecting_pairs(kept.vertices, kept.triangles).size();
+}
+
+TEST(TrimCrossings, EndsTheShorterRestAndLeavesTheOther) {
+  const LayerGrid grid = funnel_that_crosses();
+  const Eigen::MatrixXd lengths = lengths_along_columns(grid);
+  const Vector given = ends_that_cross(grid);
+  ASSERT_GT(crossing_pairs(grid, given), 0u);
+  const Vector ends = trim_crossings(grid, given);
+  EXPECT_EQ(crossing_pairs(grid, ends), 0u);
+  EXPECT_TRUE((ends.array() <= given.array()).all());
+  EXPECT_TRUE((ends.array() >= given.array() - 6).all());
+  EXPECT_GT(ends[20], lengths(19, 20));  // the middle of the upper leaflet
+  EXPECT_LT(ends[20], lengths(22, 20));
+  for (int column = 50; column <= 70; ++column) EXPECT_EQ(ends[column], given[column]) << column;
+}
+
+TEST(TrimCrossings, LeavesWhatDoesNotCross) {
+  const LayerGrid grid = funnel_that_crosses();
+  Vector ends = ends_that_cross(grid);
+  ends.array() -= 4;
+  ASSERT_EQ(crossing_pairs(grid, ends), 0u);
+  EXPECT_EQ(trim_crossings(grid, ends), ends);
+}
+
+TEST(LayerMesh, DoesNotPassThroughItself) {
+  const LayerGrid grid = funnel_that_crosses();
+  const LayerMesh mesh = layer_mesh(grid, ends_that_cross(grid), 1.5);
+  EXPECT_EQ(intersecting_pairs(mesh.mesh.vertices, mesh.mesh.triangles).size(), 0u);
+  EXPECT_EQ(boundary_loops(mesh.mesh.triangles).size(), 2u);
+  EXPECT_GT(least_angle(mesh.mesh), 15);
 }
 
 TEST(ClosedPolygon, FollowsAWaveAndPassesOverAGap) {
@@ -208,23 +243,6 @@ TEST(SpeckleBlur, IsThatOfThePointSpread) {
   EXPECT_NEAR(middle[0], 0.6 / std::sqrt(2.0), 0.06);  // of power; along y it is the same
   EXPECT_NEAR(middle[1], 0.6 / std::sqrt(2.0), 0.06);
   EXPECT_FALSE(speckle_blur(volume, grid, std::vector<char>(41 * 41, 0), scale));
-}
-
-TEST(RoundTriangles, MakesAnglesLargerOnTheSameSurface) {
-  TriangleMesh mesh = disc(10, 600);
-  const TriangleMesh surface = mesh;
-  RandomSource random(1);
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (mesh.vertices.col(v).norm() < 9.5)
-      for (int axis : {0, 1}) mesh.vertices(axis, v) += 0.35 * random.between(-1, 1);
-  const double before = least_angle(mesh);
-  round_triangles(mesh, surface, 20);
-  EXPECT_LT(before, 20);
-  EXPECT_GT(least_angle(mesh), 28);
-  EXPECT_LT(mesh.vertices.row(2).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(boundary_loops(mesh.triangles).size(), 1u);
-  EXPECT_NEAR(surface_area(mesh.vertices, mesh.triangles), surface_area(surface.vertices, surface.triangles),
-              3);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "image/segment/round_triangles.hpp"
+#include "mesh/remesh/round_triangles.hpp"
 
 #include "mesh/distance/triangle_tree.hpp"
 
@@ -233,14 +233,20 @@ bool collapse(TriangleMesh& mesh, const Corners& corners, const Edge& edge) {
   return true;
 }
 
-// Those that have two edges on a rim, a third inside, and a small angle.
-std::vector<char> rim_slivers(const TriangleMesh& mesh, const std::vector<Edge>& all) {
+double longest_edge(const TriangleMesh& mesh, int t) {
+  const Eigen::Matrix3d x = mesh.vertices(Eigen::all, mesh.triangles.col(t));
+  return std::max({(x.col(0) - x.col(1)).norm(), (x.col(1) - x.col(2)).norm(), (x.col(2) - x.col(0)).norm()});
+}
+
+// Those that have two edges on a rim, a third inside, and a small angle or no long edge.
+std::vector<char> rim_slivers(const TriangleMesh& mesh, const std::vector<Edge>& all, double shortest) {
   std::vector<int> rims(static_cast<size_t>(mesh.triangle_count()), 0);
   for (const Edge& edge : all)
     if (edge.triangles.size() == 1) ++rims[static_cast<size_t>(edge.triangles[0])];
   std::vector<char> is_sliver(rims.size());
   for (size_t t = 0; t < rims.size(); ++t)
-    is_sliver[t] = rims[t] == 2 && least_around(mesh, {static_cast<int>(t)}) < kCutAngle;
+    is_sliver[t] = rims[t] == 2 && (least_around(mesh, {static_cast<int>(t)}) < kCutAngle ||
+                                    longest_edge(mesh, static_cast<int>(t)) < shortest);
   return is_sliver;
 }
 
@@ -286,7 +292,7 @@ int collapse_once(TriangleMesh& mesh, double shortest) {
 void collapse_short_edges(TriangleMesh& mesh, double shortest) {
   for (int round = 0; round < kCollapses; ++round) {
     const int collapsed = collapse_once(mesh, shortest);
-    const std::vector<char> slivers = rim_slivers(mesh, edges(mesh.triangles));
+    const std::vector<char> slivers = rim_slivers(mesh, edges(mesh.triangles), shortest);
     keep_triangles(mesh, slivers);
     if (collapsed == 0 && std::count(slivers.begin(), slivers.end(), 1) == 0) break;
   }

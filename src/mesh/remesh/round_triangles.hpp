@@ -12,10 +12,10 @@ namespace coapt {
 // and its rims follow those of `surface` in any order.
 void round_triangles(TriangleMesh& mesh, const TriangleMesh& surface, int rounds);
 
-// Edges shorter than this [mm] become points, and triangles with two edges on a rim are cut off, where the
-// least of the angles around grows by it. Where a layer bends sharply its columns crowd, and the edges
-// between them are no longer found by coarsening. Manifold, orientation and number of rims are kept. Vertices
-// that belong to nothing remain.
+// Edges shorter than this [mm] become points, where the least of the angles around grows by it, and triangles
+// with two edges on a rim are cut off that have an angle below 20 degrees or no edge that is longer. Where a
+// layer bends sharply its columns crowd, and the edges between them are no longer found by coarsening.
+// Manifold, orientation and number of rims are kept. Vertices that belong to nothing remain.
 void collapse_short_edges(TriangleMesh& mesh, double shortest);
 
 // The least angle of all triangles [degrees].
