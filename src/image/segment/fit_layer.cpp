@@ -57,6 +57,12 @@ Measured measure(const LayerGrid& grid, const SheetEvidence& evidence) {
   return measured;
 }
 
+// In the place of the ridge, where they are told.
+void take(const Vector& places, Measured& measured) {
+  for (Eigen::Index node = 0; node < places.size(); ++node)
+    if (std::isfinite(places[node])) measured.offsets[node] = places[node];
+}
+
 // The curvature at a node as a linear function of how far the nodes go along their normals: sum of the
 // coefficients times these, plus `now`.
 struct CurvatureRow {
@@ -164,19 +170,21 @@ Vector sampled_variances(const Eigen::SimplicialLLT<Sparse>& factor, Eigen::Inde
 
 }  // namespace
 
-LayerFit fit_layer(LayerGrid& grid, const SheetEvidence& evidence, double smoothing, int rounds) {
+LayerFit fit_layer(LayerGrid& grid, const Points& annulus, const SheetEvidence& evidence, double smoothing,
+                   int rounds, const PlacesAcross& places) {
   LayerFit fit;
   Eigen::SimplicialLLT<Sparse> factor;
   Vector moved = Vector::Zero(grid.points.cols());
-  const Points given = grid.points.leftCols(grid.columns);
   for (int round = 0; round < rounds; ++round) {
     Measured measured = measure(grid, evidence);
     fit.evidence = measured.weights.cwiseSqrt();
+    if (places) take(places(grid), measured);
+    fit.measured = grid.points + grid.normals * measured.offsets.asDiagonal();
     lower_outliers(measured, measured.offsets);
     PlateSystem system = plate_system(grid, smoothing);
     const Vector areas = node_areas(grid);
     for (int column = 0; column < grid.columns; ++column) {
-      const Vec3 back = given.col(column) - grid.points.col(column);
+      const Vec3 back = annulus.col(column) - grid.points.col(column);
       measured.offsets[column] = back.dot(grid.normals.col(column));
       measured.weights[column] = 1 / (kAnnulusNoise * kAnnulusNoise);
     }

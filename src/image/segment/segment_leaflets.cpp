@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "image/segment/annulus_region.hpp"
+#include "image/segment/centre_layer.hpp"
 #include "image/segment/fit_layer.hpp"
 #include "image/segment/free_edge.hpp"
 #include "image/segment/leaflet_thickness.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double kColumnStep = 0.75;   // along the annulus [mm]
 constexpr double kLeastRowStep = 0.5;  // and at least a voxel [mm]
-constexpr int kFitRounds = 4;          // of measuring and fitting the layer
+constexpr int kFitRounds = 4;          // of measuring and fitting the layer by its ridge
 constexpr double kShown = 0.3;         // evidence from which a place counts as shown
 // What phantoms show beyond the noise of the fit: standard deviation of a place, in voxels.
 constexpr double kPlaceNoise = 0.15;
@@ -139,14 +140,22 @@ Volume looked_at(const Volume& volume, const SegmentOptions& options, const Annu
 }
 
 // Row by row from the annulus.
-FoundLayer followed_layer(const Volume& seen, const SheetEvidence& evidence, const SheetEvidence& ridge,
-                          const SegmentOptions& options, const TrackOptions& track, Phases& phases) {
+FoundLayer followed_layer(const Volume& seen, const GreyScale& scale, const SheetEvidence& evidence,
+                          const SheetEvidence& ridge, const SegmentOptions& options,
+                          const TrackOptions& track, Phases& phases) {
   FoundLayer layer;
-  layer.grid = track_layer(ridge, annulus_ring(options.annulus, track.ventricle, kColumnStep), track);
-  layer.fit = fit_layer(layer.grid, ridge, options.smoothing, kFitRounds);
+  const Points ring = annulus_ring(options.annulus, track.ventricle, kColumnStep);
+  layer.grid = track_layer(ridge, ring, track);
+  layer.fit = fit_layer(layer.grid, ring, ridge, options.smoothing, kFitRounds);
   phases.begin("free edge");
   const EdgeRule rule = options.edge.value_or(can_be_learnt(options) ? EdgeRule::Learnt : EdgeRule::Contrast);
   layer.edge = free_edge(seen, evidence, layer.grid, rule);
+  phases.begin("middle of the layer");
+  const LayerGrid by_ridge = layer.grid;
+  layer.fit =
+      centre_layer(layer.grid, layer.fit, layer.edge.lengths, ring, ridge, seen, scale, options.smoothing);
+  layer.edge.lengths = carried_along(layer.edge.lengths, by_ridge, layer.grid);
+  if (layer.edge.clear.size() > 0) layer.edge.clear = carried_along(layer.edge.clear, by_ridge, layer.grid);
   return layer;
 }
 
@@ -279,6 +288,7 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
                      .greatest_length = kGreatestShare * plane.diameter};
   const Volume seen = looked_at(part, options, plane, track, threshold, result);
+  const GreyScale scale_of_seen = options.mask || !is_route(options.method) ? GreyScale{} : scale;
   const std::vector<double> scales = sheet_scales(part);
   SheetEvidence evidence = sheet_evidence(seen, scales);
   // Greater scales see a leaflet and the chords beside it as one sheet.
@@ -289,7 +299,9 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   const auto fitted = [&] {
     return options.finder({seen, evidence, ridge, options.annulus, track.ventricle, options.smoothing});
   };
-  const auto followed = [&] { return followed_layer(seen, evidence, ridge, options, track, phases); };
+  const auto followed = [&] {
+    return followed_layer(seen, scale_of_seen, evidence, ridge, options, track, phases);
+  };
   const bool is_fitted = options.method == SegmentMethod::Template;
   const FoundLayer layer = is_fitted ? fitted() : followed();
   const LayerGrid& grid = layer.grid;

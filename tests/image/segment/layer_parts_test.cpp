@@ -1,6 +1,7 @@
 // The parts of which a segmentation is made, each on something whose answer is known.
 #include "core/closed_path.hpp"
 #include "core/random_source.hpp"
+#include "image/segment/centre_layer.hpp"
 #include "image/segment/closed_polygon.hpp"
 #include "image/segment/layer_mesh.hpp"
 #include "image/segment/sheet_evidence.hpp"
@@ -207,6 +208,51 @@ TEST(SheetEvidence, SeesASheetAndItsNormalButNoTube) {
   EXPECT_LT(sheet_strength(evidence, 2.5 * normal, normal), 0.1 * on_sheet);
 }
 
+// A plane grid at this height, 0.5 mm from point to point, from (2, 2) to (22, 22).
+LayerGrid flat_grid(double height) {
+  LayerGrid grid{.columns = 41, .rows = 41, .points = Points(3, 41 * 41), .normals = Points(3, 0)};
+  grid.normals = Vec3::UnitZ().replicate(1, 41 * 41);
+  for (int row = 0; row < 41; ++row)
+    for (int column = 0; column < 41; ++column)
+      grid.points.col(grid.node(column, row)) = Vec3(2 + 0.5 * column, 2 + 0.5 * row, height);
+  return grid;
+}
+
+TEST(SheetMiddles, LieBetweenTheSidesOfASheetThatIsWiderThanItsSpeckle) {
+  const Volume volume =
+      testing::speckle_volume(square(24, 800), {.voxel = 0.5, .thickness = 1.6, .spread = 0.6});
+  const GreyScale scale{testing::kPhantomRange / 255};
+  for (const double height : {-0.4, 0.0, 0.4}) {
+    const Vector middles = sheet_middles(volume, flat_grid(height), scale);
+    double sum = 0, squares = 0, count = 0;
+    for (const double middle : middles)
+      if (std::isfinite(middle)) sum += middle, squares += std::pow(middle + height, 2), ++count;
+    EXPECT_GT(count, 0.9 * 41 * 41);
+    EXPECT_NEAR(sum / count, -height, 0.05) << height;
+    EXPECT_LT(std::sqrt(squares / count), 0.25) << height;
+  }
+}
+
+TEST(SheetMiddles, AreNotToldBesideAWall) {
+  const auto sheet = [](double z) { return 100 * std::exp(-0.5 * z * z / 0.25); };
+  const Volume alone = volume_of(24, 0.5, [&](const Vec3& x) { return sheet(x.z()); });
+  const Volume beside =
+      volume_of(24, 0.5, [&](const Vec3& x) { return std::max(sheet(x.z()), x.z() > 1 ? 90.0 : 0.0); });
+  LayerGrid grid = flat_grid(0.3);
+  grid.points.topRows(2).array() -= 12;
+  const Eigen::Index inside = grid.node(20, 20);
+  EXPECT_NEAR(sheet_middles(alone, grid, {})[inside], -0.3, 0.03);
+  EXPECT_TRUE(std::isnan(sheet_middles(beside, grid, {})[inside]));
+}
+
+TEST(CarriedAlong, IsTheSamePlaceOnAColumnThatGrew) {
+  const LayerGrid before = flat_grid(0);
+  LayerGrid now = before;
+  now.points.row(1) *= 2;
+  const Vector lengths = Vector::LinSpaced(41, 0.1, 19.9);
+  EXPECT_LT((carried_along(lengths, before, now) - 2 * lengths).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(WallFit, FindsTheWidthThatMadeTheProfile) {
   for (const GreyScale scale : {GreyScale{}, GreyScale{0.2}})
     for (const double width : {0.8, 1.5}) {
@@ -229,14 +275,7 @@ TEST(SpeckleBlur, IsThatOfThePointSpread) {
   const testing::PhantomOptions phantom{.voxel = 0.5, .thickness = 1.5, .spread = 0.6};
   const Volume volume = testing::speckle_volume(sheet, phantom);
   const GreyScale scale{testing::kPhantomRange / 255};
-  LayerGrid grid;
-  grid.columns = 41;
-  grid.rows = 41;
-  grid.points.resize(3, 41 * 41);
-  grid.normals = Vec3::UnitZ().replicate(1, 41 * 41);
-  for (int row = 0; row < 41; ++row)
-    for (int column = 0; column < 41; ++column)
-      grid.points.col(grid.node(column, row)) = Vec3(2 + 0.5 * column, 2 + 0.5 * row, 0);
+  const LayerGrid grid = flat_grid(0);
   const std::optional<SpeckleBlur> blur = speckle_blur(volume, grid, std::vector<char>(41 * 41, 1), scale);
   ASSERT_TRUE(blur);
   const Vec3 middle = blur->at(Vec3(12, 12, 0));
