@@ -73,8 +73,9 @@ void unroll(const std::filesystem::path& folder, const std::filesystem::path& ou
   TrackOptions track{.step = std::max(0.5, volume.spacing.maxCoeff()),
                      .greatest_length = kGreatestShare * plane.diameter};
   track.ventricle = to_ventricle(evidence, annulus, plane.normal, track);
-  LayerGrid grid = track_layer(ridge, annulus_ring(annulus, track.ventricle, kColumns), track);
-  fit_layer(grid, ridge, kSmoothing, 4);
+  const Points ring = annulus_ring(annulus, track.ventricle, kColumns);
+  LayerGrid grid = track_layer(ridge, ring, track);
+  fit_layer(grid, ring, ridge, kSmoothing, 4);
 
   const Eigen::MatrixXf channels = layer_channels(volume, evidence, grid);
   const Eigen::MatrixXd lengths = lengths_along_columns(grid);
