@@ -211,7 +211,8 @@ def tips(path: pathlib.Path, points: list[Point]) -> None:
 def distances(coapt: str, found: pathlib.Path, truth: pathlib.Path, folder: pathlib.Path) -> list[float]:
     """Mean and 95th percentile from found to truth, and back [mm]."""
     code, _ = command(coapt, "register", str(found), str(truth), "--method", "surface", "-o", str(folder), may_fail=True)
-    if code != 0:  # they hardly overlap
+    if code != 0:
+        print(f"{found}: not registered onto {truth}; no distances", file=sys.stderr)
         return [math.nan] * 4
     apart = json.loads((folder / "registration.json").read_text())["distances_before"]
     return [apart[way][figure] for way in ("to_target", "from_target") for figure in ("mean_mm", "p95_mm")]

@@ -80,6 +80,15 @@ SearchResult best_start(const SearchedSurface& sought, const SearchedSurface& on
   return best;
 }
 
+// Point to plane alone, the most accurate. Where one surface reaches far beyond the other the pairs can become
+// fewer and fewer as it slides away: then with a share of point to point, which holds it.
+SearchResult with_all_points(const SearchedSurface& sought, const SearchedSurface& on,
+                             const RigidMotion& start, const RegistrationOptions& options) {
+  const SearchResult found = search(sought, on, start, {0, kMostIterations, 0, true, options});
+  if (found.overlap >= kLeastOverlap) return found;
+  return search(sought, on, start, {0, kMostIterations, kPointShare, true, options});
+}
+
 struct TwoWays {
   SearchResult best;
   bool from_target = false;
@@ -138,7 +147,7 @@ Registration register_surfaces(const TriangleMesh& moving, const TriangleMesh& t
   refuse_other_size(a.size / b.size);
   const TwoWays start = best_of_both_ways(a, b, options);
   const SearchedSurface &sought = start.from_target ? b : a, &on = start.from_target ? a : b;
-  const SearchResult found = search(sought, on, start.best.motion, {0, kMostIterations, 0, true, options});
+  const SearchResult found = with_all_points(sought, on, start.best.motion, options);
   if (is_poor(found, on) && fits_better_mirrored(moving, b, start, options))
     throw InputError(
         "is a mirror image of the other surface: mirrored it would fit; turn one axis of one file. Nothing "
