@@ -80,8 +80,8 @@ SearchResult best_start(const SearchedSurface& sought, const SearchedSurface& on
   return best;
 }
 
-// Point to plane alone, the most accurate. Where one surface reaches far beyond the other the pairs can become
-// fewer and fewer as it slides away: then with a share of point to point, which holds it.
+// Point to plane alone, the most accurate. Where one surface reaches far beyond the other the pairs can
+// become fewer and fewer as it slides away: then with a share of point to point, which holds it.
 SearchResult with_all_points(const SearchedSurface& sought, const SearchedSurface& on,
                              const RigidMotion& start, const RegistrationOptions& options) {
   const SearchResult found = search(sought, on, start, {0, kMostIterations, 0, true, options});
