@@ -67,17 +67,17 @@ LayerFit centre_layer(LayerGrid& grid, const LayerFit& by_ridge, const Vector& e
   return fit;
 }
 
-Vector carried_along(const Vector& lengths, const LayerGrid& before, const LayerGrid& now) {
+Vector lengths_at_same_places(const Vector& lengths, const LayerGrid& before, const LayerGrid& now) {
   const Eigen::MatrixXd from = lengths_along_columns(before), to = lengths_along_columns(now);
-  Vector carried(lengths.size());
+  Vector after(lengths.size());
   for (Eigen::Index column = 0; column < lengths.size(); ++column) {
     Eigen::Index row = 1;
     while (row + 1 < from.rows() && from(row, column) < lengths[column]) ++row;
     const double step = std::max(from(row, column) - from(row - 1, column), 1e-9);
     const double part = std::clamp((lengths[column] - from(row - 1, column)) / step, 0.0, 1.0);
-    carried[column] = (1 - part) * to(row - 1, column) + part * to(row, column);
+    after[column] = (1 - part) * to(row - 1, column) + part * to(row, column);
   }
-  return carried;
+  return after;
 }
 
 }  // namespace coapt

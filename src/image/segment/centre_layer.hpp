@@ -22,6 +22,6 @@ LayerFit centre_layer(LayerGrid& grid, const LayerFit& by_ridge, const Vector& e
                       double smoothing);
 
 // Lengths along columns whose points have moved, at the places that had these lengths before [mm].
-Vector carried_along(const Vector& lengths, const LayerGrid& before, const LayerGrid& now);
+Vector lengths_at_same_places(const Vector& lengths, const LayerGrid& before, const LayerGrid& now);
 
 }  // namespace coapt

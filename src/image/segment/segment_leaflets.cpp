@@ -154,8 +154,9 @@ FoundLayer followed_layer(const Volume& seen, const GreyScale& scale, const Shee
   const LayerGrid by_ridge = layer.grid;
   layer.fit =
       centre_layer(layer.grid, layer.fit, layer.edge.lengths, ring, ridge, seen, scale, options.smoothing);
-  layer.edge.lengths = carried_along(layer.edge.lengths, by_ridge, layer.grid);
-  if (layer.edge.clear.size() > 0) layer.edge.clear = carried_along(layer.edge.clear, by_ridge, layer.grid);
+  layer.edge.lengths = lengths_at_same_places(layer.edge.lengths, by_ridge, layer.grid);
+  if (layer.edge.clear.size() > 0)
+    layer.edge.clear = lengths_at_same_places(layer.edge.clear, by_ridge, layer.grid);
   return layer;
 }
 
@@ -288,11 +289,12 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
   TrackOptions track{.step = std::max(kLeastRowStep, part.spacing.maxCoeff()),
                      .greatest_length = kGreatestShare * plane.diameter};
   const Volume seen = looked_at(part, options, plane, track, threshold, result);
-  const GreyScale scale_of_seen = options.mask || !is_route(options.method) ? GreyScale{} : scale;
+  const bool is_image = !options.mask && is_route(options.method);
+  const GreyScale scale_of_seen = is_image ? scale : GreyScale{};
   const std::vector<double> scales = sheet_scales(part);
-  SheetEvidence evidence = sheet_evidence(seen, scales);
+  SheetEvidence evidence = sheet_evidence(seen, scales, is_image);
   // Greater scales see a leaflet and the chords beside it as one sheet.
-  const SheetEvidence ridge = sheet_evidence(seen, {scales.front()});
+  const SheetEvidence ridge = sheet_evidence(seen, {scales.front()}, is_image);
 
   phases.begin("layer from the annulus");
   track.ventricle = side_of_ventricle(evidence, options, plane, track);

@@ -133,10 +133,11 @@ std::vector<double> sheet_scales(const Volume& volume) {
   return scales;
 }
 
-SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& scales) {
+SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& scales, bool has_speckle) {
   SheetEvidence evidence{volume_like(volume, 0),
                          std::vector<Eigen::Vector3f>(volume.values.size(), Eigen::Vector3f::Zero())};
-  const FloatImage::Pointer image = without_speckle(as_image(volume));
+  FloatImage::Pointer image = as_image(volume);
+  if (has_speckle) image = without_speckle(image);
   for (const double scale : scales) add_scale(evidence, image, scale);
   normalise(evidence);
   const Eigen::Matrix3f direction = volume.direction.cast<float>();

@@ -18,14 +18,16 @@ Volume without_speckle(const Volume& volume);
 // Those at which leaflets are looked for: 0.7, 1 and 1.4 mm, as far as they are at least 0.8 voxels [mm].
 std::vector<double> sheet_scales(const Volume& volume);
 
-// Speckle is reduced by a median over 3 x 3 x 3 voxels. At each scale the eigenvalues of the Hessian of the
+// Speckle, if there is any, is reduced by a median over 3 x 3 x 3 voxels; of a mask that would take sheets
+// away that are thinner than two voxels. At each scale the eigenvalues of the Hessian of the
 // Gaussian-smoothed volume, |l1| <= |l2| <= |l3|, say how much brighter than its sides a sheet is: the
 // strength is scale^2 (|l3| - |l2|) where l3 < 0, so that tubes and blobs have none (after Sato et al. 2000,
 // Tissue classification based on 3D local intensity structures); the greatest of all scales counts. What
 // Otsu's threshold takes for sheet is kept where it hangs together: parts smaller than a twentieth of the
 // greatest are speckle. Scales are standard deviations [mm]. Throws InputError where the volume is the same
 // everywhere.
-SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& scales);
+SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& scales,
+                             bool has_speckle = true);
 
 // The strength at a position [mm] as far as the sheet there faces along `normal` (unit, of either sign):
 // times the squared cosine of the angle between them. 0 outside of the volume.

@@ -245,12 +245,12 @@ TEST(SheetMiddles, AreNotToldBesideAWall) {
   EXPECT_TRUE(std::isnan(sheet_middles(beside, grid, {})[inside]));
 }
 
-TEST(CarriedAlong, IsTheSamePlaceOnAColumnThatGrew) {
+TEST(LengthsAtSamePlaces, GrowWithTheColumn) {
   const LayerGrid before = flat_grid(0);
   LayerGrid now = before;
   now.points.row(1) *= 2;
   const Vector lengths = Vector::LinSpaced(41, 0.1, 19.9);
-  EXPECT_LT((carried_along(lengths, before, now) - 2 * lengths).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((lengths_at_same_places(lengths, before, now) - 2 * lengths).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(WallFit, FindsTheWidthThatMadeTheProfile) {

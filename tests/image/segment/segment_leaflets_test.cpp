@@ -217,6 +217,26 @@ TEST(SegmentLeaflets, TakesAMaskInThePlaceOfTheImage) {
   EXPECT_THROW(segment_leaflets(nothing, options), InputError);
 }
 
+TEST(SegmentLeaflets, FollowsAMaskThatIsThinnerThanTwoVoxels) {
+  const TriangleMesh& leaflets = truth().leaflets;
+  Volume mask = testing::plain_volume(leaflets, {.voxel = 0.7});
+  const TriangleTree tree(leaflets.vertices, leaflets.triangles);
+  for (int k = 0; k < mask.size[2]; ++k)
+    for (int j = 0; j < mask.size[1]; ++j)
+      for (int i = 0; i < mask.size[0]; ++i)
+        mask.values[mask.voxel(i, j, k)] =
+            tree.closest(position_of(mask, Vec3(i, j, k))).distance_squared < 0.25 ? 1.0F : 0.0F;
+  SegmentOptions options = speckle_options(truth());
+  options.dynamic_range = 0;
+  options.mask = mask;
+  const Segmentation found = segment_leaflets(mask, options);
+  expect_sound(found);
+  const Errors errors = errors_of(found, truth());
+  EXPECT_LT(errors.there.mean, 0.15);
+  EXPECT_LT(errors.back.mean, 0.15);
+  EXPECT_NEAR(errors.area, 0, 0.05);
+}
+
 TEST(SegmentLeaflets, RefusesWhatCannotBe) {
   const Volume volume = testing::plain_volume(truth().leaflets, {.voxel = 1.5});
   SegmentOptions options = speckle_options(truth());
