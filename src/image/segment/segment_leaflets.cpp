@@ -305,10 +305,7 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
     return followed_layer(seen, scale_of_seen, evidence, ridge, options, track, phases);
   };
   const bool is_fitted = options.method == SegmentMethod::Template;
-  const FoundLayer layer = is_fitted ? fitted() : followed();
-  const LayerGrid& grid = layer.grid;
-  const LayerFit& fit = layer.fit;
-  const FreeEdge& edge = layer.edge;
+  const auto [grid, fit, edge] = is_fitted ? fitted() : followed();
   const bool has_clear_part = edge.clear.size() > 0;
   const std::vector<char> is_seen = seen_points(grid, fit, has_clear_part ? edge.clear : edge.lengths);
   const Vector blur = blur_across(part, grid, is_seen, options.blur, scale);
