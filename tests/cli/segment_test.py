@@ -213,12 +213,16 @@ class SegmentAnImage(CommandCase):
         self.assertEqual(json.loads((out / "info.json").read_text())["voxel_kind"], "uint8")
         self.assertEqual((out / "slices.png").read_bytes()[1:4], b"PNG")
         self.assertEqual((out / "sheets.png").read_bytes()[1:4], b"PNG")
+        page = (out / "page.html").read_text()
+        self.assertEqual(page.count("data:image/png;base64,"), 2)
+        self.assertIn("no annulus was given", page)
         shutil.rmtree(out)
         run = self.check(self.image, self.ring, "--", "--dynamic-range", 50)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertTrue((out / "leaflets/valve.json").exists())
         self.assertIn("thickness", (out / "report.txt").read_text())
         self.assertEqual((out / "leaflets.png").read_bytes()[1:4], b"PNG")
+        self.assertEqual((out / "page.html").read_text().count("data:image/png;base64,"), 3)
         self.assertNotEqual(self.check(self.folder / "none.nrrd").returncode, 0)
 
 
