@@ -84,7 +84,7 @@ SearchResult best_start(const SearchedSurface& sought, const SearchedSurface& on
 // become fewer and fewer as it slides away: then with a share of point to point, which holds it.
 SearchResult with_all_points(const SearchedSurface& sought, const SearchedSurface& on,
                              const RigidMotion& start, const RegistrationOptions& options) {
-  const SearchResult found = search(sought, on, start, {0, kMostIterations, 0, true, options});
+  SearchResult found = search(sought, on, start, {0, kMostIterations, 0, true, options});
   if (found.overlap >= kLeastOverlap) return found;
   return search(sought, on, start, {0, kMostIterations, kPointShare, true, options});
 }
