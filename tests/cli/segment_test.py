@@ -201,6 +201,12 @@ class SegmentAnImage(CommandCase):
         self.assertNotIn(sheets.read_bytes(), (plain.read_bytes(), drawn.read_bytes()))
         self.assert_bad_input(coapt("image", "slices", self.image, "-o", self.folder / "a.jpg"), "a.jpg", ".png")
 
+    def test_ultrasound_without_its_dynamic_range_is_warned_of(self):
+        run = coapt("segment", self.image, "--annulus", self.ring, "-o", self.folder / "linear")
+        self.assertIn("--dynamic-range", run.stdout)
+        run = coapt("segment", self.image, "--annulus", self.ring, "--dynamic-range", 50, "-o", self.folder / "decibels")
+        self.assertNotIn("--dynamic-range", run.stdout)
+
     def check(self, *arguments):
         return subprocess.run([SCRIPT, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=600, check=False,
                               env={**os.environ, "COAPT": COAPT})

@@ -238,6 +238,18 @@ void add_warnings(Segmentation& result) {
     result.warnings.push_back("no thickness could be fitted; the valve states none");
 }
 
+// Eight bits are what ultrasound is kept in, its logarithm; CT and MR have more.
+void warn_of_scale(const Volume& volume, const GreyScale& scale, Segmentation& result) {
+  if (scale.is_logarithmic()) return;
+  const bool has_eight_bits = std::all_of(volume.values.begin(), volume.values.end(), [](float value) {
+    return value >= 0 && value <= 255 && value == std::floor(value);
+  });
+  if (has_eight_bits && *std::max_element(volume.values.begin(), volume.values.end()) > 100)
+    result.warnings.push_back(
+        "the image has whole values up to 255, as ultrasound has, and they were taken as linear: give the "
+        "dynamic range (--dynamic-range 50, say) if they are decibels, or leaflets are found too thick");
+}
+
 // The deviation of each vertex along its normal.
 Vector deviation_at(const LayerMesh& mesh, const LayerFit& fit, double voxel) {
   const double common = kPlaceNoise * voxel;
@@ -327,6 +339,7 @@ Segmentation segment_leaflets(const Volume& volume, const SegmentOptions& option
     compare_routes(result, is_fitted ? followed() : fitted(), options.edge_length, part.spacing.maxCoeff());
   }
   if (options.keeps_evidence) result.strength = std::move(evidence.strength);
+  warn_of_scale(volume, scale, result);
   add_warnings(result);
   result.cpu_seconds = cpu_seconds() - cpu_start;
   return result;
