@@ -73,6 +73,21 @@ Points matched_by_length(const Points& x, const Points& curve) {
   return points_of(best, curve, s, loop);
 }
 
+Vec3 closest_on_curve(const Points& curve, const Vec3& x) {
+  Vec3 best = curve.col(0);
+  double least = kInfinity;
+  for (Eigen::Index k = 0; k < curve.cols(); ++k) {
+    const Vec3 a = curve.col(k), along = curve.col((k + 1) % curve.cols()) - a;
+    const double part =
+        along.squaredNorm() > 0 ? std::clamp((x - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+    const Vec3 place = a + part * along;
+    if ((place - x).squaredNorm() >= least) continue;
+    least = (place - x).squaredNorm();
+    best = place;
+  }
+  return best;
+}
+
 double mean_distance(const Points& x, const Points& curve) {
   double sum = 0;
   for (int k = 0; k < x.cols(); ++k) {

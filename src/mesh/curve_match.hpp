@@ -16,6 +16,9 @@ Points smooth_closed_curve(const Points& points, int count);
 // both have at least three points and a length.
 Points matched_by_length(const Points& x, const Points& curve);
 
+// The point of the closed polygon that is nearest to x [length].
+Vec3 closest_on_curve(const Points& curve, const Vec3& x);
+
 // Mean distance of the points x from the closed polygon [length].
 double mean_distance(const Points& x, const Points& curve);
 

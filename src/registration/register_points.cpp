@@ -1,6 +1,7 @@
 #include "registration/register_points.hpp"
 
 #include "core/error.hpp"
+#include "mesh/curve_match.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,20 +53,6 @@ std::vector<double> shares_of(const Points& curve) {
   const double length = shares.back() + (curve.col(0) - curve.col(curve.cols() - 1)).norm();
   for (double& share : shares) share /= length;
   return shares;
-}
-
-Vec3 closest_on_curve(const Points& curve, const Vec3& p) {
-  Vec3 best = curve.col(0);
-  double least = kInfinity;
-  for (Eigen::Index k = 0; k < curve.cols(); ++k) {
-    const Vec3 a = curve.col(k), ab = curve.col((k + 1) % curve.cols()) - a;
-    const double t = ab.squaredNorm() > 0 ? std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0;
-    const Vec3 q = a + t * ab;
-    if ((p - q).squaredNorm() >= least) continue;
-    least = (p - q).squaredNorm();
-    best = q;
-  }
-  return best;
 }
 
 struct LoopMatch {

@@ -16,8 +16,8 @@ Vector length_left(const LayerGrid& grid, const Vector& ends);
 // than 3 : 1. Returns the ends [mm].
 Vector trim_crossings(const LayerGrid& grid, const Vector& ends);
 
-// Ends lowered to at most `wanted` [mm], one for each column (infinity: as it is), and those of their
-// neighbours likewise, but none by more than 6 mm below what was `given`. Whether any came down.
+// Ends lowered to at most `wanted` [mm], one for each column (infinity: as it is), but not by more than 6 mm
+// below what was `given`, and those of their neighbours as far as the slope needs. Whether any came down.
 bool lower_ends(const LayerGrid& grid, const Vector& given, const Vector& wanted, Vector& ends);
 
 }  // namespace coapt

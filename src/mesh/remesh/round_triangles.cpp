@@ -1,5 +1,6 @@
 #include "mesh/remesh/round_triangles.hpp"
 
+#include "mesh/curve_match.hpp"
 #include "mesh/distance/triangle_tree.hpp"
 
 #include <Eigen/Geometry>
@@ -45,20 +46,6 @@ std::vector<Points> rims_of(const TriangleMesh& surface) {
   return rims;
 }
 
-Vec3 nearest_on(const Points& rim, const Vec3& x) {
-  Vec3 best = rim.col(0);
-  double least = kInfinity;
-  for (Eigen::Index k = 0; k < rim.cols(); ++k) {
-    const Vec3 a = rim.col(k), along = rim.col((k + 1) % rim.cols()) - a;
-    const double part = std::clamp((x - a).dot(along) / std::max(along.squaredNorm(), 1e-300), 0.0, 1.0);
-    const Vec3 place = a + part * along;
-    if ((place - x).squaredNorm() >= least) continue;
-    least = (place - x).squaredNorm();
-    best = place;
-  }
-  return best;
-}
-
 // What is around each vertex, and on which rim it lies (-1: inside).
 struct Surroundings {
   std::vector<std::vector<int>> triangles;
@@ -75,7 +62,8 @@ Surroundings surroundings(const TriangleMesh& mesh, const std::vector<Points>& r
   for (const std::vector<int>& loop : boundary_loops(mesh.triangles)) {
     const Vec3 first = mesh.vertices.col(loop.front());
     const auto nearest = std::min_element(rims.begin(), rims.end(), [&](const Points& a, const Points& b) {
-      return (nearest_on(a, first) - first).squaredNorm() < (nearest_on(b, first) - first).squaredNorm();
+      return (closest_on_curve(a, first) - first).squaredNorm() <
+             (closest_on_curve(b, first) - first).squaredNorm();
     });
     for (size_t k = 0; k < loop.size(); ++k) {
       const auto v = static_cast<size_t>(loop[k]);
@@ -127,7 +115,7 @@ void move_vertices(TriangleMesh& mesh, const TriangleTree& tree, const std::vect
     }
     const Vec3 before = mesh.vertices.col(v), wanted = before + kWay * (middle - before);
     const Vec3 there = is_inside ? tree.closest(wanted).point
-                                 : nearest_on(rims[static_cast<size_t>(around.rim[at])], wanted);
+                                 : closest_on_curve(rims[static_cast<size_t>(around.rim[at])], wanted);
     if (turns_over(mesh, triangles, v, there)) continue;
     const double least = least_around(mesh, triangles);
     mesh.vertices.col(v) = there;
