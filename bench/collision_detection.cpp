@@ -1,7 +1,7 @@
 // Time of one query of continuous collision detection, on one core. The baseline in the same run is one
 // distance. `near`: pairs as the broad phase hands them over, distances up to the edge length and small
 // moves; `colliding`: pairs on their way to a collision.
-#include "energy/contact/collision_detection.hpp"
+#include "mesh/distance/collision_detection.hpp"
 
 #include "mesh/distance/triangle_distance.hpp"
 

@@ -31,7 +31,7 @@ stresses are relative to what the meaning names.
 
 # Sizes of arrays, counts of nodes and weights of quadrature rules, which are no choice.
 STRUCTURAL = {"kNodes", "kSize", "kTerms", "kPerPage", "kVertexWeight", "kEdgeWeight", "kCentroidWeight",
-              "energy/contact/collision_detection.cpp: kFirst"}
+              "mesh/distance/collision_detection.cpp: kFirst"}
 
 
 def split(declarators: str) -> list[tuple[str, str]]:

@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t kShare = 1024;        // pairs that a thread takes at once in a search
 constexpr double kSkin = 0.25;         // of the gap: candidates are found this much ahead
+constexpr double kMoved = 0.25;        // of the skin, by which a node has moved that is searched around anew
 constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the range never exceeds
 constexpr double kParallel = 1e-3;     // sin^2 of the angle below which two edges count as parallel
 constexpr double kKeptDistance = 0.2;  // share of its distance that a pair keeps in one step
@@ -84,11 +85,7 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
 
   void use_threads(const std::shared_ptr<ThreadTeam>& team) override { team_ = team; }
 
-  bool prepare(const Points& x) override {
-    if (is_within_skin(x)) return false;
-    search(x);
-    return true;
-  }
+  bool prepare(const Points& x) override { return !is_within_skin(x) && search(x); }
 
   double evaluate(const Points& x, Sink& sink) const override {
     return candidates_.evaluate(x, pressure_, sink, active_pairs_);
@@ -98,11 +95,10 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     Points start(3, moving.moving_count());
     for (int k = 0; k < moving.moving_count(); ++k) start.col(k) = moving.x().col(moving.nodes()[k]);
     BarrierCandidates candidates(std::move(start));
-    const double ahead = 2 * moving.reach();
-    surface_.visit_near(moving.x(), gap_ + ahead, moving, [&](const FeaturePair& pair) {
-      if (!moving.moves_any(pair.nodes)) return;
-      if (const auto found = candidate(pair, moving.x(), ahead))
-        candidates.add(pair, found->rest, found->distance);
+    surface_.visit_near(moving.x(), gap_ + 2 * moving.reach(), moving, [&](const FeaturePair& pair) {
+      const double ahead = moving_features(moving, pair) * moving.reach();
+      if (ahead == 0) return;
+      if (const auto found = candidate(pair, moving.x(), ahead)) candidates.add(*found);
     });
     candidates.renumber(moving);
     return std::make_unique<ContactBarrierPart>(name(), std::move(candidates), pressure_, moving.reach());
@@ -133,13 +129,19 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
   bool limits_steps() const override { return true; }
 
   double step_limit(const Points& x, const Points& d, double most) const override {
-    if (is_within_skin(x) && is_within_skin(x + most * d))
-      return candidates_.step_limit(x, d, most, kKeptDistance);
-    double limit = most;
-    surface_.visit_swept(x, d, 0, limit, [&](const FeaturePair& pair) {
+    double limit = candidates_.step_limit(x, d, most, kKeptDistance);
+    const Points end = x + limit * d;
+    if (is_within_skin(x) && is_within_skin(end)) return limit;
+    // Candidates are all that nodes within the skin can meet among themselves.
+    NodeMask far = candidates_.beyond(x, 0.5 * skin_);
+    const NodeMask far_at_end = candidates_.beyond(end, 0.5 * skin_);
+    for (size_t node = 0; node < far.size(); ++node) far[node] = far[node] || far_at_end[node];
+    const auto shorten = [&](const FeaturePair& pair) {
+      if (!has_any(far, pair.nodes)) return;
       limit = std::min(limit, pair_step(pair.kind, pair_corners(x, pair.nodes.data()),
                                         pair_corners(d, pair.nodes.data()), limit, kKeptDistance));
-    });
+    };
+    surface_.visit_swept(x, d, 0, limit, shorten, {.all_but_around = &far});
     return limit;
   }
 
@@ -156,28 +158,37 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
   bool restore_stiffness() override { return std::exchange(pressure_, given_pressure_) != given_pressure_; }
 
  private:
-  struct Found {
-    BarrierRest rest;
-    double distance;
-  };
+  // How many of the two have a node that moves.
+  static int moving_features(const MovingPart& moving, const FeaturePair& pair) {
+    const auto first = pair.nodes.begin(), second = first + (pair.kind == PairKind::PointTriangle ? 1 : 2);
+    const auto moves = [&](int node) { return moving.moves(node); };
+    return std::any_of(first, second, moves) + std::any_of(second, pair.nodes.end(), moves);
+  }
 
   // A pair can come within range only after its nodes have moved by half the skin each.
   bool is_within_skin(const Points& x) const { return candidates_.are_within(x, 0.5 * skin_); }
 
-  void search(const Points& x) {
+  // Around the nodes that have moved: pairs of all others are known, where these were found. Returns whether
+  // the pairs are others than before.
+  bool search(const Points& x) {
     ++searches_;
-    const std::vector<FeaturePair> pairs = surface_.near_pairs(x, gap_ + skin_, *team_);
-    std::vector<std::optional<Found>> found(pairs.size());
+    const NodeMask moved = candidates_.beyond(x, kMoved * skin_);
+    Points at = x;
+    for (Eigen::Index node = 0; node < at.cols(); ++node)
+      if (!moved[static_cast<size_t>(node)]) at.col(node) = candidates_.found_at().col(node);
+    const std::vector<FeaturePair> pairs = surface_.near_pairs(at, gap_ + skin_, moved, *team_);
+    std::vector<std::optional<BarrierCandidate>> looked_at(pairs.size());
     team_->run_ranges(pairs.size(), kShare, [&](size_t first, size_t last) {
-      for (size_t k = first; k < last; ++k) found[k] = candidate(pairs[k], x, skin_);
+      for (size_t k = first; k < last; ++k) looked_at[k] = candidate(pairs[k], at, skin_);
     });
-    candidates_ = BarrierCandidates(x);
-    for (size_t k = 0; k < pairs.size(); ++k)
-      if (found[k]) candidates_.add(pairs[k], found[k]->rest, found[k]->distance);
+    std::vector<BarrierCandidate> found;
+    for (const auto& one : looked_at)
+      if (one) found.push_back(*one);
+    return candidates_.renew(at, moved, std::move(found));
   }
 
   // Of a pair that at x is less than `ahead` from its range; nothing of any other.
-  std::optional<Found> candidate(const FeaturePair& pair, const Points& x, double ahead) const {
+  std::optional<BarrierCandidate> candidate(const FeaturePair& pair, const Points& x, double ahead) const {
     const PairCorners corners = pair_corners(x, pair.nodes.data());
     if (boxes_are_apart(pair.kind, corners, gap_ + ahead)) return {};
     const double distance = pair_distance(pair.kind, corners);
@@ -189,7 +200,8 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     if (distance >= range + ahead) return {};
     const double lengths =
         (at_rest.col(1) - at_rest.col(0)).squaredNorm() * (at_rest.col(3) - at_rest.col(2)).squaredNorm();
-    return Found{{pair.kind, range, surface_.area(pair) * range, kParallel * lengths}, distance};
+    return BarrierCandidate{
+        pair, {pair.kind, range, surface_.area(pair) * range, kParallel * lengths}, distance};
   }
 
   ContactSurface surface_;

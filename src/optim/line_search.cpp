@@ -82,6 +82,7 @@ bool search_line(Monitor& monitor, const LinePoint& from, const Vector& directio
     if (monitor.is_out_of_time()) break;
     if (!(step > 0)) break;  // nothing may move
     const Sample now = evaluate(monitor, from, direction, step, to);
+    to.is_limited = is_limited && !bracket.has_high;
     if (k == 0 && replace &&
         now.energy > from.energy - kFewKept * from.promised(std::min(step, 1.0)) + noise &&
         std::isfinite(now.energy) && replace(to))

@@ -11,7 +11,8 @@ namespace coapt {
 struct LinePoint {
   double step = 0;
   double energy = 0;
-  double slope = 0;  // directional derivative
+  double slope = 0;         // directional derivative
+  bool is_limited = false;  // the terms let it go no farther
   Vector q, g;
 
   // The decrease of the energy from here that a quadratic promises, of which the whole step is the minimiser.

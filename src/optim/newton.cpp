@@ -14,11 +14,12 @@ namespace coapt {
 namespace {
 
 constexpr double kFirstShift = 5;                // times force over length of the scene
+constexpr double kFirstDampedShift = 1;          // the same where dampers hold what is slack
 constexpr double kFall = 0.2;                    // of the shift after a step that kept its promise
 constexpr double kRise = 4;                      // after one that was shortened much
 constexpr double kMostShiftOverUnit = 1e9;       // beyond it no step is found
 constexpr double kKept = 0.5, kShortened = 0.3;  // share of the promised decrease; of the step
-constexpr double kExact = 0.1;                   // deviation of the kept from the promised decrease
+constexpr double kExact = 0.1;                   // deviation of the decrease from what is expected
 constexpr double kNear = 1e-3;                   // residual at which an equilibrium is near
 constexpr double kForcing = 1e-3;                // relative residual of GMRES
 constexpr int kKrylovVectors = 20;               // of GMRES with the exact tangent
@@ -171,7 +172,7 @@ class Newton {
   void start_shift() {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
-    shift_ = kFirstShift * unit_;
+    shift_ = (objective_.is_damped() && !is_part_ ? kFirstDampedShift : kFirstShift) * unit_;
     for (Vector* vector : {&left_, &conjugate_, &image_, &better_.q, &better_.g})
       vector->resize(at_.q.size());
     worst_ = WorstPart(at_.q.size() / 3);
@@ -251,9 +252,12 @@ class Newton {
     if (!search_line(monitor_, at_, direction_, first_step(), next_, balance_parts)) return false;
     if (!is_part_ && residual_ < kNear) balance_double_root();
     const double step = std::min(next_.step, 1.0);  // the model promises nothing more beyond its minimum
-    const double kept = (at_.energy - next_.energy) / at_.promised(step);
-    if (next_.step >= 0.9 && kept > kKept)
-      shift_ *= std::abs(kept - 1) < kExact ? kFall * kFall : kFall;
+    // The shift is no part of the energy, so that more is expected than the shifted model promises. What cuts
+    // a step short is no fault of the model.
+    const double gained = at_.energy - next_.energy, promised = at_.promised(step);
+    const double expected = promised + 0.5 * step * step * shift_ * direction_.squaredNorm();
+    if ((next_.step >= 0.9 || next_.is_limited) && gained > kKept * promised)
+      shift_ *= std::abs(gained - expected) < kExact * expected ? kFall * kFall : kFall;
     else if (next_.step < kShortened)
       shift_ = std::max(kRise * shift_, 1e-9 * unit_);
     return true;

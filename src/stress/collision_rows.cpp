@@ -2,7 +2,7 @@
 // all coordinates lie on a grid that numbers of 53 bits hold. And any scene: how far contact lets it go.
 #include "core/number_text.hpp"
 #include "core/random_source.hpp"
-#include "energy/contact/collision_detection.hpp"
+#include "mesh/distance/collision_detection.hpp"
 #include "mesh/distance/triangle_distance.hpp"
 #include "stress/scenes/built_in.hpp"
 #include "stress/subject.hpp"

@@ -182,6 +182,46 @@ TEST(ContactBarrier, StopsASheetBeforeItFallsThroughAnother) {
   EXPECT_EQ(term->step_limit(x, Points::Constant(3, 2 * n, 7), 1), 1);  // moving together
 }
 
+// Some nodes move, far or hardly, and sometimes all: a list of pairs that follows them says what one does
+// that begins there, to the last bit, and finds no pair too few that limits a step.
+TEST(ContactBarrier, SearchesAroundWhatHasMovedAsIfItBeganThere) {
+  const TriangleMesh sheet = grid_mesh(8, 8);
+  const int n = sheet.vertex_count();
+  Points rest(3, 2 * n), x(3, 2 * n);
+  rest << sheet.vertices, sheet.vertices.colwise() + Vec3(0, 0, 5);
+  x << sheet.vertices, sheet.vertices.colwise() + Vec3(0.03, 0.02, 0.12);
+  Triangles triangles(3, 2 * sheet.triangle_count());
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const double gap = 0.08;
+  const auto follows = barrier_of(rest, triangles, gap);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto any_move = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  int active = 0, limited = 0, same_pairs = 0;
+  for (int k = 0; k < 120; ++k) {
+    const int count = k % 10 == 0 ? 2 * n : 5;
+    const double reach = gap * std::pow(10.0, uniform(random) - 0.7);
+    Points d = Points::Zero(3, 2 * n);
+    for (int m = 0; m < count; ++m) d.col(count == 5 ? random() % (2 * n) : m) = reach * any_move();
+    const auto begins = barrier_of(rest, triangles, gap);
+    begins->prepare(x);
+    const double step = follows->step_limit(x, d, 1);
+    EXPECT_NEAR(step, begins->step_limit(x, d, 1), 0.03 * step);
+    limited += step < 1;
+    x += step * d;
+    const bool is_changed = follows->prepare(x);
+    begins->prepare(x);
+    const TermValues a = evaluate_term(*follows, x), b = evaluate_term(*begins, x);
+    EXPECT_EQ(a.energy, b.energy);
+    EXPECT_EQ((a.gradient - b.gradient).norm(), 0);
+    active += a.energy > 0;
+    same_pairs += !is_changed;
+  }
+  EXPECT_GT(active, 80);
+  EXPECT_GT(limited, 8);
+  EXPECT_GT(same_pairs, 20);
+}
+
 TEST(ContactBarrier, BecomesStifferOnlyWhereItIsPressedTooHard) {
   const TriangleMesh sheet = grid_mesh(2, 2);
   const int n = sheet.vertex_count();

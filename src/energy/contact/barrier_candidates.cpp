@@ -1,10 +1,11 @@
 #include "energy/contact/barrier_candidates.hpp"
 
-#include "energy/contact/collision_detection.hpp"
 #include "energy/pour_elements.hpp"
+#include "mesh/distance/collision_detection.hpp"
 
 #include <algorithm>
 #include <atomic>
+#include <tuple>
 #include <utility>
 
 namespace coapt {
@@ -44,10 +45,40 @@ BarrierCandidates::BarrierCandidates(Points found_at) : found_at_(std::move(foun
   if (found_at_.size() > 0) round_off_ = kDistanceRoundOff * found_at_.cwiseAbs().maxCoeff();
 }
 
-void BarrierCandidates::add(const FeaturePair& pair, const BarrierRest& rest, double distance) {
-  rest_.push_back(rest);
-  distance_.push_back(kLookedAt * distance - round_off_);
-  stencils_.nodes.insert(stencils_.nodes.end(), pair.nodes.begin(), pair.nodes.end());
+void BarrierCandidates::add(const BarrierCandidate& found) {
+  pairs_.push_back(found.pair);
+  rest_.push_back(found.rest);
+  distance_.push_back(kLookedAt * found.distance - round_off_);
+  stencils_.nodes.insert(stencils_.nodes.end(), found.pair.nodes.begin(), found.pair.nodes.end());
+}
+
+bool BarrierCandidates::renew(const Points& x, const NodeMask& searched,
+                              std::vector<BarrierCandidate> found) {
+  const auto comes_before = [](const FeaturePair& a, const FeaturePair& b) {
+    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
+  };
+  std::sort(found.begin(), found.end(),
+            [&](const auto& a, const auto& b) { return comes_before(a.pair, b.pair); });
+  found_at_.conservativeResize(3, x.cols());
+  for (Eigen::Index node = 0; node < x.cols(); ++node)
+    if (searched[static_cast<size_t>(node)]) found_at_.col(node) = x.col(node);
+
+  BarrierCandidates both(std::move(found_at_));
+  size_t old = 0;
+  const auto keep_while = [&](const auto& comes_first) {
+    for (; old < size() && comes_first(pairs_[old]); ++old) {
+      if (has_any(searched, pairs_[old].nodes)) continue;
+      both.add({pairs_[old], rest_[old], 0});
+      both.distance_.back() = distance_[old];
+    }
+  };
+  for (const BarrierCandidate& one : found) {
+    keep_while([&](const FeaturePair& pair) { return comes_before(pair, one.pair); });
+    both.add(one);
+  }
+  keep_while([](const FeaturePair&) { return true; });
+  std::swap(*this, both);
+  return stencils_.nodes != both.stencils_.nodes;
 }
 
 void BarrierCandidates::renumber(MovingPart& moving) {
@@ -61,7 +92,14 @@ Vector BarrierCandidates::displacements(const Points& x) const {
 }
 
 bool BarrierCandidates::are_within(const Points& x, double most) const {
-  return found_at_.size() != 0 && (x - found_at_).colwise().squaredNorm().maxCoeff() <= most * most;
+  return found_at_.size() != 0 && ((x - found_at_).colwise().squaredNorm().array() <= most * most).all();
+}
+
+NodeMask BarrierCandidates::beyond(const Points& x, double most) const {
+  NodeMask far(static_cast<size_t>(x.cols()), 1);
+  for (Eigen::Index node = 0; node < found_at_.cols(); ++node)
+    far[static_cast<size_t>(node)] = !((x.col(node) - found_at_.col(node)).squaredNorm() <= most * most);
+  return far;
 }
 
 double BarrierCandidates::approach(size_t k, const Vector& moved) const {

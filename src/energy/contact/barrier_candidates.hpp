@@ -18,6 +18,13 @@ double pair_step(PairKind kind, const PairCorners& x, const PairCorners& d, doub
 // Whether the boxes around the two features are `range` apart, which costs a fifth of their distance.
 bool boxes_are_apart(PairKind kind, const PairCorners& x, double range);
 
+// A pair that a search has found, and how far apart the two were there.
+struct BarrierCandidate {
+  FeaturePair pair;
+  BarrierRest rest;
+  double distance;
+};
+
 // The distance of a pair changes by no more than the displacements of its nodes. So the pairs that stay out
 // of range, or cannot close up in a step, are told by those displacements, without their distance.
 class BarrierCandidates {
@@ -27,8 +34,12 @@ class BarrierCandidates {
   // found_at: positions of the first nodes when the pairs were found; all other nodes stay where they are.
   explicit BarrierCandidates(Points found_at);
 
-  // distance: of the pair when it was found.
-  void add(const FeaturePair& pair, const BarrierRest& rest, double distance);
+  void add(const BarrierCandidate& found);
+
+  // After a search around some nodes, with these at x and all others at found_at(): `found` takes the place
+  // of all pairs with such a node. The order of pairs is that of their features, by whichever search they
+  // were found. Returns whether they are others than before.
+  bool renew(const Points& x, const NodeMask& searched, std::vector<BarrierCandidate> found);
 
   // For a part of a scene: numbers the nodes anew.
   void renumber(MovingPart& moving);
@@ -41,6 +52,9 @@ class BarrierCandidates {
 
   // Whether none of the first nodes has moved by more than `most`; false before any search.
   bool are_within(const Points& x, double most) const;
+
+  // Those that have; all of them before any search.
+  NodeMask beyond(const Points& x, double most) const;
 
   // Energy at x, per unit of pressure times `pressure`; counts the pairs that are within range.
   double evaluate(const Points& x, double pressure, Sink& sink, long& active) const;
@@ -64,6 +78,7 @@ class BarrierCandidates {
 
   Points found_at_;
   Stencils stencils_{4, {}};
+  std::vector<FeaturePair> pairs_;
   std::vector<BarrierRest> rest_;  // per unit of pressure
   std::vector<double> distance_;   // no greater than that at which each was found
   double round_off_ = 0;           // of a distance [length]

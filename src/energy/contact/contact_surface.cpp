@@ -10,13 +10,15 @@
 namespace coapt {
 namespace {
 
-// A box and the box of the displacements of what is in it.
+// A box, the box of the displacements of what is in it, and whether any of that is searched around.
 struct SweptBounds {
   Bounds at, move;
+  bool is_searched = false;
 
   void include(const SweptBounds& other) {
     at.include(other.at);
     move.include(other.move);
+    is_searched = is_searched || other.is_searched;
   }
 };
 
@@ -78,6 +80,7 @@ class NearBoxes {
 // the relative positions form an interval whose ends move linearly, and the times at which it holds zero are
 // an interval too. What moves alike, such as neighbours on the surface, is so told apart however far it goes.
 bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double slack) {
+  if (!a.is_searched && !b.is_searched) return false;
   double from = 0, to = most;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = b.at.low[axis] - a.at.high[axis] - slack,
@@ -222,10 +225,12 @@ void ContactSurface::visit_near(const Points& x, double reach, const Visit& visi
   visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
 }
 
-std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, ThreadTeam& team) const {
+std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, const NodeMask& nodes,
+                                                    ThreadTeam& team) const {
   constexpr size_t kShare = 256;  // pairs of triangles that a thread takes at once
   const NearBoxes boxes(x, reach, around_);
-  const auto of = feature_bounds<NearBox>([&](int node) { return boxes.around(node, true); }, true);
+  const auto box = [&](int node) { return boxes.around(node, nodes[static_cast<size_t>(node)] != 0); };
+  const auto of = feature_bounds<NearBox>(box, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
   const size_t shares = (near.size() + kShare - 1) / kShare;
@@ -233,8 +238,9 @@ std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reac
   team.run(static_cast<int>(shares), [&](int share, int) {
     const size_t first = static_cast<size_t>(share) * kShare;
     for (size_t k = first; k < std::min(first + kShare, near.size()); ++k)
-      visit_features(near[k][0], near[k][1], of, overlap,
-                     [&](const FeaturePair& pair) { found[static_cast<size_t>(share)].push_back(pair); });
+      visit_features(near[k][0], near[k][1], of, overlap, [&](const FeaturePair& pair) {
+        if (has_any(nodes, pair.nodes)) found[static_cast<size_t>(share)].push_back(pair);
+      });
   });
   std::vector<FeaturePair> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
@@ -252,8 +258,10 @@ void ContactSurface::visit_swept(const Points& x, const Points& d, double reach,
   const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
   visit_pairs<SweptBounds>(
       [&](int node) {
-        return SweptBounds{bounds_around(x.col(node), 0.5 * reach),
-                           {d.col(node).array(), d.col(node).array()}};
+        return SweptBounds{
+            bounds_around(x.col(node), 0.5 * reach),
+            {d.col(node).array(), d.col(node).array()},
+            omitted.all_but_around == nullptr || (*omitted.all_but_around)[static_cast<size_t>(node)] != 0};
       },
       [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit,
       omitted);

@@ -7,6 +7,7 @@
 #include "energy/moving_part.hpp"
 #include "mesh/distance/box_hierarchy.hpp"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
@@ -21,10 +22,19 @@ struct FeaturePair {
   int first, second;
 };
 
+// By node, not zero where it is one of some.
+using NodeMask = std::vector<char>;
+
+inline bool has_any(const NodeMask& mask, const std::array<int, 4>& nodes) {
+  return std::any_of(nodes.begin(), nodes.end(), [&](int node) { return mask[static_cast<size_t>(node)]; });
+}
+
 // What a search leaves out. skips: pairs of triangles whose features are not looked at; empty: none.
+// all_but_around: all pairs of triangles but those with one of these nodes; null: none.
 struct SearchOmissions {
   bool edges = false;
   std::function<bool(int s, int t)> skips = {};
+  const NodeMask* all_but_around = nullptr;
 };
 
 class ContactSurface {
@@ -44,9 +54,10 @@ class ContactSurface {
 
   using Visit = std::function<void(const FeaturePair&)>;
 
-  // Pairs whose boxes come within `reach` of each other at x, each once, in an order that does not depend on
-  // x, nor on the number of threads that gather them.
-  std::vector<FeaturePair> near_pairs(const Points& x, double reach, ThreadTeam& team) const;
+  // Pairs with one of the nodes whose boxes come within `reach` of each other at x, each once, in an order
+  // that does not depend on x, nor on the number of threads that gather them.
+  std::vector<FeaturePair> near_pairs(const Points& x, double reach, const NodeMask& nodes,
+                                      ThreadTeam& team) const;
 
   void visit_near(const Points& x, double reach, const Visit& visit) const;
 

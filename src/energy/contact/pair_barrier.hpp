@@ -17,8 +17,8 @@
 // which lives in the plane of two orthogonal vectors, the positive eigenvalue.
 #pragma once
 
-#include "energy/contact/pair_corners.hpp"
 #include "energy/sink.hpp"
+#include "mesh/distance/pair_corners.hpp"
 
 #include <Eigen/Dense>
 

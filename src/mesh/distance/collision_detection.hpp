@@ -15,7 +15,7 @@
 // pair's extent.
 #pragma once
 
-#include "energy/contact/pair_corners.hpp"
+#include "mesh/distance/pair_corners.hpp"
 
 namespace coapt {
 

@@ -1,4 +1,4 @@
-#include "energy/contact/collision_detection.hpp"
+#include "mesh/distance/collision_detection.hpp"
 
 #include "mesh/distance/triangle_distance.hpp"
 

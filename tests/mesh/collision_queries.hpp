@@ -1,7 +1,7 @@
 // Moving pairs of all kinds for the tests of collision detection, random but the same in every run.
 #pragma once
 
-#include "energy/contact/collision_detection.hpp"
+#include "mesh/distance/collision_detection.hpp"
 
 #include <Eigen/Geometry>
 
