@@ -14,7 +14,7 @@ namespace coapt {
 namespace {
 
 constexpr size_t kShare = 1024;        // pairs that a thread takes at once in a search
-constexpr double kSkin = 0.25;         // of the gap: candidates are found this much ahead
+constexpr double kSkin = 0.1;          // of the gap: candidates are found this much ahead
 constexpr double kMoved = 0.25;        // of the skin, by which a node has moved that is searched around anew
 constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the range never exceeds
 constexpr double kParallel = 1e-3;     // sin^2 of the angle below which two edges count as parallel
@@ -32,21 +32,35 @@ Triangles side_by_side(const Triangles& a, const Triangles& b) {
 // The pairs that a part of the nodes can meet within its reach: no search while it moves.
 class ContactBarrierPart final : public EnergyTerm {
  public:
-  ContactBarrierPart(std::string name, BarrierCandidates candidates, double pressure, double reach)
-      : EnergyTerm(std::move(name)), candidates_(std::move(candidates)), pressure_(pressure), reach_(reach) {}
+  // reachable: found where the nodes that move set out.
+  ContactBarrierPart(std::string name, BarrierCandidates reachable, double pressure, double reach,
+                     double skin)
+      : EnergyTerm(std::move(name)),
+        reachable_(std::move(reachable)),
+        pressure_(pressure),
+        reach_(reach),
+        skin_(skin) {}
 
   std::string_view type() const override { return "contact_barrier"; }
   TermRole role() const override { return TermRole::Contact; }
-  const Stencils& stencils() const override { return candidates_.stencils(); }
+  const Stencils& stencils() const override { return near_.stencils(); }
+
+  bool prepare(const Points& x) override {
+    if (near_.are_within(x, 0.5 * skin_)) return false;
+    BarrierCandidates now = reachable_.near(x, skin_);
+    std::swap(near_, now);
+    return near_.stencils().nodes != now.stencils().nodes;
+  }
+
   double evaluate(const Points& x, Sink& sink) const override {
     long active = 0;
-    return candidates_.evaluate(x, pressure_, sink, active);
+    return near_.evaluate(x, pressure_, sink, active);
   }
   bool limits_steps() const override { return true; }
 
   // Not beyond the reach either: |x + s d - start| <= reach.
   double step_limit(const Points& x, const Points& d, double most) const override {
-    const Points& start = candidates_.found_at();
+    const Points& start = reachable_.found_at();
     double limit = most;
     for (Eigen::Index k = 0; k < start.cols(); ++k) {
       const double a = d.col(k).squaredNorm();
@@ -55,12 +69,12 @@ class ContactBarrierPart final : public EnergyTerm {
       const double b = gone.dot(d.col(k)), c = gone.squaredNorm() - reach_ * reach_;
       limit = std::min(limit, std::max(0.0, (-b + std::sqrt(std::max(0.0, b * b - a * c))) / a));
     }
-    return candidates_.step_limit(x, d, limit, kKeptDistance);
+    return reachable_.step_limit(x, d, limit, kKeptDistance);
   }
 
  private:
-  BarrierCandidates candidates_;  // found where the nodes that move set out
-  double pressure_, reach_;
+  BarrierCandidates reachable_, near_;
+  double pressure_, reach_, skin_;
 };
 
 class ContactBarrier final : public EnergyTerm, public TermAccess {
@@ -101,7 +115,8 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
       if (const auto found = candidate(pair, moving.x(), ahead)) candidates.add(*found);
     });
     candidates.renumber(moving);
-    return std::make_unique<ContactBarrierPart>(name(), std::move(candidates), pressure_, moving.reach());
+    return std::make_unique<ContactBarrierPart>(name(), std::move(candidates), pressure_, moving.reach(),
+                                                skin_);
   }
 
   std::vector<BarrierContact> contacts(const Points& x) const {

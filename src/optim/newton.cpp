@@ -252,11 +252,13 @@ class Newton {
     if (!search_line(monitor_, at_, direction_, first_step(), next_, balance_parts)) return false;
     if (!is_part_ && residual_ < kNear) balance_double_root();
     const double step = std::min(next_.step, 1.0);  // the model promises nothing more beyond its minimum
-    // The shift is no part of the energy, so that more is expected than the shifted model promises. What cuts
-    // a step short is no fault of the model.
+    // The shift is no part of the energy, so that more is expected than the shifted model promises; and what
+    // cuts a step short is no fault of the model. Without dampers bolder steps lead elsewhere.
+    const bool is_damped = objective_.is_damped();
     const double gained = at_.energy - next_.energy, promised = at_.promised(step);
-    const double expected = promised + 0.5 * step * step * shift_ * direction_.squaredNorm();
-    if ((next_.step >= 0.9 || next_.is_limited) && gained > kKept * promised)
+    const double unshifted = is_damped ? 0.5 * step * step * shift_ * direction_.squaredNorm() : 0;
+    const double expected = promised + unshifted;
+    if ((next_.step >= 0.9 || (is_damped && next_.is_limited)) && gained > kKept * promised)
       shift_ *= std::abs(gained - expected) < kExact * expected ? kFall * kFall : kFall;
     else if (next_.step < kShortened)
       shift_ = std::max(kRise * shift_, 1e-9 * unit_);

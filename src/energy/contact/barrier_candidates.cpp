@@ -82,7 +82,23 @@ bool BarrierCandidates::renew(const Points& x, const NodeMask& searched,
 }
 
 void BarrierCandidates::renumber(MovingPart& moving) {
-  for (int& node : stencils_.nodes) node = moving.number(node);
+  stencils_.nodes.clear();
+  for (FeaturePair& pair : pairs_)
+    for (int& node : pair.nodes) stencils_.nodes.push_back(node = moving.number(node));
+}
+
+BarrierCandidates BarrierCandidates::near(const Points& x, double ahead) const {
+  BarrierCandidates found(x);
+  const Vector moved = displacements(x);
+  for (size_t k = 0; k < size(); ++k) {
+    const double reach = rest_[k].range + ahead;
+    if (distance_[k] - approach(k, moved) >= reach) continue;
+    const PairCorners corners = pair_corners(x, nodes(k));
+    if (boxes_are_apart(rest_[k].kind, corners, reach)) continue;
+    const double distance = pair_distance(rest_[k].kind, corners);
+    if (distance < reach) found.add({pairs_[k], rest_[k], distance});
+  }
+  return found;
 }
 
 Vector BarrierCandidates::displacements(const Points& x) const {

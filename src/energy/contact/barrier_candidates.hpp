@@ -44,6 +44,9 @@ class BarrierCandidates {
   // For a part of a scene: numbers the nodes anew.
   void renumber(MovingPart& moving);
 
+  // Those that at x are less than `ahead` from their range.
+  BarrierCandidates near(const Points& x, double ahead) const;
+
   size_t size() const { return rest_.size(); }
   const BarrierRest& rest(size_t k) const { return rest_[k]; }
   const int* nodes(size_t k) const { return &stencils_.nodes[4 * k]; }
