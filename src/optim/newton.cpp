@@ -14,7 +14,7 @@ namespace coapt {
 namespace {
 
 constexpr double kFirstShift = 5;                // times force over length of the scene
-constexpr double kFirstDampedShift = 1;          // the same where dampers hold what is slack
+constexpr double kFirstDampedShift = 1.5;        // the same where dampers hold what is slack
 constexpr double kFall = 0.2;                    // of the shift after a step that kept its promise
 constexpr double kRise = 4;                      // after one that was shortened much
 constexpr double kMostShiftOverUnit = 1e9;       // beyond it no step is found
@@ -39,7 +39,7 @@ constexpr double kCurved = 0.1, kFlat = 0.2;
 // Parts of the nodes in balance at the end of a step: how many one after the other, iterations of each, the
 // share of the force elsewhere to which each is solved, and how far its nodes may go, as a share of the
 // scene's extent. On 36 valves (docs/decisions/011) half that reach lost a little, a tenth all of the gain.
-constexpr int kParts = 3, kPartIterations = 15;
+constexpr int kParts = 4, kPartIterations = 15;
 constexpr double kPartTolerance = 0.3;
 constexpr double kPartReach = 0.0125;
 
