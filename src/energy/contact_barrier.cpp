@@ -29,7 +29,7 @@ Triangles side_by_side(const Triangles& a, const Triangles& b) {
   return both;
 }
 
-// The pairs that a part of the nodes can meet within its reach: no search while it moves.
+// The pairs that a part of the nodes can meet within its reach: the surface is not searched while it moves.
 class ContactBarrierPart final : public EnergyTerm {
  public:
   // reachable: found where the nodes that move set out.
