@@ -59,11 +59,7 @@ bool BarrierCandidates::renew(const Points& x, const NodeMask& searched,
   };
   std::sort(found.begin(), found.end(),
             [&](const auto& a, const auto& b) { return comes_before(a.pair, b.pair); });
-  found_at_.conservativeResize(3, x.cols());
-  for (Eigen::Index node = 0; node < x.cols(); ++node)
-    if (searched[static_cast<size_t>(node)]) found_at_.col(node) = x.col(node);
-
-  BarrierCandidates both(std::move(found_at_));
+  BarrierCandidates both(x);
   size_t old = 0;
   const auto keep_while = [&](const auto& comes_first) {
     for (; old < size() && comes_first(pairs_[old]); ++old) {

@@ -36,9 +36,9 @@ class BarrierCandidates {
 
   void add(const BarrierCandidate& found);
 
-  // After a search around some nodes, with these at x and all others at found_at(): `found` takes the place
-  // of all pairs with such a node. The order of pairs is that of their features, by whichever search they
-  // were found. Returns whether they are others than before.
+  // After a search around some nodes at x, where all others are as in found_at(): `found` takes the
+  // place of all pairs with such a node. The order of pairs is that of their features, by whichever search
+  // they were found. Returns whether they are others than before.
   bool renew(const Points& x, const NodeMask& searched, std::vector<BarrierCandidate> found);
 
   // For a part of a scene: numbers the nodes anew.
