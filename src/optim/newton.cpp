@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFirstShift = 5;                // times force over length of the scene
 constexpr double kFirstDampedShift = 1.5;        // the same where dampers hold what is slack
+constexpr double kFar = 0.1, kFarDamped = 0.01;  // residual of a start from which on the first shift is whole
 constexpr double kFall = 0.2;                    // of the shift after a step that kept its promise
 constexpr double kRise = 4;                      // after one that was shortened much
 constexpr double kMostShiftOverUnit = 1e9;       // beyond it no step is found
@@ -168,11 +169,14 @@ class Newton {
     return idle_ >= kIdlePatience;
   }
 
-  // Force over length: what resists a displacement of the scene's size with the scene's force.
+  // Force over length: what resists a displacement of the scene's size with the scene's force. Of a start
+  // near an equilibrium, as where a path ends, with the force out of balance.
   void start_shift() {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
-    shift_ = (objective_.is_damped() && !is_part_ ? kFirstDampedShift : kFirstShift) * unit_;
+    const bool is_damped = objective_.is_damped() && !is_part_;
+    const double share = is_part_ ? 1 : std::min(1.0, residual_ / (is_damped ? kFarDamped : kFar));
+    shift_ = (is_damped ? kFirstDampedShift : kFirstShift) * unit_ * share;
     for (Vector* vector : {&left_, &conjugate_, &image_, &better_.q, &better_.g})
       vector->resize(at_.q.size());
     worst_ = WorstPart(at_.q.size() / 3);
