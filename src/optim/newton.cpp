@@ -169,8 +169,8 @@ class Newton {
     return idle_ >= kIdlePatience;
   }
 
-  // Force over length: what resists a displacement of the scene's size with the scene's force. Of a start
-  // near an equilibrium, as where a path ends, with the force out of balance.
+  // Force over length: what resists a displacement of the scene's size with the scene's force. A start near
+  // an equilibrium, as at the end of a path, needs less, in proportion to the force out of balance.
   void start_shift() {
     const double extent = objective_.extent(at_.q);
     unit_ = objective_.reference_force(at_.q) / (extent > 0 ? extent : 1);
