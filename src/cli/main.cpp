@@ -12,8 +12,13 @@
 #include <string>
 #include <vector>
 
-#ifdef __GLIBC__
+#if defined(__GLIBC__) && defined(__linux__)
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <malloc.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #endif
 
 namespace {
@@ -50,14 +55,48 @@ int run(const std::vector<std::string>& arguments, Session& session, TextOutput&
   std::_Exit(exit_code);
 }
 
-// The memory of a minimisation, some MB, is that of the next one too: given back to the system it would be
-// cleared anew each time, a twentieth of a solve. Larger pieces go back, as they do without this.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
-#endif
+#if defined(__GLIBC__) && defined(__linux__)
+
+constexpr std::size_t kReserve = std::size_t{1} << 30;  // of address space, which takes no memory by itself
+constexpr int kLargePiece = 32 << 20;                   // goes back to the system, where the reserve is full
+constexpr int kMostPieces = 65536;                      // of these at once, as without this
+constexpr std::uintptr_t kPage = 1 << 16;               // the largest a system may have as its small one
+
+bool is_memory_limited() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
 }
+
+// A heap that has grown once and is not given back: in large pages the system clears it in a few hundred
+// pieces, where the first access to each 4 kB took a twentieth to a half of a solve
+// (docs/decisions/011-what-limits-newton-on-valves.md).
+void reserve_large_pages() {
+  mallopt(M_MMAP_MAX, 0);  // from the heap, whatever its size
+  void* reserve = std::malloc(kReserve);
+  mallopt(M_MMAP_MAX, kMostPieces);
+  if (!reserve) return;
+  const auto begin = (reinterpret_cast<std::uintptr_t>(reserve) + kPage - 1) / kPage * kPage;
+  madvise(reinterpret_cast<void*>(begin), kReserve - kPage, MADV_HUGEPAGE);
+  std::free(reserve);
+}
+
+// Keeps freed memory for the next minimisation, and asks for large pages for the first GB of the heap, where
+// no memory is limited.
+void prepare_heap() {
+  mallopt(M_MMAP_THRESHOLD, kLargePiece);
+  if (is_memory_limited()) {
+    mallopt(M_TRIM_THRESHOLD, 8 * kLargePiece);
+    return;
+  }
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  reserve_large_pages();
+}
+
+#else
+
+void prepare_heap() {}
+
+#endif
 
 int exit_code_of(int argc, char** argv) {
   // A file beyond a limit of size is an error of writing like a full disk, and ends no run.
@@ -87,6 +126,6 @@ int exit_code_of(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();
+  prepare_heap();
   leave(exit_code_of(argc, argv));
 }

@@ -14,6 +14,7 @@ namespace {
 constexpr double kTravel = 0.2;  // of the extent, by which its share of the loads moves a node in one step
 constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
+constexpr double kStableAtRest = 1e-3;   // the same on a finer mesh, where the shape is stable without them
 constexpr double kFollows = 1e-3;        // drag of the dampers on a shape that all but follows its loads
 constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, after such a step
 constexpr int kMostShares = 8;     // in one step
@@ -72,7 +73,8 @@ class DampedPath {
     if (!is_at_full_problem()) return false;
     const double residual = true_residual();
     if (!std::isfinite(residual)) outcome_.status = Status::NonFinite;
-    if (residual <= std::max(kAtRest, stop_.tolerance) || damping_ == 0) return true;
+    const double at_rest = is_loaded() && is_stable_ ? kStableAtRest : kAtRest;
+    if (residual <= std::max(at_rest, stop_.tolerance) || damping_ == 0) return true;
     if (++steps_at_full_problem_ > kMostStepsAtRest) return true;
     if (is_stable_)
       damping_ *= kStableFall;

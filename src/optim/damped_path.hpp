@@ -13,12 +13,13 @@ namespace coapt {
 // up to eight times the equal one. Loads grow at one rate: a step of k shares takes k times as long, so that
 // its dampers are c/k.
 // At the full problem the dampers weaken as the residual falls, to a tenth where the shape is stable without
-// them, and go. As a step has one minimum near its start, the order of nodes and the method hardly ever
-// decide where the path leads (docs/decisions/019). With continuation.is_loaded the path begins at the full
-// problem, with ten times the damping: for the shape that a coarser mesh gives, which may be near several
-// equilibria of the finer one. Of the result it changes q, outer_iterations, damped_steps and, where the
-// problem has a factorisation for its certificate, unstable_steps. A run that is cut short stays where it had
-// got to, with all loads.
+// them, and go at a residual of 1e-4. As a step has one minimum near its start, the order of nodes and the
+// method hardly ever decide where the path leads (docs/decisions/019). With continuation.is_loaded the path
+// begins at the full problem, with ten times the damping: for the shape that a coarser mesh gives, which may
+// be near several equilibria of the finer one. There the dampers go at 1e-3 already where the shape is
+// stable. Of the result it changes q, outer_iterations, damped_steps and, where the problem has a
+// factorisation for its certificate, unstable_steps. A run that is cut short stays where it had got to, with
+// all loads.
 Outcome follow_damped_path(Solver& solver, const Problem& problem, const StopRule& stop, Monitor& monitor,
                            Result& result);
 
