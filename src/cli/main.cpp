@@ -15,7 +15,6 @@
 #if defined(__GLIBC__) && defined(__linux__)
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -57,19 +56,17 @@ int run(const std::vector<std::string>& arguments, Session& session, TextOutput&
 
 #if defined(__GLIBC__) && defined(__linux__)
 
-constexpr std::size_t kReserve = std::size_t{1} << 30;  // of address space, which takes no memory by itself
-constexpr int kLargePiece = 32 << 20;                   // goes back to the system, where the reserve is full
-constexpr int kMostPieces = 65536;                      // of these at once, as without this
-constexpr std::uintptr_t kPage = 1 << 16;               // the largest a system may have as its small one
+constexpr std::size_t kReserve = std::size_t{128} << 20;  // of address space, which takes no memory by itself
+constexpr std::uintptr_t kPage = 1 << 16;                 // the largest a system may have as its small one
+constexpr int kMostPieces = 65536;                        // beside the heap, as without this
 
 bool is_memory_limited() {
   rlimit limit{};
   return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
 }
 
-// A heap that has grown once and is not given back: in large pages the system clears it in a few hundred
-// pieces, where the first access to each 4 kB took a twentieth to a half of a solve
-// (docs/decisions/011-what-limits-newton-on-valves.md).
+// In large pages the system clears a heap in some tens of pieces, where the first access to each 4 kB took a
+// twentieth to a half of a solve (docs/decisions/011-what-limits-newton-on-valves.md).
 void reserve_large_pages() {
   mallopt(M_MMAP_MAX, 0);  // from the heap, whatever its size
   void* reserve = std::malloc(kReserve);
@@ -80,16 +77,12 @@ void reserve_large_pages() {
   std::free(reserve);
 }
 
-// Keeps freed memory for the next minimisation, and asks for large pages for the first GB of the heap, where
-// no memory is limited.
+// The memory of a minimisation, some MB, is that of the next one too: given back to the system it would be
+// cleared anew each time. Larger pieces go back, as they do without this.
 void prepare_heap() {
-  mallopt(M_MMAP_THRESHOLD, kLargePiece);
-  if (is_memory_limited()) {
-    mallopt(M_TRIM_THRESHOLD, 8 * kLargePiece);
-    return;
-  }
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-  reserve_large_pages();
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  if (!is_memory_limited()) reserve_large_pages();
 }
 
 #else
