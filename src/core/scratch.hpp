@@ -4,11 +4,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
-#include <new>
-
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
 
 namespace coapt {
 
@@ -21,31 +16,20 @@ class Scratch {
     if (size <= size_) return;
     const size_t wanted = size_ == 0 ? size : size + size / 4;
     numbers_.reset();
-    numbers_.reset(allocate(wanted * sizeof(double)));
+    size_ = 0;
+    numbers_.reset(allocate(wanted));
     size_ = wanted;
   }
   double* data() { return numbers_.get(); }
   const double* data() const { return numbers_.get(); }
 
  private:
-  static constexpr size_t kLargePage = 2 << 20;
-  static constexpr size_t kLarge = 2 * kLargePage;
-
   struct Free {
     void operator()(double* numbers) const { std::free(numbers); }
   };
 
-  // Where the system gives large pages on request it clears a factor in tens of pieces, not in thousands.
-  static double* allocate(size_t bytes) {
-    const bool is_large = bytes >= kLarge;
-    const size_t whole = is_large ? (bytes + kLargePage - 1) / kLargePage * kLargePage : bytes;
-    void* memory = is_large ? std::aligned_alloc(kLargePage, whole) : std::malloc(whole);
-    if (!memory) throw std::bad_alloc();
-#ifdef __linux__
-    if (is_large) madvise(memory, whole, MADV_HUGEPAGE);
-#endif
-    return static_cast<double*>(memory);
-  }
+  // Of so many numbers; throws std::bad_alloc.
+  static double* allocate(size_t size);
 
   std::unique_ptr<double[], Free> numbers_;
   size_t size_ = 0;
