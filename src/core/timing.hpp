@@ -25,10 +25,13 @@ class PhaseTimes {
 };
 
 // Adds the time between its construction and its destruction to one phase: by the clock and of the processor.
+// The phase is entered at the start, as a destructor that asks for memory would end a process short of it.
 class PhaseTimer {
  public:
   PhaseTimer(PhaseTimes& times, std::string phase)
-      : times_(times), phase_(std::move(phase)), wall_(wall_seconds()), cpu_(cpu_seconds()) {}
+      : times_(times), phase_(std::move(phase)), wall_(wall_seconds()), cpu_(cpu_seconds()) {
+    times_.add(phase_, 0, 0);
+  }
   ~PhaseTimer() { times_.add(phase_, wall_seconds() - wall_, cpu_seconds() - cpu_); }
   PhaseTimer(const PhaseTimer&) = delete;
   PhaseTimer& operator=(const PhaseTimer&) = delete;
