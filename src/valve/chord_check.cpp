@@ -18,9 +18,6 @@ constexpr size_t kFewFans = 2;      // with strands that end together: one alone
 constexpr double kManyFans = 0.08;  // of all fans, that a coarse mesh makes end together
 constexpr double kAllSlack = 0.5;   // strain, below zero, of the tautest way; of valves at hand at most 0.13
 
-constexpr double kLoose = 2;  // ratio of length to distance, over its median; of valves at hand at most 1.8
-constexpr size_t kFewInsertions = 4;  // have no median that one of them does not make
-
 constexpr const char* kLengths = "`rest_length`, its unit and any `length_scale`";
 
 using Kind = ChordEnd::Kind;
@@ -60,10 +57,6 @@ class ChordGraph {
            : end.kind == Kind::Junction ? tips_ + end.index
                                         : tips_ + junctions_ + end.index;
   }
-  // How much longer than the distance of its ends, where these are given.
-  double excess(int k) const {
-    return chord(k).rest_length - (place(point(chord(k).from)) - place(point(chord(k).to))).norm();
-  }
   const Chord& chord(int k) const { return valve_.chords.chords[static_cast<size_t>(k)]; }
   int other_end(int k, int here) const {
     const int from = point(chord(k).from), to = point(chord(k).to);
@@ -71,11 +64,6 @@ class ChordGraph {
   }
 
  private:
-  Vec3 place(int point) const {
-    if (is_leaflet(point)) return valve_.leaflets.vertices.col(vertex(point));
-    return point < tips_ ? valve_.chords.papillary.col(point) : valve_.chords.junctions.col(point - tips_);
-  }
-
   const Valve& valve_;
   int tips_, junctions_;
   std::vector<std::vector<int>> at_;
@@ -190,10 +178,10 @@ void find_unheld(const Valve& valve, const ChordGraph& graph, std::vector<std::s
 }
 
 // Along the least way from a tip: its length at rest, that at which some chord of it is beyond what it bears
-// (infinite: none ever is), the chord that arrives, and that which exceeds the distance of its ends by most.
+// (infinite: none ever is), and the chord that arrives.
 struct Way {
   double length = 0, bearable = 0;
-  int chord = -1, loosest = -1;
+  int chord = -1;
 };
 
 // From a tip to each point.
@@ -213,11 +201,9 @@ std::map<int, Way> reach(const ChordGraph& graph, const ChordLimits& limits, int
     if (!result.emplace(here, way).second || graph.is_leaflet(here)) continue;
     for (const int k : graph.chords_at(here)) {
       const Chord& chord = graph.chord(k);
-      const bool is_loosest = way.loosest < 0 || graph.excess(k) > graph.excess(way.loosest);
       open.push({graph.other_end(k, here),
                  {way.length + chord.rest_length,
-                  way.bearable + chord.rest_length * (1 + limits.strain(chord.material)), k,
-                  is_loosest ? k : way.loosest}});
+                  way.bearable + chord.rest_length * (1 + limits.strain(chord.material)), k}});
     }
   }
   return result;
@@ -228,13 +214,9 @@ struct Stretch {
   double open = 0, closed = 0;  // strain that no place of the junctions takes away
   double length = 0;
   double distance = 0, distance_closed = 0;
-  double bearable = 0;         // strain at which some chord on the way is beyond what it bears
-  int chord = 0, loosest = 0;  // that arrives; that exceeds the distance of its ends by most
-  int vertex = 0;
+  double bearable = 0;  // strain at which some chord on the way is beyond what it bears
+  int chord = 0;
   bool knows_closed = false;  // where the leaflets go; else they may yet come to the tip
-
-  double farthest() const { return std::max(distance, distance_closed); }
-  double looseness() const { return length / farthest(); }
 
   bool is_doubtful() const {
     const double both = std::min(open, closed);
@@ -260,7 +242,7 @@ std::vector<Stretch> stretches(const Valve& valve, const ChordGraph& graph, cons
       const double apart = (open.col(v) - chords.papillary.col(tip)).norm();
       const double apart_closed = (closed.col(v) - tips_closed.col(tip)).norm();
       list.push_back({apart / way.length - 1, apart_closed / way.length - 1, way.length, apart, apart_closed,
-                      way.bearable / way.length - 1, way.chord, way.loosest, v, has_closed_leaflets(valve)});
+                      way.bearable / way.length - 1, way.chord, has_closed_leaflets(valve)});
     }
   return list;
 }
@@ -307,38 +289,9 @@ void find_all_slack(const std::vector<Stretch>& all, std::vector<std::string>& d
   if (tautest == all.end() || strain(*tautest) >= -kAllSlack) return;
   doubts.push_back("all chords are slack: even the tautest way from a papillary tip to a leaflet, by chord " +
                    std::to_string(tautest->chord) + ", is " + number_text(tautest->length) +
-                   " mm long for a distance of " + number_text(tautest->farthest()) +
+                   " mm long for a distance of " +
+                   number_text(std::max(tautest->distance, tautest->distance_closed)) +
                    " mm, in the open and the closed position. Check " + kLengths + ".");
-}
-
-// One chord that is much too long is hidden by its neighbours, which hold the leaflet all but in its place.
-// An insertion is as loose as the tautest way to it.
-void find_loose(const std::vector<Stretch>& all, std::vector<std::string>& doubts) {
-  std::map<int, const Stretch*> tautest;  // by vertex
-  for (const Stretch& stretch : all) {
-    const auto [known, is_new] = tautest.emplace(stretch.vertex, &stretch);
-    if (!is_new && stretch.looseness() < known->second->looseness()) known->second = &stretch;
-  }
-  if (tautest.size() < kFewInsertions) return;
-  std::vector<const Stretch*> ways;
-  for (const auto& [vertex, way] : tautest) ways.push_back(way);
-  std::stable_sort(ways.begin(), ways.end(),
-                   [](const Stretch* l, const Stretch* r) { return l->looseness() > r->looseness(); });
-  const double median = ways[ways.size() / 2]->looseness();
-  std::vector<int> chords;
-  size_t loose = 0;
-  for (; loose < ways.size() && ways[loose]->looseness() > kLoose * median; ++loose)
-    if (std::find(chords.begin(), chords.end(), ways[loose]->loosest) == chords.end())
-      chords.push_back(ways[loose]->loosest);
-  if (loose == 0) return;
-  const Stretch& most = *ways.front();
-  doubts.push_back(named("chord", "chords", chords) + ": " + (chords.size() == 1 ? "leaves " : "leave ") +
-                   std::to_string(loose) + (loose == 1 ? " insertion" : " insertions") +
-                   " on the leaflets much looser than the others; worst: " + number_text(most.length) +
-                   " mm of chord from the papillary tip for a distance of " + number_text(most.farthest()) +
-                   " mm, " + number_text(most.looseness()) +
-                   " times, where the median of all insertions is " + number_text(median) + ". Check " +
-                   (chords.size() == 1 ? "its" : "their") + " `rest_length`.");
 }
 
 }  // namespace
@@ -367,7 +320,6 @@ std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& lim
   const std::vector<Stretch> ways = stretches(valve, graph, limits);
   find_overstretched(valve, ways, doubts);
   find_all_slack(ways, doubts);
-  find_loose(ways, doubts);
   return doubts;
 }
 

@@ -29,10 +29,9 @@ inline constexpr double kMostChordStress = 1000;
 // strands between them are long: in the open and in the closed position, by more than kOverstretched or so
 // far that by their laws some chord must pull with more than kMostChordStress; in the closed position by
 // itself, by more than kOverstretchedClosed, or that far where the leaflets' place is known; rest lengths
-// with which all hang slack; chords that leave insertions more than twice as loose, by length over distance,
-// as the median. Where the closed reference has the vertices of the leaflets they are the closed position,
-// else these stay where they are and the tips alone go to theirs. Each entry is a sentence with the numbers
-// of chords (as in valve.chords.chords), junctions or regions, and what to do. Lengths in mm.
+// with which all hang slack. Where the closed reference has the vertices of the leaflets they are the closed
+// position, else these stay where they are and the tips alone go to theirs. Each entry is a sentence with the
+// numbers of chords (as in valve.chords.chords), junctions or regions, and what to do. Lengths in mm.
 // names_repeated: false leaves out strands between the same two points, which coarse meshes have by right.
 std::vector<std::string> chord_doubts(const Valve& valve, const ChordLimits& limits = {},
                                       bool names_repeated = true, Numbering numbering = {});
