@@ -30,6 +30,13 @@ TEST(Timing, ATimerAddsBothTimesOfItsScope) {
   EXPECT_LT(times.cpu().at("pause"), 0.02);
 }
 
+TEST(Timing, APhaseIsEnteredAtItsStart) {  // the end of a timer must not ask for memory
+  PhaseTimes times;
+  const PhaseTimer timer(times, "factorisation");
+  EXPECT_EQ(times.wall().count("factorisation"), 1U);
+  EXPECT_EQ(times.cpu().count("factorisation"), 1U);
+}
+
 TEST(Timing, WaitingTakesNoCpuTimeAndWorkDoes) {
   const double before = cpu_seconds();
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
