@@ -91,10 +91,12 @@ function(coapt_unite target size)
   endforeach()
 endfunction()
 
-# coapt_link_adapters(<target>): every adapter of the build, said to src/cli/solvers.cpp by COAPT_HAS_<NAME>.
+# coapt_link_adapters(<target> [ONLY <names>]): every adapter of the build, or these of them, said to the sources of src/cli
+# by COAPT_HAS_<NAME>.
 function(coapt_link_adapters target)
+  cmake_parse_arguments(ARG "" "" "ONLY" ${ARGN})
   foreach(adapter IN ITEMS cgal cholmod ceres nlopt)
-    if(TARGET coapt_${adapter})
+    if(TARGET coapt_${adapter} AND (NOT ARG_ONLY OR adapter IN_LIST ARG_ONLY))
       string(TOUPPER ${adapter} name)
       target_link_libraries(${target} PRIVATE coapt_${adapter})
       target_compile_definitions(${target} PRIVATE COAPT_HAS_${name})

@@ -144,7 +144,7 @@ struct SeriesFiles {
 SeriesFiles series_in(const fs::path& folder) {
   SeriesFiles files{dicom_series(folder), {}};
   std::vector<FoundImage> slices;
-  for (const fs::path& path : files.paths) slices.push_back(ImageFile(path).found());
+  for (const fs::path& path : files.paths) slices.push_back(open_image(path)->found());
   files.whole = stacked(slices, folder.string());
   return files;
 }
@@ -175,7 +175,7 @@ void check_values(const Volume& volume, const std::string& name) {
 
 VolumeFile header_of(const fs::path& path, const VolumeReadOptions& options) {
   if (fs::is_directory(path)) return described(series_in(path).whole, options, path.string());
-  return described(ImageFile(path).found(), options, path.string());
+  return described(open_image(path)->found(), options, path.string());
 }
 
 VolumeFile volume_of(const fs::path& path, const VolumeReadOptions& options) {
@@ -189,9 +189,9 @@ VolumeFile volume_of(const fs::path& path, const VolumeReadOptions& options) {
                      "gives it, in mm");
   const auto frame = static_cast<std::size_t>(chosen_frame(file, options, name));
   for (const fs::path& part : files.paths) {
-    const ImageFile image(part);
-    const FoundImage& found = image.found();
-    const std::vector<char> bytes = image.read();
+    const std::unique_ptr<ImageFile> image = open_image(part);
+    const FoundImage& found = image->found();
+    const std::vector<char> bytes = image->read();
     const std::size_t count = found.size[0] * found.size[1] * (found.size.size() > 2 ? found.size[2] : 1);
     const bool is_interleaved = found.components > 1;
     const std::size_t list = frame % found.components, time = frame / found.components;
@@ -230,7 +230,7 @@ void check_dicom_by_trial(const fs::path& path, const Read& read) {
   if (end.empty()) return;
   fs::path culprit = path;
   for (const fs::path& file : files)
-    if (culprit == path && !end_of_trial([&] { ImageFile(file).read(); }, limits).empty()) culprit = file;
+    if (culprit == path && !end_of_trial([&] { open_image(file)->read(); }, limits).empty()) culprit = file;
   throw InputError(culprit.string() + ": its reader (GDCM) was ended by " + end +
                    ": the DICOM file is damaged; copy or export it again");
 }
@@ -239,7 +239,7 @@ void check_dicom_by_trial(const fs::path& path, const Read& read) {
 void check_nifti_by_trial(const fs::path& path) {
   std::error_code error;
   if (!is_nifti(path) || !fs::is_regular_file(path, error)) return;
-  const std::string end = end_of_trial([&] { const ImageFile file(path); }, {});
+  const std::string end = end_of_trial([&] { open_image(path); }, {});
   if (end.empty()) return;
   throw InputError(
       path.string() + ": its reader (ITK) was ended by " + end +

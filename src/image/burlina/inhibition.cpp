@@ -1,11 +1,10 @@
 #include "image/burlina/inhibition.hpp"
 
 #include "core/error.hpp"
-#include "image/detail/itk_volume.hpp"
+#include "image/burlina/gradient_magnitude.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <itkGradientMagnitudeRecursiveGaussianImageFilter.h>
 
 namespace coapt {
 namespace {
@@ -33,11 +32,7 @@ std::vector<float> values_in_ball(const Volume& volume, const Vec3& centre, doub
 }
 
 Volume edge_inhibition(const Volume& volume, double scale, const Vec3& seed, double radius) {
-  const auto filter = itk::GradientMagnitudeRecursiveGaussianImageFilter<FloatImage, FloatImage>::New();
-  filter->SetInput(as_image(volume));
-  filter->SetSigma(scale);
-  filter->Update();
-  Volume inhibition = as_volume(filter->GetOutput(), volume);
+  Volume inhibition = gradient_magnitude(volume, scale);
   const std::vector<float> blood = values_in_ball(inhibition, seed, radius);
   if (blood.empty()) throw InputError("a seed of a chamber lies outside of the volume; --seeds moves it");
   const auto half = static_cast<float>(kGradientsOfBlood * median_of(blood));

@@ -1,14 +1,13 @@
 #include "image/detail/image_io.hpp"
 
 #include "core/error.hpp"
-#include "formats/lower_extension.hpp"
 #include "formats/whole_file.hpp"
 #include "image/detail/dicom_structure.hpp"
 #include "image/detail/meta_image.hpp"
 #include "image/detail/stated_geometry.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 // The whole of Eigen before ITK, which brings an older one with it that skips what is there already.
 #include <Eigen/Dense>
@@ -151,61 +150,67 @@ FoundImage found_by(const itk::ImageIOBase& reader, const fs::path& path, const 
   return found;
 }
 
-}  // namespace
+class MetaImageFile : public ImageFile {
+ public:
+  explicit MetaImageFile(const fs::path& path) : path_(path), header_(meta_image_header(path)) {
+    found_ = header_.found;
+  }
+  std::vector<char> read() const override { return meta_image_voxels(header_, path_); }
 
-bool is_nifti(const fs::path& path) {
-  const std::string ending = formats::lower_extension(path);
-  return ending == ".nii" || (ending == ".gz" && formats::lower_extension(path.stem()) == ".nii");
-}
-
-struct ImageFile::Reader {
-  itk::ImageIOBase::Pointer io;  // or
-  std::optional<MetaImageHeader> meta = {};
+ private:
+  fs::path path_;
+  MetaImageHeader header_;
 };
 
-ImageFile::ImageFile(const fs::path& path) : path_(path), reader_(std::make_unique<Reader>()) {
+class ItkFile : public ImageFile {
+ public:
+  ItkFile(const fs::path& path, const std::string& format, itk::ImageIOBase::Pointer io)
+      : path_(path), io_(std::move(io)) {
+    if (format == "DICOM") check_dicom_structure(path);
+    itk::Object::SetGlobalWarningDisplay(false);  // of what ITK doubts, what matters is said here
+    try {
+      if (!io_->CanReadFile(path.c_str()))
+        throw InputError(path.string() + ": is no " + format +
+                         " file, whatever its name says; export it again");
+      io_->SetFileName(path.string());
+      io_->ReadImageInformation();
+    } catch (const itk::ExceptionObject& error) {
+      throw InputError(path.string() + ": its header cannot be read as " + format + ": " + reason_of(error));
+    }
+    found_ = found_by(*io_, path, format);
+  }
+
+  std::vector<char> read() const override {
+    itk::ImageIORegion region(io_->GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < io_->GetNumberOfDimensions(); ++axis) {
+      region.SetIndex(axis, 0);
+      region.SetSize(axis, io_->GetDimensions(axis));
+    }
+    io_->SetIORegion(region);
+    try {
+      std::vector<char> bytes(io_->GetImageSizeInBytes());
+      if (found_.format == "NIfTI") check_nifti_data(path_, bytes.size());
+      io_->Read(bytes.data());
+      return bytes;
+    } catch (const itk::ExceptionObject& error) {
+      throw InputError(path_.string() + ": its voxels cannot be read: " + reason_of(error) +
+                       "; a file that ends too early must be copied or exported again");
+    }
+  }
+
+ private:
+  fs::path path_;
+  itk::ImageIOBase::Pointer io_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImageFile> open_image(const fs::path& path) {
   std::string format;
   check_file(path);
-  reader_->io = reader_for(path, format);
-  if (!reader_->io) {
-    reader_->meta = meta_image_header(path);
-    found_ = reader_->meta->found;
-    return;
-  }
-  if (format == "DICOM") check_dicom_structure(path);
-  itk::Object::SetGlobalWarningDisplay(false);  // of what ITK doubts, what matters is said here
-  try {
-    if (!reader_->io->CanReadFile(path.c_str()))
-      throw InputError(path.string() + ": is no " + format +
-                       " file, whatever its name says; export it again");
-    reader_->io->SetFileName(path.string());
-    reader_->io->ReadImageInformation();
-  } catch (const itk::ExceptionObject& error) {
-    throw InputError(path.string() + ": its header cannot be read as " + format + ": " + reason_of(error));
-  }
-  found_ = found_by(*reader_->io, path, format);
-}
-
-ImageFile::~ImageFile() = default;
-
-std::vector<char> ImageFile::read() const {
-  if (reader_->meta) return meta_image_voxels(*reader_->meta, path_);
-  itk::ImageIOBase& io = *reader_->io;
-  itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
-    region.SetIndex(axis, 0);
-    region.SetSize(axis, io.GetDimensions(axis));
-  }
-  io.SetIORegion(region);
-  try {
-    std::vector<char> bytes(io.GetImageSizeInBytes());
-    if (found_.format == "NIfTI") check_nifti_data(path_, bytes.size());
-    io.Read(bytes.data());
-    return bytes;
-  } catch (const itk::ExceptionObject& error) {
-    throw InputError(path_.string() + ": its voxels cannot be read: " + reason_of(error) +
-                     "; a file that ends too early must be copied or exported again");
-  }
+  itk::ImageIOBase::Pointer io = reader_for(path, format);
+  if (!io) return std::make_unique<MetaImageFile>(path);
+  return std::make_unique<ItkFile>(path, format, std::move(io));
 }
 
 std::vector<fs::path> dicom_series(const fs::path& folder) {

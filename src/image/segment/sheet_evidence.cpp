@@ -22,9 +22,6 @@ using TensorImage = itk::Image<itk::SymmetricSecondRankTensor<float, 3>, 3>;
 
 // Parts smaller than this share of the greatest are speckle.
 constexpr double kSmallPart = 0.05;
-// Standard deviations at which leaflets are looked for [mm], and the least one, in voxels.
-constexpr double kScales[] = {0.7, 1.0, 1.4};
-constexpr double kLeastScale = 0.8;
 // Bins of the histograms that thresholds are found in.
 constexpr unsigned int kBins = 256;
 
@@ -124,15 +121,6 @@ Volume greatest_part(const Volume& volume, double threshold) {
   return part;
 }
 
-std::vector<double> sheet_scales(const Volume& volume) {
-  std::vector<double> scales;
-  for (const double scale : kScales) {
-    const double possible = std::max(scale, kLeastScale * volume.spacing.maxCoeff());
-    if (scales.empty() || possible > scales.back()) scales.push_back(possible);
-  }
-  return scales;
-}
-
 SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& scales, bool has_speckle) {
   SheetEvidence evidence{volume_like(volume, 0),
                          std::vector<Eigen::Vector3f>(volume.values.size(), Eigen::Vector3f::Zero())};
@@ -143,16 +131,6 @@ SheetEvidence sheet_evidence(const Volume& volume, const std::vector<double>& sc
   const Eigen::Matrix3f direction = volume.direction.cast<float>();
   for (Eigen::Vector3f& normal : evidence.normals) normal = direction * normal;
   return evidence;
-}
-
-double sheet_strength(const SheetEvidence& evidence, const Vec3& position, const Vec3& normal) {
-  const double strength = sample(evidence.strength, position, 0);
-  if (strength <= 0) return 0;
-  const Vec3 at = voxels_of(evidence.strength, position);
-  const auto nearest = [&](int axis) { return static_cast<int>(std::lround(at[axis])); };
-  const size_t voxel = evidence.strength.voxel(nearest(0), nearest(1), nearest(2));
-  const double cosine = normal.dot(evidence.normals[voxel].cast<double>());
-  return strength * cosine * cosine;
 }
 
 }  // namespace coapt
