@@ -8,6 +8,7 @@ are apart; every library that the command loads belongs to a package that it dep
 solves a valve with no files but those (as root: in a chroot); Python solves a scene in a root of the packages that
 python3-coapt depends on and nothing else (as root); a project is compiled by pkg-config alone.
 """
+import functools
 import json
 import os
 import pathlib
@@ -26,6 +27,7 @@ IS_ROOT = os.geteuid() == 0
 DISC = pathlib.Path(__file__).resolve().parents[2] / "examples/02_pressurised_disc"
 
 
+@functools.cache
 def owner(library: str) -> str:
     """The package of a library; merged /usr has two names for one file."""
     real = os.path.realpath(library)
@@ -122,9 +124,17 @@ class DebianPackages(unittest.TestCase):
         for library in self.libraries(program):
             self.assertIn(owner(library), allowed, library)
 
+    def modules(self) -> list[str]:
+        """What the command loads when it needs it, in a folder of its package."""
+        return [str(file.relative_to(self.root)) for file in self.root.glob("usr/lib/**/coapt/coapt-*.so")]
+
     def test_every_library_of_the_command_comes_from_a_dependency(self):
         self.assert_libraries_come_from_dependencies("coapt", "usr/bin/coapt")
         self.assertNotRegex(run("readelf", "-d", self.root / "usr/bin/coapt"), "R(UN)?PATH")
+        for module in self.modules():
+            self.assert_libraries_come_from_dependencies("coapt", module)
+            self.assertNotRegex(run("readelf", "-d", self.root / module), "R(UN)?PATH")
+            self.assertIn(f"./{module}", run("dpkg-deb", "-c", self.files["coapt"]))
 
     def test_the_python_module_solves_beside_all_that_this_machine_has(self):
         if "python3-coapt" not in self.files:
@@ -153,7 +163,8 @@ class DebianPackages(unittest.TestCase):
         place = self.root / "valve"
         inside = place
         if IS_ROOT:
-            for library in self.libraries():
+            programs = ["usr/bin/coapt", *self.modules()]
+            for library in {library for program in programs for library in self.libraries(program)}:
                 copy = self.root / library.lstrip("/")
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(library, copy)
@@ -164,6 +175,14 @@ class DebianPackages(unittest.TestCase):
         self.assertEqual(result["status"], "converged")
         self.assertLess(result["residual"], 1e-8)
         self.assertGreater(result["metrics"]["annulus_area_mm2"], 10 * result["metrics"]["orifice_area_mm2"])
+        parts = re.findall(r"with    (\w+)", run(*coapt, "--version"))
+        if "NLopt" in parts:
+            run(*coapt, "generate", "disc", "--triangles", "200", "-o", inside / "disc")
+            run(*coapt, "solve", inside / "disc/scene.json", "--solver", "nlopt", "--tolerance", "1e-6", "--max-seconds", "100")
+            self.assertTrue(json.loads((place / "disc/result/result.json").read_text())["converged"])
+        if "ITKImage" in parts:
+            run(*coapt, "phantom", inside / "scene.json", "--voxel", "2mm", "-o", inside / "phantom")
+            self.assertIn("voxels", run(*coapt, "image", "info", inside / "phantom/open/image.nrrd"))
 
     def test_serves_a_project_through_pkg_config(self):
         if not shutil.which("pkg-config"):

@@ -22,8 +22,8 @@ struct Module {
 
 using ModuleFunction = const Module*();
 
-// Loads it, once, from the folder of the command's modules; it stays until the process ends. Throws InputError
-// where the file or a library that it needs is missing, or it is of another build.
-const Module& loaded_module(const char* file);
+// Loads the file of this name from the folder of the command's modules; it stays until the process ends. Throws
+// InputError where the file or a library that it needs is missing, or it is of another build.
+const Module& loaded_module(const char* name);
 
 }  // namespace coapt::cli
