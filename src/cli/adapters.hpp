@@ -1,6 +1,6 @@
-// Adapters whose libraries take long to load: the minimisers of Ceres and NLopt and the factorisation of CHOLMOD. The
-// command loads them when one is first asked for (modules/loaded_adapters.cpp); other programs link them
-// (modules/linked_adapters.cpp).
+// Adapters whose libraries take long to load: the minimisers of Ceres and NLopt and the factorisation of
+// CHOLMOD. The command loads them when one is first asked for (modules/loaded_adapters.cpp); other programs
+// link them (modules/linked_adapters.cpp).
 #pragma once
 
 #include "optim/bounded_minimiser.hpp"

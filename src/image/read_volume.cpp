@@ -3,8 +3,8 @@
 #include "core/error.hpp"
 #include "core/number_text.hpp"
 #include "image/detail/dicom_structure.hpp"
-#include "image/detail/image_io.hpp"
 #include "image/detail/trial_process.hpp"
+#include "image/itk/image_io.hpp"
 
 #include <Eigen/SVD>
 

@@ -1,11 +1,11 @@
+#include "cli/modules/itk_functions.hpp"
 #include "cli/modules/module.hpp"
-#include "image/itk/itk_functions.hpp"
 
 namespace {
 
 using namespace coapt::cli;
 
-constexpr coapt::ItkFunctions kItk;
+constexpr ItkFunctions kItk;
 constexpr Module kImages{.build = COAPT_BUILD, .itk = &kItk};
 
 }  // namespace

@@ -1,15 +1,13 @@
-// Parts of the command in files of their own, which it loads when they are first needed: what most scenes do not use costs
-// their start nothing (docs/decisions/015-what-unused-components-cost.md).
+// Parts of the command in files of their own, which it loads when they are first needed: what most scenes do
+// not use costs their start nothing (docs/decisions/015-what-unused-components-cost.md).
 #pragma once
 
 #include "optim/bounded_minimiser.hpp"
 #include "optim/solver.hpp"
 
-namespace coapt {
-struct ItkFunctions;
-}
-
 namespace coapt::cli {
+
+struct ItkFunctions;
 
 // What a file gives by the C function coapt_module().
 struct Module {
@@ -22,8 +20,8 @@ struct Module {
 
 using ModuleFunction = const Module*();
 
-// Loads the file of this name from the folder of the command's modules; it stays until the process ends. Throws
-// InputError where the file or a library that it needs is missing, or it is of another build.
+// Loads the file of this name from the folder of the command's modules; it stays until the process ends.
+// Throws InputError where the file or a library that it needs is missing, or it is of another build.
 const Module& loaded_module(const char* name);
 
 }  // namespace coapt::cli

@@ -1,7 +1,7 @@
 #include "image/burlina/inhibition.hpp"
 
 #include "core/error.hpp"
-#include "image/burlina/gradient_magnitude.hpp"
+#include "image/itk/gradient_magnitude.hpp"
 
 #include <algorithm>
 #include <cmath>

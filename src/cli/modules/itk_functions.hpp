@@ -1,18 +1,16 @@
-// What this room asks of ITK, as one table, for programs that load ITK when a volume image first needs it: its libraries
-// take longer to load than a small valve to solve (docs/decisions/015-what-unused-components-cost.md). The
-// functions are those of the headers; itk/forwarded.cpp defines them by this table, and a program without it links
-// coapt_image_itk, which has the functions themselves.
+// What the command asks of ITK, as one table: the functions of these headers, which loaded_itk.cpp defines by
+// it.
 #pragma once
 
-#include "image/burlina/gradient_magnitude.hpp"
 #include "image/burlina/thin_tissue.hpp"
-#include "image/detail/image_io.hpp"
+#include "image/itk/gradient_magnitude.hpp"
+#include "image/itk/image_io.hpp"
 #include "image/routes/distance_from_sheet.hpp"
 #include "image/segment/sheet_evidence.hpp"
 #include "image/slices/slice_picture.hpp"
 #include "image/write_volume.hpp"
 
-namespace coapt {
+namespace coapt::cli {
 
 struct ItkFunctions {
   decltype(&coapt::open_image) open_image = coapt::open_image;
@@ -28,7 +26,4 @@ struct ItkFunctions {
   decltype(&coapt::greatest_part) greatest_part = coapt::greatest_part;
 };
 
-// For itk/forwarded.cpp; of the program that loads ITK. Throws InputError where it cannot be loaded.
-const ItkFunctions& itk_functions();
-
-}  // namespace coapt
+}  // namespace coapt::cli

@@ -1,4 +1,4 @@
-#include "image/detail/image_io.hpp"
+#include "image/itk/image_io.hpp"
 
 #include "core/error.hpp"
 #include "formats/whole_file.hpp"

@@ -1,6 +1,6 @@
-#include "image/burlina/gradient_magnitude.hpp"
+#include "image/itk/gradient_magnitude.hpp"
 
-#include "image/detail/itk_volume.hpp"
+#include "image/itk/itk_volume.hpp"
 
 #include <itkGradientMagnitudeRecursiveGaussianImageFilter.h>
 

@@ -1,6 +1,6 @@
 #include "image/routes/distance_from_sheet.hpp"
 
-#include "image/detail/itk_volume.hpp"
+#include "image/itk/itk_volume.hpp"
 
 #include <itkBinaryThresholdImageFilter.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>

@@ -1,6 +1,6 @@
 #include "image/burlina/thin_tissue.hpp"
 
-#include "image/detail/itk_volume.hpp"
+#include "image/itk/itk_volume.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,7 +1,7 @@
 #include "image/segment/sheet_evidence.hpp"
 
 #include "core/error.hpp"
-#include "image/detail/itk_volume.hpp"
+#include "image/itk/itk_volume.hpp"
 
 #include <Eigen/Eigenvalues>
 
