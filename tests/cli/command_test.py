@@ -259,6 +259,7 @@ class CommandTest(CommandCase):
         text = scene.read_text()
         scene.write_text(re.sub(r'("type": "load_pressure", "value": )"[^"]*"', r'\1"0.1 Pa"', text))
         self.assertNotEqual(scene.read_text(), text)
+        self.assertRegex(coapt("check", scene).stdout, r"(?s)warning: .*: no defects, \d warnings? above, derivatives passed\n$")
         run = coapt("solve", scene, "--max-seconds", 1)
         self.assertRegex(run.stderr, r"coapt: warning: [^\n]*the pressure is 0\.00075\S* mmHg; hearts have")
         self.assertRegex(" ".join(self.result()["warnings"]), "the pressure is .* Check the unit of the pressure")

@@ -131,6 +131,12 @@ int print_repair(const std::string& scene, RepairMethod method, const RepairRepo
   return kConverged;
 }
 
+// What the last line says of what stands above it.
+std::string warnings_above(size_t count) {
+  if (count == 0) return "";
+  return ", " + std::to_string(count) + (count == 1 ? " warning" : " warnings") + " above";
+}
+
 }  // namespace
 
 void add_check_command(CLI::App& app, Session& session) {
@@ -164,9 +170,9 @@ void add_check_command(CLI::App& app, Session& session) {
     session.exit_code = print_defects(report.defects);
     if (session.exit_code != kConverged) return;
     print_derivatives(report.derivatives);
-    std::printf(report.is_sound() ? "%s: no defects, derivatives passed\n"
-                                  : "%s: no defects, but a derivative did not pass\n",
-                options->scene.c_str());
+    std::printf("%s: no defects%s, %s\n", options->scene.c_str(),
+                warnings_above(report.warnings.size()).c_str(),
+                report.is_sound() ? "derivatives passed" : "but a derivative did not pass");
     session.exit_code = report.is_sound() ? kConverged : kNotConverged;
   });
 }
