@@ -27,7 +27,7 @@ from runs import print_header
 
 ALLOWED = 1.02
 # Functions that only a scene with the feature has any business in.
-FUNCTIONS = {"contact": r"ContactBarrier|ContactFacet",
+FUNCTIONS = {"contact": r"ContactBarrier|ContactFacet|ContactSurface|BarrierCandidates|evaluate_barrier",
              "chords": r"coapt::Cable\b|CableLaw", "bending": r"BendingHinge",
              "follower pressure": r"LoadPressureFollower", "report": r"ShapeRecord|coapt::solve_page|shape_view_html",
              "frames": r"FrameWriter", "modes": r"coapt::smallest_modes\("}

@@ -1,5 +1,5 @@
-// What the command asks of ITK, as one table: the functions of these headers, which loaded_itk.cpp defines by
-// it.
+// What the command asks of ITK, as one table. In the module its entries are the functions of these headers;
+// in the command loaded_itk.cpp defines these functions by calls through the table.
 #pragma once
 
 #include "image/burlina/thin_tissue.hpp"
