@@ -16,7 +16,7 @@ namespace coapt {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-class LastOrder;
+class LastFactor;
 
 // Numbers of negative and of positive pivots of A = L D L^T: by Sylvester's law those of the eigenvalues.
 struct Inertia {
@@ -37,9 +37,9 @@ class Factorisation {
   void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
   const std::shared_ptr<ThreadTeam>& team() const { return team_; }
 
-  // Where it looks for the order of its pattern first, and leaves it to those that share it. They must work
-  // one after the other.
-  void share_order(std::shared_ptr<LastOrder> order) { order_ = std::move(order); }
+  // What those that share it leave to each other: the order of the last pattern, and memory. They must work
+  // one after the other. Before analyse().
+  void share(std::shared_ptr<LastFactor> last) { last_ = std::move(last); }
 
   // Orders and analyses the pattern of `lower`; its values are not looked at. Pre for all that follows.
   virtual void analyse(const SparseMatrix& lower) = 0;
@@ -61,11 +61,11 @@ class Factorisation {
   virtual Inertia inertia(const SparseMatrix& lower) = 0;
 
  protected:
-  const std::shared_ptr<LastOrder>& order() const { return order_; }  // null: shared with no other
+  const std::shared_ptr<LastFactor>& last() const { return last_; }  // null: shared with no other
 
  private:
   std::shared_ptr<ThreadTeam> team_ = std::make_shared<ThreadTeam>();
-  std::shared_ptr<LastOrder> order_;
+  std::shared_ptr<LastFactor> last_;
 };
 
 using FactorisationFactory = std::function<std::unique_ptr<Factorisation>()>;

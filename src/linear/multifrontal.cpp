@@ -1,7 +1,7 @@
 #include "linear/factorisation.hpp"
-#include "linear/multifrontal_factor.hpp"
-#include "linear/node_ordering.hpp"
+#include "linear/last_factor.hpp"
 
+#include <memory>
 #include <string_view>
 
 namespace coapt {
@@ -9,38 +9,48 @@ namespace {
 
 class Multifrontal final : public Factorisation {
  public:
+  Multifrontal() = default;
+  Multifrontal(const Multifrontal&) = delete;
+  Multifrontal& operator=(const Multifrontal&) = delete;
+  ~Multifrontal() override {
+    if (last() && factor_) last()->factor = std::move(factor_);
+  }
+
   std::string_view name() const override { return "multifrontal"; }
 
   void analyse(const SparseMatrix& lower) override {
+    if (!factor_ && last()) factor_ = std::move(last()->factor);
+    if (!factor_) factor_ = std::make_unique<MultifrontalFactor>();
     const NodeGraph graph = node_graph(lower);
-    factor_.use_threads(team());
-    factor_.analyse(graph, kept_.supernodes(graph, factor_.nodes().order, [&] {
-      return order() ? order()->of(graph) : node_order(graph);
+    factor_->use_threads(team());
+    factor_->analyse(graph, kept_.supernodes(graph, factor_->nodes().order, [&] {
+      if (kept_.is_changing()) return brief_order(graph);
+      return last() ? last()->order.of(graph) : node_order(graph);
     }));
   }
 
-  bool factorise(const SparseMatrix& lower) override { return factor_.factorise(lower.valuePtr()); }
+  bool factorise(const SparseMatrix& lower) override { return factor_->factorise(lower.valuePtr()); }
 
   void solve(const Vector& b, Vector& x) override {
-    factor_.permute(b, work_);
-    factor_.solve_forward(work_);
-    factor_.solve_backward(work_);
-    factor_.restore(work_, x);
+    factor_->permute(b, work_);
+    factor_->solve_forward(work_);
+    factor_->solve_backward(work_);
+    factor_->restore(work_, x);
   }
 
-  double pivot_ratio() const override { return factor_.pivot_ratio(); }
+  double pivot_ratio() const override { return factor_->pivot_ratio(); }
 
   Inertia inertia(const SparseMatrix& lower) override {
     const auto size = static_cast<int>(lower.cols());
     if (factorise(lower)) return {0, 0, size};
     Inertia inertia;
-    factor_.count_signs(lower.valuePtr(), inertia.negative, inertia.positive);
+    factor_->count_signs(lower.valuePtr(), inertia.negative, inertia.positive);
     inertia.zero = size - inertia.negative - inertia.positive;
     return inertia;
   }
 
  private:
-  MultifrontalFactor factor_;
+  std::unique_ptr<MultifrontalFactor> factor_;
   KeptOrder kept_;
   Vector work_;
 };

@@ -234,7 +234,7 @@ Supernodes supernodes_of(const NodeGraph& graph, const std::vector<int>& order, 
 Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::vector<int>& last,
                                  const std::function<std::vector<int>()>& order, int border) {
   constexpr double kMostFill = 1.1;  // of an order that is kept, over that of the pattern it was made for
-  if (last.size() == static_cast<size_t>(graph.size())) {
+  if (fill_ > 0 && last.size() == static_cast<size_t>(graph.size())) {
     Supernodes nodes = supernodes_of(graph, last, border);
     if (entries_of(nodes) <= kMostFill * fill_) return nodes;
   }

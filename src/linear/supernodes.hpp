@@ -41,6 +41,9 @@ class KeptOrder {
   Supernodes supernodes(const NodeGraph& graph, const std::vector<int>& last,
                         const std::function<std::vector<int>()>& order, int border = 0);
 
+  // Whether there was a pattern before: contacts come and go, and this one will not last.
+  bool is_changing() const { return fill_ > 0; }
+
  private:
   double fill_ = 0;  // entries of the pattern that was ordered last
 };

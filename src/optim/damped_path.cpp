@@ -128,7 +128,8 @@ class DampedPath {
     is_stable_ = false;
     if (!std::isfinite(energy)) return;
     PhaseTimer timer(monitor_.phases(), "certificate");
-    const auto factor = make_multifrontal_factorisation();
+    const auto& make = problem_.stability.factorisation;
+    const auto factor = make ? make() : make_multifrontal_factorisation();
     factor->analyse(hessian);
     monitor_.count_certificate(1);
     is_stable_ = factor->factorise(hessian);

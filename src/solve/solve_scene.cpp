@@ -2,7 +2,6 @@
 
 #include "core/error.hpp"
 #include "formats/json/suggestion.hpp"
-#include "linear/node_ordering.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/masses.hpp"
 #include "scene/build/xpbd_body.hpp"
@@ -24,13 +23,14 @@ FactorisationFactory named_factorisation(const FactorisationTable& table, const 
                    "\" is not in this build; use \"auto\", \"multifrontal\" or \"eigen\"");
 }
 
-// Those made by it share one team of threads and one order, as they work one after the other.
-FactorisationFactory chosen_factorisation(const FactorisationTable& table, const SolverSpec& solver) {
+// Those made by it share one team of threads, one order and memory, as they work one after the other.
+FactorisationFactory chosen_factorisation(const FactorisationTable& table, const SolverSpec& solver,
+                                          const std::shared_ptr<LastFactor>& last) {
   return [make = named_factorisation(table, solver.factorisation),
-          team = std::make_shared<ThreadTeam>(thread_count(solver)), order = std::make_shared<LastOrder>()] {
+          team = std::make_shared<ThreadTeam>(thread_count(solver)), last] {
     std::unique_ptr<Factorisation> factorisation = make();
     factorisation->use_threads(team);
-    factorisation->share_order(order);
+    factorisation->share(last);
     return factorisation;
   };
 }
@@ -100,7 +100,9 @@ SolverTable scene_solvers() {
 SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const RunOptions& options) {
   SolveSetup setup;
   setup.solver = options.solver.empty() ? scene.solver.type : options.solver;
-  const FactorisationFactory factorisation = chosen_factorisation(options.factorisations, scene.solver);
+  setup.last_factor = std::make_shared<LastFactor>();
+  const FactorisationFactory factorisation =
+      chosen_factorisation(options.factorisations, scene.solver, setup.last_factor);
   setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
                        factorisation](const Model& model) {
     return make(solver_options(spec, terms, factorisation, model));
@@ -117,39 +119,39 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
 
 namespace {
 
-void tell_of_solve(const SolveSetup& setup) {
+Result solved(const Problem& problem, const Model& model, const SolveSetup& setup) {
   if (setup.phase) setup.phase({.tolerance = setup.stop.tolerance});
+  Result result = solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
+  setup.last_factor->factor.reset();  // measuring takes as much memory
+  return result;
 }
 
 }  // namespace
 
 CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Model& model,
                            const SolveSetup& setup) {
-  if (scene.solver.cascade)
-    return solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
-                         setup.observer, setup.stability, setup.phase);
-  tell_of_solve(setup);
   CascadeOutcome outcome;
-  outcome.result = solve(*setup.make_solver(model),
-                         {*model.objective, model.q0, model.motion, setup.continuation, setup.stability},
-                         setup.stop, setup.observer);
+  if (scene.solver.cascade)
+    outcome = solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
+                            setup.observer, setup.stability, setup.phase);
+  else
+    outcome.result =
+        solved({*model.objective, model.q0, model.motion, setup.continuation, setup.stability}, model, setup);
+  setup.last_factor->factor.reset();
   return outcome;
 }
 
 Result solve_along_path(const Points& x, Model& model, const SolveSetup& setup) {
   Objective& objective = *model.objective;
   objective.prescribe(model.X);
-  tell_of_solve(setup);
-  return solve(*setup.make_solver(model),
-               {objective, objective.unknowns(x), model.motion, setup.continuation, setup.stability},
-               setup.stop, setup.observer);
+  return solved({objective, objective.unknowns(x), model.motion, setup.continuation, setup.stability}, model,
+                setup);
 }
 
 Result solve_again(const Points& x, Model& model, const SolveSetup& setup) {
   Problem problem = problem_at(x, model);
   problem.stability = setup.stability;
-  tell_of_solve(setup);
-  return solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
+  return solved(problem, model, setup);
 }
 
 }  // namespace coapt

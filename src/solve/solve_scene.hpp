@@ -1,6 +1,7 @@
 // Solves a scene: from its own start, or again from a shape near the equilibrium.
 #pragma once
 
+#include "linear/last_factor.hpp"
 #include "solve/cascade.hpp"
 #include "solve/run_options.hpp"
 
@@ -16,6 +17,7 @@ struct SolveSetup {
   StopRule stop;
   Continuation continuation;
   FactorisationFactory factorisation;          // of the scene
+  std::shared_ptr<LastFactor> last_factor;     // that its factorisations share; no memory after a solve
   StabilityOptions stability;                  // the same, which tells `phase` of the certificate
   Observer observer;                           // may be empty
   std::function<void(const RunPhase&)> phase;  // likewise

@@ -2,6 +2,7 @@
 #include "linear/dense_front.hpp"
 #include "linear/factorisation.hpp"
 #include "linear/front_kernels.hpp"
+#include "linear/last_factor.hpp"
 #include "linear/node_ordering.hpp"
 #include "linear/supernodes.hpp"
 
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <random>
 #include <set>
 
@@ -292,6 +294,14 @@ TEST(NodeOrdering, TheLastOrderIsThatOfTheGraphWhicheverCameBefore) {
   EXPECT_EQ(last.of(graph), node_order(graph));
 }
 
+TEST(NodeOrdering, APartDoesNotTakeThePlaceOfTheWhole) {
+  const NodeGraph graph = sheet_graph(40, 9), part = sheet_graph(20, 9);
+  LastOrder last;
+  const int* kept = last.of(graph).data();
+  EXPECT_EQ(last.of(part), node_order(part));
+  EXPECT_EQ(last.of(graph).data(), kept);
+}
+
 // Positive definite, with the pattern of the graph.
 SparseMatrix matrix_of(const NodeGraph& graph, unsigned seed) {
   std::mt19937 random(seed);
@@ -306,6 +316,46 @@ SparseMatrix matrix_of(const NodeGraph& graph, unsigned seed) {
   SparseMatrix matrix(3 * graph.size(), 3 * graph.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
+}
+
+TEST(Multifrontal, MemoryGoesFromOneToTheNextAndLeavesTheBitsOfNew) {
+  const auto last = std::make_shared<LastFactor>();
+  const auto solved = [](const SparseMatrix& lower, const std::shared_ptr<LastFactor>& shared) {
+    const auto factor = make_multifrontal_factorisation();
+    if (shared) factor->share(shared);
+    factor->analyse(lower);
+    EXPECT_TRUE(!shared || !shared->factor) << "not in use";
+    Vector x;
+    EXPECT_TRUE(factor->factorise(lower));
+    factor->solve(Vector::LinSpaced(lower.cols(), -1, 2), x);
+    return x;
+  };
+  const MultifrontalFactor* memory = nullptr;
+  for (const int side : {40, 41, 40, 12}) {
+    const SparseMatrix lower = matrix_of(sheet_graph(side, 9), 15);
+    EXPECT_EQ(solved(lower, last), solved(lower, nullptr)) << "side " << side;
+    ASSERT_NE(last->factor, nullptr);
+    EXPECT_TRUE(!memory || last->factor.get() == memory);
+    memory = last->factor.get();
+  }
+}
+
+TEST(Multifrontal, APatternThatFollowsAnotherIsOrderedBriefly) {
+  const NodeGraph first = sheet_graph(40, 9), second = sheet_graph(40, 14);
+  if (minimum_degree_order(second) == node_order(second)) GTEST_SKIP() << "this build has no METIS";
+  EXPECT_EQ(brief_order(second), minimum_degree_order(second));
+  const auto last = std::make_shared<LastFactor>();
+  last->order.of(first);
+  const auto order_after = [&](const std::vector<NodeGraph>& graphs) {
+    {
+      const auto factor = make_multifrontal_factorisation();
+      factor->share(last);
+      for (const NodeGraph& graph : graphs) factor->analyse(matrix_of(graph, 15));
+    }
+    return last->factor->nodes().order;
+  };
+  EXPECT_EQ(order_after({first, second}), supernodes_of(second, minimum_degree_order(second)).order);
+  EXPECT_EQ(order_after({second}), supernodes_of(second, node_order(second)).order);
 }
 
 TEST(Multifrontal, ThreadsLeaveTheBitsOfOne) {
