@@ -2,6 +2,7 @@
 
 Usage: command_test.py COAPT_BINARY RESULT_SCHEMA [unittest arguments]
 """
+import contextlib
 import csv
 import json
 import os
@@ -304,6 +305,33 @@ class CommandTest(CommandCase):
             self.assertTrue(text.endswith("</html>\n"))
             if number == signal.SIGKILL:
                 self.assertIn("the run was ended while they were looked for", text)
+
+    def test_the_findings_are_printed_before_sliders_are_made(self):
+        scene = self.generate("mitral", "--triangles", 250)
+        page = self.folder / "result" / "report.html"
+        without = "the run was ended while they were looked for"
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        filled = 0
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                filled += os.write(writer, b"-" * 4096)
+        os.set_blocking(writer, True)
+        # A full pipe holds the command up where it prints: there it must stay, before the sliders.
+        process = subprocess.Popen([COAPT, "solve", str(scene), "--sliders"], stdout=writer, stderr=subprocess.DEVNULL)
+        os.close(writer)
+        while not page.exists() and process.poll() is None:
+            time.sleep(0.005)
+        time.sleep(3)  # sliders take a tenth of that
+        self.assertIsNone(process.poll())
+        self.assertTrue(without in page.read_text(), "the page has its sliders already")
+        with os.fdopen(reader, "rb") as stream:
+            text = stream.read()[filled:].decode()
+        self.assertEqual(process.wait(timeout=100), 0)
+        self.assertFalse(without in page.read_text())
+        for once in ["converged at", "  residual ", "  orifice area ", "  intersections ", "written to "]:
+            self.assertEqual(text.count(once), 1, text)
+        self.assertLess(text.index("  intersections "), text.index("written to "))
 
     def test_SIGTERM_during_a_solve_by_several_threads_never_crashes(self):
         # METIS catches it for the whole process while it orders: 10 of 25 such runs once ended in a segmentation fault.

@@ -168,8 +168,7 @@ std::string written_files(const RunReport& run, const std::vector<std::string>& 
   return listed(files);
 }
 
-void print_summary(const RunReport& run, const std::vector<std::string>& unwritten) {
-  const Report& report = run.report;
+void print_findings(const Model& model, const Report& report) {
   const std::optional<Branches>& branches = report.branches;
   const Result& result = report.result;
   const Metrics& m = report.metrics;
@@ -186,16 +185,20 @@ void print_summary(const RunReport& run, const std::vector<std::string>& unwritt
   print_certificate(result.certificate);
   if (branches) std::printf("  %-22s %s\n", "other equilibria", branches_message(*branches).c_str());
   print_undetermined(report);
-  std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh",
-              run.model.mesh.vertex_count(), run.model.mesh.triangle_count(), run.model.lines.size());
+  std::printf("  %-22s %d vertices, %d triangles, %zu chords and cables\n", "mesh", model.mesh.vertex_count(),
+              model.mesh.triangle_count(), model.lines.size());
   std::printf("  %-22s %s, %d iterations, %ld gradients, %.2f s\n", "solver", report.solver.c_str(),
               result.iterations, result.evaluations.gradient, result.wall_s);
   std::printf("  %-22s %s\n", "pressure", report.pressure_route.c_str());
-  print_metrics(run.model, m, branches);
+  print_metrics(model, m, branches);
   print_healthy(m.healthy_closure);
   std::printf("  %-22s %ld (%s)\n", "intersections", m.intersections, m.intersection_checker.c_str());
   if (report.reference) print_reference(*report.reference);
   if (report.accuracy) std::printf("  %-22s %s\n", "error", report.accuracy->message.c_str());
+  std::fflush(stdout);
+}
+
+void print_files(const RunReport& run, const std::vector<std::string>& unwritten) {
   std::printf("written to %s (%s)\n", run.folder.string().c_str(), written_files(run, unwritten).c_str());
 }
 
@@ -257,7 +260,19 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   show_progress(session, options);
   FirstOrderOptions sliders;
   if (arguments.has_sliders) sliders.share = kInfinity;
-  if (!arguments.has_no_sliders) options.first_order = first_order_of_runs(all_solvers(), options, sliders);
+  const bool has_one_run = arguments.branches.starts == 0 && !accuracy_mm;
+  bool is_printed = false;
+  if (!arguments.has_no_sliders)
+    options.first_order = [&is_printed, has_one_run,
+                           make = first_order_of_runs(all_solvers(), options, sliders)](
+                              const Scene& of, const Model& model, const Report& found) {
+      if (has_one_run) {  // sliders take as long as a small solve
+        end_progress();
+        print_findings(model, found);
+        is_printed = true;
+      }
+      return make(of, model, found);
+    };
   SolverTable solvers = all_solvers();
   std::optional<SolveCheckpoint> checkpoint;
   if (arguments.checkpoint.is_wanted()) {
@@ -274,7 +289,8 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
   });
   end_progress();
   session.document = result_json(report.model, report.report);
-  print_summary(report, unwritten);
+  if (!is_printed) print_findings(report.model, report.report);
+  print_files(report, unwritten);
   if (checkpoint) checkpoint->finish(arguments.scene, unwritten.empty());
   if (!unwritten.empty()) return print_unwritten(unwritten);
   const bool is_reached = !report.report.accuracy || report.report.accuracy->is_reached;
