@@ -3,30 +3,42 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <compare>
 #include <map>
-#include <tuple>
 
 namespace coapt {
 
 std::vector<Edge> edges(const Triangles& triangles) {
-  struct Side {
-    int a, b, triangle;
+  const auto visit_sides = [&](const auto& visit) {
+    for (int t = 0; t < triangles.cols(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int i = triangles(k, t), j = triangles((k + 1) % 3, t);
+        visit(std::min(i, j), std::max(i, j), t);
+      }
   };
-  std::vector<Side> sides;
-  sides.reserve(static_cast<size_t>(triangles.cols()) * 3);
-  for (int t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int i = triangles(k, t), j = triangles((k + 1) % 3, t);
-      sides.push_back({std::min(i, j), std::max(i, j), t});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
-    return std::tie(l.a, l.b, l.triangle) < std::tie(r.a, r.b, r.triangle);
-  });
+  struct Side {
+    int b, triangle;
+    auto operator<=>(const Side&) const = default;
+  };
+  const int vertices = triangles.size() == 0 ? 0 : triangles.maxCoeff() + 1;
+  std::vector<int> first(static_cast<size_t>(vertices) + 1, 0);  // of the sides of each smaller vertex
+  visit_sides([&](int a, int, int) { ++first[a + 1]; });
+  for (int a = 0; a < vertices; ++a) first[a + 1] += first[a];
+  std::vector<Side> sides(static_cast<size_t>(triangles.size()));
+  std::vector<int> next = first;
+  visit_sides([&](int a, int b, int t) { sides[next[a]++] = {b, t}; });
+
   std::vector<Edge> result;
-  for (const Side& side : sides) {
-    if (result.empty() || result.back().a != side.a || result.back().b != side.b)
-      result.push_back({side.a, side.b, {}});
-    result.back().triangles.push_back(side.triangle);
+  result.reserve(sides.size() / 2);
+  for (int a = 0; a < vertices; ++a) {
+    const auto end = sides.begin() + first[a + 1];
+    std::sort(sides.begin() + first[a], end);
+    for (auto side = sides.begin() + first[a]; side != end;) {
+      const auto other = std::find_if(side, end, [&](const Side& it) { return it.b != side->b; });
+      Edge& edge = result.emplace_back(Edge{a, side->b, {}});
+      edge.triangles.reserve(static_cast<size_t>(other - side));
+      for (; side != other; ++side) edge.triangles.push_back(side->triangle);
+    }
   }
   return result;
 }
