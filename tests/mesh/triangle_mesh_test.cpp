@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <random>
+#include <utility>
+
 namespace coapt {
 namespace {
 
@@ -20,6 +24,27 @@ TEST(TriangleMesh, FindsEachEdgeOnceWithItsTriangles) {
   EXPECT_EQ(found[1].a, 0);
   EXPECT_EQ(found[1].b, 2);
   EXPECT_EQ(found[1].triangles, (std::vector<int>{0, 1}));
+}
+
+TEST(TriangleMesh, FindsEdgesInOrderWhateverMeetsThere) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> vertex(0, 30);
+  Triangles triangles(3, 200);  // of which many share an edge, and some have a corner twice
+  std::map<std::pair<int, int>, std::vector<int>> expected;
+  for (int t = 0; t < triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) triangles(k, t) = vertex(random);
+    for (int k = 0; k < 3; ++k)
+      expected[std::minmax({triangles(k, t), triangles((k + 1) % 3, t)})].push_back(t);
+  }
+  const std::vector<Edge> found = edges(triangles);
+  ASSERT_EQ(found.size(), expected.size());
+  auto next = expected.begin();
+  for (const Edge& edge : found) {
+    EXPECT_EQ(std::pair(edge.a, edge.b), next->first);
+    EXPECT_EQ(edge.triangles, next->second);
+    ++next;
+  }
+  EXPECT_TRUE(edges(Triangles(3, 0)).empty());
 }
 
 TEST(TriangleMesh, WalksTheBoundaryInTheDirectionOfItsTriangles) {
