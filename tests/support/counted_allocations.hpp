@@ -9,7 +9,7 @@ namespace coapt {
 struct Allocations {
   long count = 0;  // blocks asked for
   long bytes = 0;  // asked for in all
-  long live = 0;   // bytes that are held now, as the allocator rounds them
+  long live = 0;   // bytes that are held now
   long peak = 0;   // the most of these since forget_peak()
 };
 
