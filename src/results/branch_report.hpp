@@ -41,6 +41,9 @@ struct Branches {
   // Of each node: its greatest distance from the solve's own equilibrium in the others, free nodes included
   // [mm]; all zero where there is no other.
   Vector spread_mm;
+
+  // Whether any start led to an equilibrium, so that the search tells something.
+  bool is_telling() const { return starts > not_converged; }
 };
 
 // The range of a metric over the other equilibria; null where there is none.

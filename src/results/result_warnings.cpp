@@ -69,7 +69,7 @@ std::vector<std::string> result_warnings(const Report& report) {
   if (nodes.total() > 0)
     warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +
                        std::to_string(nodes.free) + " can be moved at no cost" +
-                       (report.branches
+                       (report.branches && report.branches->is_telling()
                             ? ", " + std::to_string(nodes.differing) + " others differ between the equilibria"
                             : "") +
                        ").");
@@ -80,7 +80,7 @@ std::string standing_open(const Metrics& metrics) {
   const double area = metrics.regurgitant_area_mm2.value_or(0);
   const bool meets = metrics.coaptation_length_mm.value_or(0) > 0, is_severe = area >= kSevereOrifice;
   if (!(area > 0) || (meets && !is_severe)) return "";
-  std::string text = "the valve stands open: " + number_text(area, 3) + " mm2 of orifice";
+  std::string text = "the valve stands open: " + number_text(area, 3) + " mm2 of regurgitant orifice";
   if (is_severe) text += ", as in severe regurgitation (" + number_text(kSevereOrifice) + " and more)";
   return meets ? text : text + "; its leaflets meet nowhere";
 }
@@ -130,7 +130,7 @@ std::vector<std::string> further_doubts(const Report& report) {
   list.insert(list.end(), report.surface_doubts.begin(), report.surface_doubts.end());
   if (report.branches && report.branches->equilibria.size() > 1)
     list.emplace_back("one of several equilibria");
-  else if (!report.branches && report.neighbours.is_suspected)
+  else if ((!report.branches || !report.branches->is_telling()) && report.neighbours.is_suspected)
     list.emplace_back("there may be other equilibria near by");
   return list;
 }

@@ -3,6 +3,7 @@
 
 #include "formats/mesh_io.hpp"
 #include "mesh/shapes.hpp"
+#include "results/neighbour_check.hpp"
 #include "results/result_warnings.hpp"
 #include "scene/build/build.hpp"
 #include "solve/solve_scene.hpp"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -333,6 +335,35 @@ TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
       find_branches(scene, scene_solvers(), options, {.starts = 5, .kick = 0.2}, report.model, report.report);
   EXPECT_LT(branches.starts, 5);
   EXPECT_EQ(branches.equilibria.size(), 1u);
+}
+
+TEST_F(BranchesOfAScene, ASearchThatFoundNothingOutWithdrawsNoSuspicion) {
+  const Scene scene = blown_disc();
+  RunOptions options;
+  options.writes = false;
+  RunReport run = coapt::run(scene, scene_solvers(), options);
+  run.report.neighbours = {.is_made = true, .is_suspected = true, .iterates = 400};
+  const std::string warning = neighbour_warning(run.report.neighbours);
+  run.report.warnings.push_back(warning);
+  const auto is_suspected = [&](const Report& report) {
+    const std::vector<std::string> said = doubts(report);
+    const bool is_warned =
+        std::find(report.warnings.begin(), report.warnings.end(), warning) != report.warnings.end();
+    const bool is_doubted =
+        std::find(said.begin(), said.end(), "there may be other equilibria near by") != said.end();
+    EXPECT_EQ(is_warned, is_doubted);
+    return is_warned;
+  };
+  ASSERT_TRUE(is_suspected(run.report));
+  const BranchSearch search = {.starts = 1, .kick = 0.2};
+  RunOptions interrupted = options;
+  interrupted.observer = [](const Iteration&, const Vector&) { return false; };
+  const Report cut_short =
+      with_branches(scene, scene_solvers(), interrupted, search, run.model, run.report, {});
+  EXPECT_EQ(cut_short.branches->starts, 0);
+  EXPECT_TRUE(is_suspected(cut_short));
+  EXPECT_FALSE(
+      is_suspected(with_branches(scene, scene_solvers(), options, search, run.model, run.report, {})));
 }
 
 }  // namespace

@@ -93,10 +93,11 @@ TEST(StandingOpen, IsSaidOfSevereOrificesAndOfLeafletsThatMeetNowhere) {
   EXPECT_EQ(standing_open(metrics), "");
   metrics.regurgitant_area_mm2 = 41;
   EXPECT_EQ(standing_open(metrics),
-            "the valve stands open: 41 mm2 of orifice, as in severe regurgitation (40 and more)");
+            "the valve stands open: 41 mm2 of regurgitant orifice, as in severe regurgitation (40 and more)");
   metrics.regurgitant_area_mm2 = 5;
   metrics.coaptation_length_mm = 0;
-  EXPECT_EQ(standing_open(metrics), "the valve stands open: 5 mm2 of orifice; its leaflets meet nowhere");
+  EXPECT_EQ(standing_open(metrics),
+            "the valve stands open: 5 mm2 of regurgitant orifice; its leaflets meet nowhere");
   metrics.regurgitant_area_mm2 = 0;  // a membrane that covers its annulus
   EXPECT_EQ(standing_open(metrics), "");
 }
