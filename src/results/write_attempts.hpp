@@ -10,12 +10,12 @@ namespace coapt {
 
 class WriteAttempts {
  public:
-  // Calls write(); what it throws as OutputError is kept for finish().
+  // Calls write(); what it throws, as where its folder is gone, is kept for finish().
   template <typename Write>
   void operator()(const Write& write) {
     try {
       write();
-    } catch (const OutputError& error) {
+    } catch (const InputError& error) {
       defects_.insert(defects_.end(), error.defects().begin(), error.defects().end());
     }
   }

@@ -170,7 +170,7 @@ Report complete_run(const Scene& scene, const SolveSetup& setup, const Model& mo
   if (folder.empty()) return report;
   std::function<void()> complete;
   if (notes.first_order && has_shape_view()) {
-    report.first_order = FirstOrder{.message = "the run was ended while they were looked for"};
+    report.first_order = FirstOrder{.message = "they were still being made when this page was written"};
     complete = [&] { report.first_order = notes.first_order(report); };
   }
   write_files(folder, model, report, complete);

@@ -27,6 +27,7 @@ except ImportError:
 SCHEMA = pathlib.Path(sys.argv[2])
 FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv", "report.html"}
 VALVE_FILES = {"coaptation_line.vtp", "orifice.vtp"}
+WITHOUT_SLIDERS = "they were still being made when this page was written"
 
 
 class CommandTest(CommandCase):
@@ -304,12 +305,12 @@ class CommandTest(CommandCase):
             text = page.read_text()
             self.assertTrue(text.endswith("</html>\n"))
             if number == signal.SIGKILL:
-                self.assertIn("the run was ended while they were looked for", text)
+                self.assertIn(WITHOUT_SLIDERS, text)
 
-    def test_the_findings_are_printed_before_sliders_are_made(self):
+    def held_up_before_its_sliders(self, *options):
+        """A solve whose findings meet a full pipe: its process, the reading end, what lies before in the pipe, its page."""
         scene = self.generate("mitral", "--triangles", 250)
         page = self.folder / "result" / "report.html"
-        without = "the run was ended while they were looked for"
         reader, writer = os.pipe()
         os.set_blocking(writer, False)
         filled = 0
@@ -317,21 +318,45 @@ class CommandTest(CommandCase):
             while True:
                 filled += os.write(writer, b"-" * 4096)
         os.set_blocking(writer, True)
-        # A full pipe holds the command up where it prints: there it must stay, before the sliders.
-        process = subprocess.Popen([COAPT, "solve", str(scene), "--sliders"], stdout=writer, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen([COAPT, "solve", str(scene), "--sliders", *options], stdout=writer,
+                                   stderr=subprocess.PIPE, text=True)
         os.close(writer)
+        self.addCleanup(process.kill)
         while not page.exists() and process.poll() is None:
             time.sleep(0.005)
         time.sleep(3)  # sliders take a tenth of that
         self.assertIsNone(process.poll())
-        self.assertTrue(without in page.read_text(), "the page has its sliders already")
+        self.assertTrue(WITHOUT_SLIDERS in page.read_text(), "the page has its sliders already")
+        return process, reader, filled, page
+
+    def test_the_findings_are_printed_before_sliders_are_made(self):
+        process, reader, filled, page = self.held_up_before_its_sliders()
         with os.fdopen(reader, "rb") as stream:
             text = stream.read()[filled:].decode()
-        self.assertEqual(process.wait(timeout=100), 0)
-        self.assertFalse(without in page.read_text())
+        process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 0)
+        self.assertFalse(WITHOUT_SLIDERS in page.read_text())
         for once in ["converged at", "  residual ", "  orifice area ", "  intersections ", "written to "]:
             self.assertEqual(text.count(once), 1, text)
         self.assertLess(text.index("  intersections "), text.index("written to "))
+
+    def test_a_page_is_complete_though_nobody_reads_the_findings(self):
+        process, reader, _, page = self.held_up_before_its_sliders()
+        os.close(reader)
+        process.communicate(timeout=100)
+        self.assertEqual(process.returncode, -signal.SIGPIPE)
+        self.assertFalse(WITHOUT_SLIDERS in page.read_text())
+
+    def test_a_result_folder_that_goes_away_meanwhile_loses_no_findings(self):
+        process, reader, filled, page = self.held_up_before_its_sliders()
+        shutil.rmtree(page.parent)
+        with os.fdopen(reader, "rb") as stream:
+            text = stream.read()[filled:].decode()
+        errors = process.communicate(timeout=100)[1]
+        self.assertEqual(process.returncode, 5, errors)
+        self.assertIn("report.html: cannot be written", errors)
+        self.assertIn("  intersections ", text)
+        self.assertNotIn("report.html", text)
 
     def test_SIGTERM_during_a_solve_by_several_threads_never_crashes(self):
         # METIS catches it for the whole process while it orders: 10 of 25 such runs once ended in a segmentation fault.

@@ -23,8 +23,10 @@ TableCell slope(double slope) { return std::isinf(slope) ? TableCell("exact") : 
 
 std::string verdict_on(const DerivativeReport& report) {
   const char* verdict = !report.is_active() ? "not active here" : report.has_passed() ? "passed" : "FAILED";
-  const std::string kinks =
-      report.kinks > 0 ? ", " + std::to_string(report.kinks) + " directions at a kink" : "";
+  const std::string kinks = report.kinks > 0
+                                ? ", " + std::to_string(report.kinks) +
+                                      (report.kinks == 1 ? " direction" : " directions") + " at a kink"
+                                : "";
   return verdict + kinks;
 }
 

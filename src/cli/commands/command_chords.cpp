@@ -12,6 +12,7 @@
 #include "mesh/mesh_check.hpp"
 #include "valve/generators/leaflet_chords.hpp"
 #include "valve/other_files.hpp"
+#include "valve/valve_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -75,6 +76,7 @@ Valve read_input(const ChordsArguments& arguments, std::vector<std::string>& war
     valve.name = formats::as_utf8(fs::path(arguments.input).stem().string());
     warnings = std::move(file.warnings);
   }
+  for (const std::string& doubt : size_doubts(valve)) warnings.push_back(arguments.input + ": " + doubt);
   for (const std::string& warning : warnings) std::printf("warning: %s\n", warning.c_str());
   if (valve.leaflets.triangle_count() == 0)
     throw InputError(arguments.input + ": leaflets: missing; chords need a mesh to end on");

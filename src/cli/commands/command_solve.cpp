@@ -18,7 +18,9 @@
 #include "tuning/first_order.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <iostream>
@@ -150,7 +152,7 @@ void print_undetermined(const Report& report) {
   const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
   if (nodes.total() == 0) return;
   std::printf("  %-22s %d (%d can move at no cost", "undetermined nodes", nodes.total(), nodes.free);
-  if (report.branches)
+  if (report.branches && report.branches->is_telling())
     std::printf(", %d stand more than %.2g mm elsewhere in other equilibria", nodes.differing,
                 report.branches->tolerance_mm);
   std::printf(")\n");
@@ -198,8 +200,18 @@ void print_findings(const Model& model, const Report& report) {
   std::fflush(stdout);
 }
 
+// Where nobody reads on, the command ends at its last line, not before its page is complete.
+void print_early(const Model& model, const Report& report) {
+  const auto kept = std::signal(SIGPIPE, SIG_IGN);
+  errno = 0;
+  print_findings(model, report);
+  if (errno == EPIPE) std::clearerr(stdout);
+  std::signal(SIGPIPE, kept);
+}
+
 void print_files(const RunReport& run, const std::vector<std::string>& unwritten) {
   std::printf("written to %s (%s)\n", run.folder.string().c_str(), written_files(run, unwritten).c_str());
+  std::fflush(stdout);
 }
 
 // Before the solve, which may take long, and in the warnings of its result.
@@ -268,7 +280,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
                               const Scene& of, const Model& model, const Report& found) {
       if (has_one_run) {  // sliders take as long as a small solve
         end_progress();
-        print_findings(model, found);
+        print_early(model, found);
         is_printed = true;
       }
       return make(of, model, found);
