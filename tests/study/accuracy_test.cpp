@@ -97,6 +97,29 @@ TEST_F(AccuracyTest, SaysWhatItDidNotReach) {
   EXPECT_FALSE(idle.report.accuracy->total_mm());
 }
 
+TEST_F(AccuracyTest, KeepsTheLastMeshThatConvergedWhereItIsInterrupted) {
+  const Scene scene = disc_scene();
+  run_.writes = false;
+  Eigen::Index first = 0;
+  run_.observer = [&first](const Iteration&, const Vector& q) {
+    if (first == 0) first = q.size();
+    return q.size() < 10 * first;  // the third mesh is solved no more
+  };
+  const RunReport found = run_to_accuracy(scene, solvers(), 1e-6, run_);
+  const AccuracyEstimate& estimate = found.report.accuracy.value();
+  ASSERT_EQ(estimate.levels.back().status, Status::Cancelled);
+  EXPECT_FALSE(estimate.is_reached);
+  EXPECT_EQ(estimate.cuts, 1);
+  EXPECT_EQ(found.report.result.status, Status::Converged);
+  EXPECT_NE(estimate.message.find("on " + std::to_string(found.model.mesh.triangle_count()) + " triangles"),
+            std::string::npos)
+      << estimate.message;
+  EXPECT_NE(estimate.message.find("as the solve on " + std::to_string(estimate.levels.back().triangles) +
+                                  " triangles did not converge"),
+            std::string::npos)
+      << estimate.message;
+}
+
 TEST_F(AccuracyTest, RefusesAllBadInputAtOnce) {
   const Scene chain = load_scene(std::filesystem::path(COAPT_SOURCE_DIR) / "examples/03_catenary/scene.json");
   run_.tolerance = 1e-3;

@@ -63,7 +63,7 @@ class Search {
     while (mesh.has_converged() && estimate.algebraic_mm) {
       if (4L * mesh.model.mesh.triangle_count() > most_triangles_) break;
       SolvedMesh finer = solved(mesh.cuts + 1);
-      if (!finer.has_converged()) return finer;
+      if (!finer.has_converged()) return mesh;  // out of time, say: this one is an equilibrium
       shapes.push_back(finer.closed());
       const MeshDistances distances = distances_between_meshes(shapes);
       estimate.levels.back().to_previous = distances.to_next.back();
@@ -172,13 +172,21 @@ void check(const Scene& scene, double wanted_mm, const RunOptions& options) {
 
 // What is known where the error is not.
 std::string last_change(const AccuracyEstimate& estimate) {
-  for (auto level = estimate.levels.rbegin(); level != estimate.levels.rend(); ++level)
-    if (const auto& change = level->to_previous)
-      return ", as no two refinements in a row agree in their order; the last moved 95 % of the surface by "
-             "up to " +
-             page_number(change->p95, 2) + " mm, its farthest point by " + page_number(change->max, 2) +
-             " mm";
-  return ", as there was no finer mesh to compare";
+  const std::vector<AccuracyLevel>& levels = estimate.levels;
+  const auto compared = std::find_if(levels.rbegin(), levels.rend(), [](const AccuracyLevel& level) {
+    return level.to_previous.has_value();
+  });
+  std::string why = "there was no finer mesh to compare", refinement = "the last";
+  if (levels.back().status != Status::Converged) {
+    why = "the solve on " + std::to_string(levels.back().triangles) + " triangles did not converge";
+    refinement = "the refinement before";
+  } else if (compared != levels.rend()) {
+    why = "no two refinements in a row agree in their order";
+  }
+  if (compared == levels.rend()) return ", as " + why;
+  const DistanceFigures& moved = *compared->to_previous;
+  return ", as " + why + "; " + refinement + " moved 95 % of the surface by up to " +
+         page_number(moved.p95, 2) + " mm, its farthest point by " + page_number(moved.max, 2) + " mm";
 }
 
 std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) {
