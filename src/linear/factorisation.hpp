@@ -16,7 +16,7 @@ namespace coapt {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-class LastFactor;
+struct LastFactor;
 
 // Numbers of negative and of positive pivots of A = L D L^T: by Sylvester's law those of the eigenvalues.
 struct Inertia {

@@ -251,6 +251,8 @@ TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
   EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by");
   EXPECT_TRUE(headline(report).is_in_doubt);
   report.branches.emplace().equilibria.resize(1);
+  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "before any start";
+  report.branches->starts = 1;
   EXPECT_EQ(headline(report).text, "converged") << "a search found none";
   report.branches->equilibria.resize(2);
   EXPECT_EQ(headline(report).text, "converged; one of several equilibria");
