@@ -69,7 +69,8 @@ std::vector<int> node_order(const NodeGraph& graph) {
 }
 
 std::vector<int> brief_order(const NodeGraph& graph) {
-  constexpr int kDissectedFrom = 2000;  // nodes; measured with contact (decision 023)
+  // Measured: with contact, in nodes (decision 023).
+  constexpr int kDissectedFrom = 2000;
   return graph.size() < kDissectedFrom ? minimum_degree_order(graph) : node_order(graph);
 }
 

@@ -131,12 +131,13 @@ Result solved(const Problem& problem, const Model& model, const SolveSetup& setu
 CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Model& model,
                            const SolveSetup& setup) {
   CascadeOutcome outcome;
-  if (scene.solver.cascade)
-    outcome = solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
-                            setup.observer, setup.stability, setup.phase);
-  else
+  if (!scene.solver.cascade) {
     outcome.result =
         solved({*model.objective, model.q0, model.motion, setup.continuation, setup.stability}, model, setup);
+    return outcome;
+  }
+  outcome = solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
+                          setup.observer, setup.stability, setup.phase);
   setup.last_factor->factor.reset();
   return outcome;
 }
