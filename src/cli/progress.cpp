@@ -129,4 +129,10 @@ void end_progress() {
   if (isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
 }
 
+void show_stage(const Session& session, const std::string& line) {
+  if (session.is_quiet) return;
+  end_progress();
+  show_line(line, false);
+}
+
 }  // namespace coapt::cli

@@ -34,4 +34,7 @@ std::function<void(std::size_t ended)> make_job_progress(const Session& session,
 // Takes the line of a terminal away.
 void end_progress();
 
+// A line that stays, unless --quiet.
+void show_stage(const Session& session, const std::string& line);
+
 }  // namespace coapt::cli

@@ -26,6 +26,8 @@ struct BranchRange {
   double lowest = 0, highest = 0;
 };
 
+inline constexpr int kUsualStarts = 5;  // of a search that is advised
+
 struct Branches {
   int starts = 0;             // made; fewer than wanted where the user interrupted the search
   int starts_along_path = 0;  // of them, from the scene's own start; the others from its equilibrium
@@ -42,8 +44,12 @@ struct Branches {
   // [mm]; all zero where there is no other.
   Vector spread_mm;
 
-  // Whether any start led to an equilibrium, so that the search tells something.
-  bool is_telling() const { return starts > not_converged; }
+  // Those that led to an equilibrium; a search without any tells nothing.
+  int converged() const { return starts - not_converged; }
+
+  // Whether the search says more than a suspicion of other equilibria: it found one, or made as many starts as
+  // whoever suspects is told to.
+  bool answers_suspicion() const { return equilibria.size() > 1 || converged() >= kUsualStarts; }
 };
 
 // The range of a metric over the other equilibria; null where there is none.

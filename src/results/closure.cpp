@@ -261,21 +261,24 @@ void measure_areas(const ClosedShape& shape, Closure& closure) {
   const TriangleMesh& mesh = shape.model.mesh;
   std::vector<std::vector<char>> touching(closure.leaflets.size(),
                                           std::vector<char>(shape.fields.is_contact.size(), 0));
+  std::vector<double> near(closure.leaflets.size(), 0), in_contact = near;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
-    LeafletMetrics& leaflet = closure.leaflets[static_cast<size_t>(shape.region(t))];
+    const auto region = static_cast<size_t>(shape.region(t));
+    LeafletMetrics& leaflet = closure.leaflets[region];
     leaflet.area_open_mm2 += area_vector(shape.model.X, mesh.triangles.col(t)).norm();
     leaflet.area_closed_mm2 += area_vector(shape.surface, mesh.triangles.col(t)).norm();
-    leaflet.contact_area_mm2 += shape.contact.areas[t];
+    near[region] += shape.contact.near[t];
+    in_contact[region] += shape.contact.areas[t];
     leaflet.contact_facets += shape.fields.is_contact_facet[static_cast<size_t>(t)];
     for (const int v : mesh.triangles.col(t)) {
-      char& is_counted = touching[static_cast<size_t>(shape.region(t))][static_cast<size_t>(v)];
+      char& is_counted = touching[region][static_cast<size_t>(v)];
       if (!shape.is_contact(v) || is_counted) continue;
       is_counted = 1;
       ++leaflet.contact_vertices;
     }
   }
-  for (LeafletMetrics& leaflet : closure.leaflets)
-    leaflet.contact_area_mm2 = std::max(0.0, leaflet.contact_area_mm2);
+  for (size_t r = 0; r < closure.leaflets.size(); ++r)
+    closure.leaflets[r].contact_area_mm2 = resolved_area(near[r], in_contact[r]);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ struct ContactMeasure;  // results/detail/contact_limit.hpp
 struct LeafletMetrics {
   std::string name;
   double area_open_mm2 = 0, area_closed_mm2 = 0;
-  double contact_area_mm2 = 0;  // of its face that is in contact, counted once
+  // Of its face, in contact, counted once; empty where the mesh does not resolve it.
+  std::optional<double> contact_area_mm2;
   long contact_vertices = 0, contact_facets = 0;
   double coaptation_length_mm = 0;  // of the coaptation line along it
   double coaptation_height_mm = 0;  // of its contact across the line: 90th percentile

@@ -1,5 +1,7 @@
 #include "results/neighbour_check.hpp"
 
+#include "results/branch_report.hpp"
+
 #include <algorithm>
 
 namespace coapt {
@@ -36,13 +38,14 @@ NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
 
 std::string neighbour_warning(const NeighbourCheck& check) {
   if (!check.is_suspected) return "";
-  if (check.unstable_steps >= kUnstableSteps)
-    return "The shape may be one of several: its damped path is unstable in " +
-           std::to_string(check.unstable_steps) +
-           " steps from half of the loads on. Look for others with --branches 5.";
-  return "The shape may be one of several: the solve took " + std::to_string(check.iterates) +
-         " iterations, and most valves that take so many have other equilibria near by, with other figures. "
-         "Look for them with --branches 5.";
+  const std::string why =
+      check.unstable_steps >= kUnstableSteps
+          ? "its damped path is unstable in " + std::to_string(check.unstable_steps) +
+                " steps from half of the loads on"
+          : "the solve took " + std::to_string(check.iterates) +
+                " iterations, and most valves that take so many have other equilibria near by, with other figures";
+  return "The shape may be one of several: " + why + ". Look for others with --branches " +
+         std::to_string(kUsualStarts) + ".";
 }
 
 }  // namespace coapt

@@ -10,6 +10,7 @@ namespace {
 
 constexpr const char* kStabilityDoubt = "its stability is in doubt (";
 constexpr double kSevereOrifice = 40;                          // effective, of severe regurgitation [mm2]
+constexpr double kLeastCoaptation = 0.25;                      // share of the area within the contact distance
 constexpr double kMostFacetStrain = 1, kMostLineStrain = 0.2;  // beyond which they are named
 
 // "3 of 630 facets (12, 45, 300)": those above `most`; empty where none is.
@@ -53,6 +54,15 @@ std::string yield_warning(const Fields& fields) {
          ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).";
 }
 
+std::string coaptation_warning(const Metrics& metrics) {
+  const double near = metrics.near_coaptation_area_mm2, area = metrics.coaptation_area_mm2.value_or(0);
+  if (area >= kLeastCoaptation * near) return "";
+  return "The coaptation area is not resolved by this mesh: " + number_text(near, 3) +
+         " mm2 of the leaflets lie within the contact distance of another, half of a mean edge, and " +
+         (metrics.coaptation_area_mm2 ? number_text(area, 2) + " mm2" : std::string("none")) +
+         " of it in contact itself.";
+}
+
 std::vector<std::string> result_warnings(const Report& report) {
   std::vector<std::string> warnings = report.warnings;
   const Certificate& certificate = report.result.certificate;
@@ -69,7 +79,7 @@ std::vector<std::string> result_warnings(const Report& report) {
   if (nodes.total() > 0)
     warnings.push_back("Nodes whose place is not determined: " + std::to_string(nodes.total()) + " (" +
                        std::to_string(nodes.free) + " can be moved at no cost" +
-                       (report.branches && report.branches->is_telling()
+                       (report.branches && report.branches->converged() > 0
                             ? ", " + std::to_string(nodes.differing) + " others differ between the equilibria"
                             : "") +
                        ").");
@@ -130,7 +140,7 @@ std::vector<std::string> further_doubts(const Report& report) {
   list.insert(list.end(), report.surface_doubts.begin(), report.surface_doubts.end());
   if (report.branches && report.branches->equilibria.size() > 1)
     list.emplace_back("one of several equilibria");
-  else if ((!report.branches || !report.branches->is_telling()) && report.neighbours.is_suspected)
+  else if ((!report.branches || !report.branches->answers_suspicion()) && report.neighbours.is_suspected)
     list.emplace_back("there may be other equilibria near by");
   return list;
 }

@@ -146,9 +146,9 @@ void sort_in(const Result& result, Model& model, const IntersectionChecker& chec
   branches.equilibria.back().found = 1;
 }
 
-// The report with what the search found. Where that is anything it says more than a suspicion of neighbours.
+// The report with what the search found.
 Report report_with(Branches branches, Report report, const Objective& objective) {
-  if (branches.is_telling()) std::erase(report.warnings, neighbour_warning(report.neighbours));
+  if (branches.answers_suspicion()) std::erase(report.warnings, neighbour_warning(report.neighbours));
   report.branches = std::move(branches);
   report.fields.branch_spread = report.branches->spread_mm;
   report.fields.undetermined =

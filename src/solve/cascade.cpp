@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "mesh/distance/separate.hpp"
 #include "mesh/remesh/prolong.hpp"
+#include "mesh/remesh/relieve_slivers.hpp"
 #include "scene/build/build.hpp"
 #include "scene/build/coarsen_scene.hpp"
 #include "scene/build/contact_pairs.hpp"
@@ -63,19 +64,47 @@ std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& geomet
   return steps;
 }
 
+// What the coarser meshes give a finer one to begin with.
+struct Start {
+  Points x;                      // of all nodes
+  Status status = Status::Converged;  // why the coarser ones ended
+  std::vector<char> is_new;      // of each vertex: the mesh before has it not
+  double distortion = 1;         // the greatest of the mesh before
+};
+
 // Positions of all nodes of the finer mesh; the points of the networks follow the vertices.
-Points finer(const Step& step, const Points& x) {
-  const Eigen::Index coarse_count = step.coarsening.mesh.vertex_count(), fine_count = step.X.cols();
-  Points result(3, fine_count + x.cols() - coarse_count);
-  result.leftCols(fine_count) = prolonged(step.coarsening, step.X, x.leftCols(coarse_count));
-  result.rightCols(x.cols() - coarse_count) = x.rightCols(x.cols() - coarse_count);
-  return result;
+Start finer(const Step& step, const Start& coarse) {
+  const TriangleMesh& mesh = step.coarsening.mesh;
+  const Eigen::Index coarse_count = mesh.vertex_count(), fine_count = step.X.cols();
+  const Points surface = coarse.x.leftCols(coarse_count);
+  Start fine;
+  fine.status = coarse.status;
+  fine.x.resize(3, fine_count + coarse.x.cols() - coarse_count);
+  fine.x.leftCols(fine_count) = prolonged(step.coarsening, step.X, surface);
+  fine.x.rightCols(coarse.x.cols() - coarse_count) = coarse.x.rightCols(coarse.x.cols() - coarse_count);
+  for (const int host : step.coarsening.host) fine.is_new.push_back(host >= 0);
+  fine.distortion = distortions(mesh.triangles, mesh.vertices, surface).maxCoeff();
+  return fine;
+}
+
+// The prescribed nodes go where they belong; slivers that the rest does not fit are relieved.
+void settle(Start& start, Model& model) {
+  start.x = model.objective->positions(problem_at(start.x, model).q0);
+  const Eigen::Index count = model.mesh.vertex_count();
+  std::vector<char> may_move = start.is_new;
+  for (Eigen::Index v = 0; v < count; ++v)
+    if (model.objective->fixed().col(v).any()) may_move[static_cast<size_t>(v)] = 0;
+  Points surface = start.x.leftCols(count);
+  relieve_slivers(model.mesh.triangles, model.X.leftCols(count), may_move, start.distortion, surface);
+  start.x.leftCols(count) = surface;
 }
 
 // Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
 // their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
 // edge.
-bool make_startable(Points& x, const Model& model) {
+bool make_startable(Start& start, Model& model) {
+  settle(start, model);
+  Points& x = start.x;
   if (model.objective->step_limiting_term() == nullptr) return true;
   const Triangles facets = all_facets(model);
   SeparationOptions options;
@@ -177,12 +206,8 @@ Result judged(const Problem& problem, Status reason, Solver& solver) {
   return result;
 }
 
-// Solves the coarser meshes. The shape on the scene's own mesh that the last of them gives, and why they
-// ended; no shape where one of them failed.
-struct Start {
-  Points x;
-  Status status = Status::Converged;
-};
+// Solves the coarser meshes. The shape on the scene's own mesh that the last of them gives; none where one of
+// them failed.
 std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geometry,
                                   const Continuation& continuation, Cascade& cascade) {
   const std::vector<Step> steps = coarser_meshes(scene, geometry);
@@ -200,27 +225,28 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geome
     try {
       Model model = build(scene, coarsened(geometry, mesh, steps[k].kept));
       const bool is_coarsest = start.x.size() == 0;
-      if (!is_coarsest && !make_startable(start.x, model))
+      if (!is_coarsest && !make_startable(start, model))
         throw InputError("the shape found on a coarser one passes through itself there");
       const Problem problem = is_coarsest ? Problem{*model.objective, model.q0, model.motion, continuation}
                                           : problem_near(start.x, model, continuation);
       const Result result =
           cascade.level(problem, model, continuation.damped_steps > 0 ? kDampedTolerance : kCoarseTolerance);
-      start = {model.objective->positions(result.q), result.status};
+      start.x = model.objective->positions(result.q);
+      start.status = result.status;
       if (result.status != Status::Converged) failure = result.message;
     } catch (const InputError& error) {
       failure = error.what();
       start.status = Status::NonFinite;
     }
     if (was_interrupted(start.status)) {
-      for (size_t j = k + 1; j-- > 0;) start.x = finer(steps[j], start.x);
+      for (size_t j = k + 1; j-- > 0;) start = finer(steps[j], start);
       return start;
     }
     if (!failure.empty()) {
       cascade.warn(name + "was not solved (" + failure + "); the scene's own was solved from its own start.");
       return std::nullopt;
     }
-    start.x = finer(steps[k], start.x);
+    start = finer(steps[k], start);
   }
   return start;
 }
@@ -234,7 +260,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
                              const std::function<void(const RunPhase&)>& phase) {
   Cascade cascade(make_solver, stop, observer, phase);
   std::optional<Start> start = coarse_start(scene, geometry, continuation, cascade);
-  if (start && !make_startable(start->x, model)) {
+  if (start && !make_startable(*start, model)) {
     cascade.warn(
         "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
     start.reset();

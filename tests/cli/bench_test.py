@@ -115,6 +115,11 @@ class BenchTest(command_case.CommandCase):
         self.assertEqual(accuracy["wanted_mm"], 0.02)
         self.assertLessEqual(accuracy["total_mm"], 0.02)
         self.assertIn(accuracy["message"], run.stdout)
+        told = run.stderr.splitlines()
+        for solve in accuracy["solves"]:
+            self.assertTrue(any(line.startswith(f"  {solve['triangles']} triangles in ") for line in told), run.stderr)
+        self.assertEqual(sum("of the surface moved by up to" in line for line in told), len(told) - 1, run.stderr)
+        self.assertIn("error by estimate", told[-1])
         first = accuracy["solves"][0]["triangles"]
         self.assertEqual(result["mesh"]["triangles"], first * 4 ** accuracy["cuts"])
         wanted = SCHEMA["properties"]["accuracy"]

@@ -164,7 +164,7 @@ TEST(Closure, GivesEachLeafletItsShare) {
     EXPECT_NEAR(leaflet.coaptation_length_mm, 16, 0.1) << leaflet.name;
     EXPECT_NEAR(leaflet.coaptation_height_mm, 4, 0.1) << leaflet.name;
     EXPECT_NEAR(leaflet.tenting_volume_mm3, 240, 6) << leaflet.name;
-    contact += leaflet.contact_area_mm2;
+    contact += leaflet.contact_area_mm2.value();
     volume += leaflet.tenting_volume_mm3;
     vertices += leaflet.contact_vertices;
     facets += leaflet.contact_facets;

@@ -1,4 +1,5 @@
 #include "results/metrics.hpp"
+#include "results/result_warnings.hpp"
 
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
@@ -106,6 +107,27 @@ TEST(Metrics, CountHalfTheContactingAreaAsCoaptation) {
   far.contact_range = 0.5;
   EXPECT_EQ(measure_at(far, far.X).contact_vertices, 0);
   EXPECT_EQ(measure_at(far, far.X).coaptation_area_mm2.value(), 0);
+}
+
+// Within the contact distance near its hinge, in contact nowhere.
+TEST(Metrics, SayThatAMeshDoesNotResolveTheCoaptationOfAWedge) {
+  TriangleMesh mesh = square(10, 5000), upper = mesh;  // cells of 0.2
+  upper.vertices.row(2) = 0.02 + 0.1 * (upper.vertices.row(0).array() - upper.vertices.row(0).minCoeff());
+  append(mesh, upper);
+  Model model = model_of(std::move(mesh));
+  model.contact_range = 0.35;
+  const Metrics metrics = measure_at(model, model.X);
+  EXPECT_NEAR(metrics.near_coaptation_area_mm2, 33, 0.5);
+  EXPECT_FALSE(metrics.coaptation_area_mm2.has_value());
+  EXPECT_NE(coaptation_warning(metrics).find("and none of it in contact itself"), std::string::npos)
+      << coaptation_warning(metrics);
+  Metrics known = metrics;
+  known.coaptation_area_mm2 = 0.2 * known.near_coaptation_area_mm2;
+  EXPECT_NE(coaptation_warning(known).find("6.6 mm2 of it in contact itself"), std::string::npos)
+      << coaptation_warning(known);
+  known.coaptation_area_mm2 = 0.3 * known.near_coaptation_area_mm2;
+  EXPECT_EQ(coaptation_warning(known), "");
+  EXPECT_EQ(coaptation_warning({}), "") << "no leaflet is near another";
 }
 
 TEST(Metrics, MeasureTheHoleOfARingAsOrifice) {

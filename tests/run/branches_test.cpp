@@ -252,7 +252,12 @@ TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
   EXPECT_TRUE(headline(report).is_in_doubt);
   report.branches.emplace().equilibria.resize(1);
   EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "before any start";
-  report.branches->starts = 1;
+  report.branches->starts = kUsualStarts - 1;
+  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "fewer than advised";
+  report.branches->starts = kUsualStarts + 1;
+  report.branches->not_converged = 2;
+  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "too few converged";
+  report.branches->starts = kUsualStarts + 2;
   EXPECT_EQ(headline(report).text, "converged") << "a search found none";
   report.branches->equilibria.resize(2);
   EXPECT_EQ(headline(report).text, "converged; one of several equilibria");
@@ -339,7 +344,7 @@ TEST_F(BranchesOfAScene, StopsWhereTheUserInterrupts) {
   EXPECT_EQ(branches.equilibria.size(), 1u);
 }
 
-TEST_F(BranchesOfAScene, ASearchThatFoundNothingOutWithdrawsNoSuspicion) {
+TEST_F(BranchesOfAScene, ASearchOfFewerStartsThanAdvisedWithdrawsNoSuspicion) {
   const Scene scene = blown_disc();
   RunOptions options;
   options.writes = false;
@@ -357,15 +362,19 @@ TEST_F(BranchesOfAScene, ASearchThatFoundNothingOutWithdrawsNoSuspicion) {
     return is_warned;
   };
   ASSERT_TRUE(is_suspected(run.report));
-  const BranchSearch search = {.starts = 1, .kick = 0.2};
+  BranchSearch search = {.starts = 1, .kick = 0.2};
   RunOptions interrupted = options;
   interrupted.observer = [](const Iteration&, const Vector&) { return false; };
   const Report cut_short =
       with_branches(scene, scene_solvers(), interrupted, search, run.model, run.report, {});
   EXPECT_EQ(cut_short.branches->starts, 0);
   EXPECT_TRUE(is_suspected(cut_short));
-  EXPECT_FALSE(
-      is_suspected(with_branches(scene, scene_solvers(), options, search, run.model, run.report, {})));
+  const auto searched = [&] {
+    return with_branches(scene, scene_solvers(), options, search, run.model, run.report, {});
+  };
+  EXPECT_TRUE(is_suspected(searched()));
+  search.starts = kUsualStarts;
+  EXPECT_FALSE(is_suspected(searched()));
 }
 
 }  // namespace

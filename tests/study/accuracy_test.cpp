@@ -81,7 +81,7 @@ TEST_F(AccuracyTest, IsASolveOfThatMeshToThatTolerance) {
 
 TEST_F(AccuracyTest, SaysWhatItDidNotReach) {
   run_.writes = false;
-  const RunReport found = run_to_accuracy(disc_scene(), solvers(), 1e-3, run_, 300);
+  const RunReport found = run_to_accuracy(disc_scene(), solvers(), 1e-3, run_, {}, 300);
   EXPECT_FALSE(found.report.accuracy->is_reached);
   EXPECT_EQ(found.report.accuracy->cuts, 1);
   EXPECT_FALSE(found.report.accuracy->total_mm());  // two meshes tell no order

@@ -118,6 +118,8 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
     std::printf("\n");
   }
   print("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f", "coaptation_area_mm2");
+  if (!m.coaptation_area_mm2 && m.contact_vertices > 0)
+    std::printf("  %-22s not resolved by this mesh\n", "coaptation area");
   print("coaptation length", m.coaptation_length_mm, "mm", "%.2f", "coaptation_length_mm");
   print("coaptation height", m.coaptation_height_mm, "mm", "%.2f", "coaptation_height_mm");
   print("tenting height", m.tenting_height_mm, "mm", "%.2f", "tenting_height_mm");
@@ -152,7 +154,7 @@ void print_undetermined(const Report& report) {
   const UndeterminedNodes nodes = undetermined_nodes(report.result.certificate.free_nodes, report.branches);
   if (nodes.total() == 0) return;
   std::printf("  %-22s %d (%d can move at no cost", "undetermined nodes", nodes.total(), nodes.free);
-  if (report.branches && report.branches->is_telling())
+  if (report.branches && report.branches->converged() > 0)
     std::printf(", %d stand more than %.2g mm elsewhere in other equilibria", nodes.differing,
                 report.branches->tolerance_mm);
   std::printf(")\n");
@@ -240,9 +242,11 @@ int print_unwritten(const std::vector<std::string>& unwritten) {
 
 // What was solved, also where its files could not be written.
 RunReport solved(const Scene& scene, const SolverTable& solvers, const RunOptions& options,
-                 const std::optional<double>& accuracy_mm, std::vector<std::string>& unwritten) {
+                 const std::optional<double>& accuracy_mm, const Session& session,
+                 std::vector<std::string>& unwritten) {
+  const auto tell = [&](const AccuracyEstimate& estimate) { show_stage(session, last_mesh(estimate)); };
   try {
-    return accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options)
+    return accuracy_mm ? run_to_accuracy(scene, solvers, *accuracy_mm, options, tell)
                        : run(scene, solvers, options);
   } catch (const UnwrittenRun& error) {
     unwritten = error.defects();
@@ -292,7 +296,7 @@ int solve_as_asked(const SolveArguments& arguments, RunOptions options, Session&
     solvers = checkpoint->recorded(solvers);
     options.observer = checkpoint->recorded(options.observer);
   }
-  RunReport report = solved(scene, solvers, options, accuracy_mm, unwritten);
+  RunReport report = solved(scene, solvers, options, accuracy_mm, session, unwritten);
   RunOptions again = options;
   show_progress(session, again);  // without a checkpoint
   report.report = completed(unwritten, [&] {

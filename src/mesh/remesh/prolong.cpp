@@ -18,18 +18,19 @@ Matrix3d frame(const Points& x, const Eigen::Vector3i& t) {
 
 }  // namespace
 
+Matrix3d motion_gradient(const Points& X, const Points& x, const Eigen::Vector3i& t) {
+  Matrix3d inverse;
+  bool is_invertible = false;
+  frame(X, t).computeInverseWithCheck(inverse, is_invertible, 0);
+  return is_invertible ? Matrix3d(frame(x, t) * inverse) : Matrix3d::Identity();
+}
+
 Points prolonged(const Coarsening& coarsening, const Points& X, const Points& x) {
   const TriangleMesh& coarse = coarsening.mesh;
   std::vector<Matrix3d> gradients;  // of the motion of each coarse triangle
   gradients.reserve(static_cast<size_t>(coarse.triangle_count()));
-  for (int t = 0; t < coarse.triangle_count(); ++t) {
-    const Matrix3d before = frame(coarse.vertices, coarse.triangles.col(t)),
-                   after = frame(x, coarse.triangles.col(t));
-    Matrix3d inverse;
-    bool is_invertible = false;
-    before.computeInverseWithCheck(inverse, is_invertible, 0);
-    gradients.push_back(is_invertible ? Matrix3d(after * inverse) : Matrix3d::Identity());
-  }
+  for (int t = 0; t < coarse.triangle_count(); ++t)
+    gradients.push_back(motion_gradient(coarse.vertices, x, coarse.triangles.col(t)));
   Points result(3, X.cols());
   for (Eigen::Index v = 0; v < X.cols(); ++v) {
     const int host = coarsening.host[static_cast<size_t>(v)];

@@ -12,4 +12,8 @@ namespace coapt {
 // vertices.
 Points prolonged(const Coarsening& coarsening, const Points& X, const Points& x);
 
+// Of the motion of a triangle from X to x that keeps distances along its normal; the identity where it has no
+// area in X.
+Eigen::Matrix3d motion_gradient(const Points& X, const Points& x, const Eigen::Vector3i& triangle);
+
 }  // namespace coapt

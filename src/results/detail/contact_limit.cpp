@@ -65,7 +65,12 @@ Vector areas_within(double distance, const Model& model, const Fields& fields) {
 ContactMeasure measure_contact(const Model& model, const Fields& fields) {
   const ContactLimit limit = contact_limit(model, fields);
   const Vector near = areas_within(limit.near, model, fields), far = areas_within(limit.far, model, fields);
-  return {limit, near - limit.weight * (far - near)};
+  return {limit, near, near - limit.weight * (far - near)};
+}
+
+std::optional<double> resolved_area(double near, double in_contact) {
+  if (near == 0) return 0;
+  return in_contact > 0 ? std::optional(in_contact) : std::nullopt;
 }
 
 std::vector<Vec3> places_within(double distance, int region, const Model& model, const Fields& fields) {

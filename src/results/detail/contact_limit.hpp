@@ -3,6 +3,7 @@
 
 #include "results/fields.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace coapt {
@@ -28,9 +29,14 @@ Vector areas_within(double distance, const Model& model, const Fields& fields);
 
 struct ContactMeasure {
   ContactLimit limit;
-  Vector areas;  // in contact, followed back to contact itself, of each closed triangle: the sum of many
-                 // means something, that of one may be negative [mm2]
+  Vector near;   // within the contact distance, of each closed triangle [mm2]
+  Vector areas;  // the same followed back to contact itself: the sum of many means something, that of one may
+                 // be negative [mm2]
 };
+
+// An area in contact that was followed back from `near` within the contact distance [mm2]; empty where the
+// mesh is too coarse for it: sheets lie within that distance, and nothing is left of them in contact.
+std::optional<double> resolved_area(double near, double in_contact);
 
 // Pre: fields of contact.
 ContactMeasure measure_contact(const Model& model, const Fields& fields);

@@ -1,6 +1,7 @@
 #include "study/bench/accuracy.hpp"
 
 #include "core/error.hpp"
+#include "core/number_text.hpp"
 #include "report/report_page.hpp"
 #include "results/frames.hpp"
 #include "run/run_parts.hpp"
@@ -42,11 +43,12 @@ double tighter(double tolerance, double error_mm, double wanted_mm) {
 class Search {
  public:
   Search(const Scene& scene, const SolverTable& solvers, double wanted_mm, const RunOptions& options,
-         int most_triangles)
+         const AccuracyObserver& observer, int most_triangles)
       : scene_(scene),
         setup_(solve_setup(scene, solvers, options)),
         going_on_(solve_setup(scene, solvers, refining(solvers, options))),
         options_(options),
+        observer_(observer),
         most_triangles_(most_triangles),
         most_seconds_(setup_.stop.max_seconds) {
     going_on_.stability = {};  // it stays with the shape that it is given, be it a saddle
@@ -60,30 +62,16 @@ class Search {
   SolvedMesh solve() {
     SolvedMesh mesh = tightened(solved(0));
     std::vector<TriangleMesh> shapes = {mesh.closed()};
+    tell();
     while (mesh.has_converged() && estimate.algebraic_mm) {
       if (4L * mesh.model.mesh.triangle_count() > most_triangles_) break;
       SolvedMesh finer = solved(mesh.cuts + 1);
       if (!finer.has_converged()) return mesh;  // out of time, say: this one is an equilibrium
       shapes.push_back(finer.closed());
-      const MeshDistances distances = distances_between_meshes(shapes);
-      estimate.levels.back().to_previous = distances.to_next.back();
-      const DiscretisationEstimate found = estimate_discretisation(distances);
-      estimate.order = found.order;
       mesh = std::move(finer);
-      estimate.discretisation_mm = estimate.farthest_mm = std::nullopt;
-      if (!orders_agree(distances)) continue;
-      const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {
-        return error <= (1 - kAlgebraicShare) * estimate.wanted_mm;
-      });
-      const bool is_enough = fine_enough != found.error_mm.end();
-      const auto chosen = is_enough ? static_cast<size_t>(fine_enough - found.error_mm.begin()) : mesh.cuts;
-      estimate.discretisation_mm = found.error_mm[chosen];
-      // What the farthest point is beside the 95th percentile, as the distance to the finest mesh shows it.
-      const DistanceFigures& seen =
-          chosen < mesh.cuts ? distances.to_finest[chosen] : distances.to_next.back();
-      if (seen.p95 > 0) estimate.farthest_mm = found.error_mm[chosen] * seen.max / seen.p95;
-      if (!is_enough) continue;
-      return tightened(chosen == mesh.cuts ? std::move(mesh) : solved(chosen));
+      const std::optional<size_t> fine_enough = compare(shapes);
+      tell();
+      if (fine_enough) return tightened(*fine_enough == mesh.cuts ? std::move(mesh) : solved(*fine_enough));
     }
     return mesh.cuts == 0 ? std::move(mesh) : tightened(std::move(mesh));
   }
@@ -102,6 +90,31 @@ class Search {
   const SceneGeometry& geometry(size_t cuts) {
     while (geometries_.size() <= cuts) geometries_.push_back(refined(geometries_.back()));
     return *std::next(geometries_.begin(), static_cast<std::ptrdiff_t>(cuts));
+  }
+
+  void tell() const {
+    if (observer_) observer_(estimate);
+  }
+
+  // Estimates the error of the last of the shapes, or of the first that is fine enough, which is returned.
+  std::optional<size_t> compare(const std::vector<TriangleMesh>& shapes) {
+    const MeshDistances distances = distances_between_meshes(shapes);
+    estimate.levels.back().to_previous = distances.to_next.back();
+    const DiscretisationEstimate found = estimate_discretisation(distances);
+    estimate.order = found.order;
+    estimate.discretisation_mm = estimate.farthest_mm = std::nullopt;
+    if (!orders_agree(distances)) return std::nullopt;
+    const auto fine_enough = std::find_if(found.error_mm.begin(), found.error_mm.end(), [&](double error) {
+      return error <= (1 - kAlgebraicShare) * estimate.wanted_mm;
+    });
+    const bool is_enough = fine_enough != found.error_mm.end();
+    const size_t finest = shapes.size() - 1,
+                 chosen = is_enough ? static_cast<size_t>(fine_enough - found.error_mm.begin()) : finest;
+    estimate.discretisation_mm = found.error_mm[chosen];
+    // What the farthest point is beside the 95th percentile, as the distance to the finest mesh shows it.
+    const DistanceFigures& seen = chosen < finest ? distances.to_finest[chosen] : distances.to_next.back();
+    if (seen.p95 > 0) estimate.farthest_mm = found.error_mm[chosen] * seen.max / seen.p95;
+    return is_enough ? std::optional(chosen) : std::nullopt;
   }
 
   double seconds_left() const { return std::max(0.0, most_seconds_ - (wall_seconds() - start_)); }
@@ -151,6 +164,7 @@ class Search {
   const Scene& scene_;
   SolveSetup setup_, going_on_;
   const RunOptions& options_;
+  const AccuracyObserver& observer_;
   int most_triangles_;
   double most_seconds_, start_ = wall_seconds();
   std::list<SceneGeometry> geometries_;  // the scene's own first; the others refer to it
@@ -203,10 +217,24 @@ std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) 
 
 }  // namespace
 
+std::string last_mesh(const AccuracyEstimate& estimate) {
+  const AccuracyLevel& level = estimate.levels.back();
+  std::string text =
+      std::to_string(level.triangles) + " triangles in " + fixed_text(level.wall_s, 1) + " s";
+  if (level.to_previous)
+    text += ": 95 % of the surface moved by up to " + page_number(level.to_previous->p95, 2) +
+            " mm, its farthest point by " + page_number(level.to_previous->max, 2) + " mm";
+  if (estimate.discretisation_mm)
+    text += "; error by estimate " + page_number(*estimate.discretisation_mm, 2) + " mm (wanted: " +
+            page_number(estimate.wanted_mm) + " mm)";
+  return text;
+}
+
 RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
-                          const RunOptions& options, int most_triangles) {
+                          const RunOptions& options, const AccuracyObserver& observer,
+                          int most_triangles) {
   check(scene, wanted_mm, options);
-  Search search(scene, solvers, wanted_mm, options, most_triangles);
+  Search search(scene, solvers, wanted_mm, options, observer, most_triangles);
   RunReport run;
   run.folder = open_result_folder(scene, options);
   SolvedMesh mesh = search.solve();

@@ -3,6 +3,9 @@
 
 #include "run/run.hpp"
 
+#include <functional>
+#include <string>
+
 namespace coapt {
 
 // The mesh is cut into four until the estimate of the discretisation error (estimate_discretisation, from the
@@ -15,8 +18,15 @@ namespace coapt {
 // solves together) are those of the options. No mesh of more than kMostTriangles is made: what cannot be
 // reached with fewer is said. Errors of the model, such as wrong tissue, are not known to it. Throws
 // InputError for bad input as run() does: a wanted accuracy that is no positive number, a scene without a
-// mesh, options that choose a tolerance or frames.
+// mesh, options that choose a tolerance or frames. observer: told of each mesh once it is solved and compared
+// with those before; may be empty.
+using AccuracyObserver = std::function<void(const AccuracyEstimate&)>;
 RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
-                          const RunOptions& options, int most_triangles = 200000);
+                          const RunOptions& options, const AccuracyObserver& observer = {},
+                          int most_triangles = 200000);
+
+// Of the mesh that was solved last: how long it took, how far it moved the surface of the mesh before, and
+// the error that is estimated since. One line.
+std::string last_mesh(const AccuracyEstimate& estimate);
 
 }  // namespace coapt

@@ -1,0 +1,117 @@
+#include "mesh/remesh/relieve_slivers.hpp"
+
+#include "mesh/remesh/prolong.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace coapt {
+namespace {
+
+constexpr int kMostRounds = 10;
+constexpr double kGain = 0.9;  // of the worst distortion around a vertex that moves
+
+// The greatest principal stretch or inverse of one, from the squared lengths of the edges.
+double distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
+  const Vec3 A = X.col(t[1]) - X.col(t[0]), B = X.col(t[2]) - X.col(t[0]);
+  const Vec3 a = x.col(t[1]) - x.col(t[0]), b = x.col(t[2]) - x.col(t[0]);
+  const double length = A.norm(), along = length > 0 ? B.dot(A) / length : 0;
+  const double height = length > 0 ? (B - along / length * A).norm() : 0;
+  if (!(height > 0)) return 1;
+  const Vec3 first = a / length, second = (b - along * first) / height;
+  const double p = first.squaredNorm(), q = second.squaredNorm(), r = first.dot(second);
+  const double mean = 0.5 * (p + q), apart = std::hypot(0.5 * (p - q), r), greatest = mean + apart;
+  const double least = first.cross(second).squaredNorm() / greatest;  // their product is the squared area ratio
+  if (!(least > 0)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(std::max(greatest, 1 / least));
+}
+
+std::vector<std::vector<int>> triangles_around(const Triangles& triangles, Eigen::Index vertices) {
+  std::vector<std::vector<int>> around(static_cast<size_t>(vertices));
+  for (int t = 0; t < triangles.cols(); ++t)
+    for (const int v : triangles.col(t)) around[static_cast<size_t>(v)].push_back(t);
+  return around;
+}
+
+class Relief {
+ public:
+  Relief(const Triangles& triangles, const Points& X, const std::vector<char>& may_move, Points& x)
+      : triangles_(triangles),
+        X_(X),
+        may_move_(may_move),
+        x_(x),
+        distortion_(distortions(triangles, X, x)),
+        around_(triangles_around(triangles, X.cols())) {}
+
+  // Whether any vertex moved.
+  bool round(double most) {
+    std::vector<int> worst;
+    for (int t = 0; t < distortion_.size(); ++t)
+      if (distortion_[t] > most) worst.push_back(t);
+    std::stable_sort(worst.begin(), worst.end(), [&](int s, int t) { return distortion_[s] > distortion_[t]; });
+    bool has_moved = false;
+    for (const int t : worst)
+      if (distortion_[t] > most) has_moved = relieve(t) || has_moved;
+    return has_moved;
+  }
+
+ private:
+  double worst_around(int v) const {
+    double worst = 0;
+    for (const int t : around_[static_cast<size_t>(v)]) worst = std::max(worst, distortion(X_, x_, triangles_.col(t)));
+    return worst;
+  }
+
+  bool relieve(int t) {
+    int best = -1;
+    double least = kGain;  // of the worst around the vertex
+    Vec3 place;
+    for (int k = 0; k < 3; ++k) {
+      const int v = triangles_(k, t), a = triangles_((k + 1) % 3, t), b = triangles_((k + 2) % 3, t);
+      if (may_move_[static_cast<size_t>(v)] == 0) continue;
+      const Vec3 before = x_.col(v);
+      const double worst = worst_around(v);
+      for (const int n : around_[static_cast<size_t>(a)]) {
+        if (n == t || (triangles_.col(n).array() == b).count() == 0) continue;
+        const Eigen::Vector3i beyond = triangles_.col(n);
+        x_.col(v) = x_.col(a) + motion_gradient(X_, x_, beyond) * (X_.col(v) - X_.col(a));
+        const double ratio = std::isinf(worst) ? 0 : worst_around(v) / worst;
+        if (ratio < least && std::isfinite(worst_around(v))) {
+          least = ratio;
+          best = v;
+          place = x_.col(v);
+        }
+        x_.col(v) = before;
+      }
+    }
+    if (best < 0) return false;
+    x_.col(best) = place;
+    for (const int n : around_[static_cast<size_t>(best)]) distortion_[n] = distortion(X_, x_, triangles_.col(n));
+    return true;
+  }
+
+  const Triangles& triangles_;
+  const Points& X_;
+  const std::vector<char>& may_move_;
+  Points& x_;
+  Vector distortion_;  // of each triangle
+  std::vector<std::vector<int>> around_;
+};
+
+}  // namespace
+
+Vector distortions(const Triangles& triangles, const Points& X, const Points& x) {
+  Vector result(triangles.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) result[t] = distortion(X, x, triangles.col(t));
+  return result;
+}
+
+void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move, double most,
+                     Points& x) {
+  Relief relief(triangles, X, may_move, x);
+  for (int round = 0; round < kMostRounds && relief.round(most); ++round) {
+  }
+}
+
+}  // namespace coapt
