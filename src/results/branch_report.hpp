@@ -47,8 +47,8 @@ struct Branches {
   // Those that led to an equilibrium; a search without any tells nothing.
   int converged() const { return starts - not_converged; }
 
-  // Whether the search says more than a suspicion of other equilibria: it found one, or made as many starts as
-  // whoever suspects is told to.
+  // Whether the search says more than a suspicion of other equilibria: it found one, or made as many starts
+  // as whoever suspects is told to.
   bool answers_suspicion() const { return equilibria.size() > 1 || converged() >= kUsualStarts; }
 };
 

@@ -175,8 +175,7 @@ Metrics measure(const Model& model, const Vector& q, const Fields& fields, const
     metrics.contact_vertices = std::count(fields.is_contact.begin(), fields.is_contact.end(), 1);
     metrics.contact_facets = std::count(fields.is_contact_facet.begin(), fields.is_contact_facet.end(), 1);
     metrics.near_coaptation_area_mm2 = contact.near.sum() / 2;
-    metrics.coaptation_area_mm2 =
-        resolved_area(metrics.near_coaptation_area_mm2, contact.areas.sum() / 2);
+    metrics.coaptation_area_mm2 = resolved_area(metrics.near_coaptation_area_mm2, contact.areas.sum() / 2);
   }
   const double gap = fields.gap.size() == 0 ? kNaN : fields.gap.minCoeff<Eigen::PropagateNumbers>();
   if (std::isfinite(gap)) metrics.smallest_gap_mm = gap;

@@ -21,14 +21,14 @@ struct Metrics {
   std::optional<double> orifice_area_percent;   // of the annulus area
   std::optional<double> regurgitant_area_mm2;   // of the orifice, wider than the contact distance
   std::optional<double> orifice_film_area_mm2;  // of the least surface that closes the same from rim to rim
-  std::optional<double> coaptation_area_mm2;    // half the area of the leaflets that touch another; empty also
-                                                // where the mesh does not resolve it
-  double near_coaptation_area_mm2 = 0;          // half the area within the contact distance
-  std::optional<double> coaptation_length_mm;   // of the coaptation line
-  std::optional<double> coaptation_height_mm;   // extent of contact below that line, 90th percentile
-  std::optional<double> tenting_height_mm;      // depth of the coaptation line below the annulus plane
-  std::optional<double> tenting_volume_mm3;     // between the leaflets and the surface that the annulus spans
-  std::optional<double> prolapse_height_mm;     // greatest height above every line across the annulus
+  std::optional<double> coaptation_area_mm2;   // half the area of the leaflets that touch another; empty also
+                                               // where the mesh does not resolve it
+  double near_coaptation_area_mm2 = 0;         // half the area within the contact distance
+  std::optional<double> coaptation_length_mm;  // of the coaptation line
+  std::optional<double> coaptation_height_mm;  // extent of contact below that line, 90th percentile
+  std::optional<double> tenting_height_mm;     // depth of the coaptation line below the annulus plane
+  std::optional<double> tenting_volume_mm3;    // between the leaflets and the surface that the annulus spans
+  std::optional<double> prolapse_height_mm;    // greatest height above every line across the annulus
   double leaflet_area_open_mm2 = 0;
   double leaflet_area_closed_mm2 = 0;
   double leaflet_area_change_mm2 = 0;  // of the closed mesh against the reference

@@ -38,12 +38,12 @@ NeighbourCheck check_neighbours(const std::string& solver, const Result& result,
 
 std::string neighbour_warning(const NeighbourCheck& check) {
   if (!check.is_suspected) return "";
-  const std::string why =
-      check.unstable_steps >= kUnstableSteps
-          ? "its damped path is unstable in " + std::to_string(check.unstable_steps) +
-                " steps from half of the loads on"
-          : "the solve took " + std::to_string(check.iterates) +
-                " iterations, and most valves that take so many have other equilibria near by, with other figures";
+  const std::string why = check.unstable_steps >= kUnstableSteps
+                              ? "its damped path is unstable in " + std::to_string(check.unstable_steps) +
+                                    " steps from half of the loads on"
+                              : "the solve took " + std::to_string(check.iterates) +
+                                    " iterations, and most valves that take so many have other equilibria "
+                                    "near by, with other figures";
   return "The shape may be one of several: " + why + ". Look for others with --branches " +
          std::to_string(kUsualStarts) + ".";
 }

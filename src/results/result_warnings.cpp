@@ -9,8 +9,8 @@ namespace coapt {
 namespace {
 
 constexpr const char* kStabilityDoubt = "its stability is in doubt (";
-constexpr double kSevereOrifice = 40;                          // effective, of severe regurgitation [mm2]
-constexpr double kLeastCoaptation = 0.25;                      // share of the area within the contact distance
+constexpr double kSevereOrifice = 40;      // effective, of severe regurgitation [mm2]
+constexpr double kLeastCoaptation = 0.25;  // of the area within the contact distance, in contact itself
 constexpr double kMostFacetStrain = 1, kMostLineStrain = 0.2;  // beyond which they are named
 
 // "3 of 630 facets (12, 45, 300)": those above `most`; empty where none is.

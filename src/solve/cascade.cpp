@@ -66,10 +66,10 @@ std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& geomet
 
 // What the coarser meshes give a finer one to begin with.
 struct Start {
-  Points x;                      // of all nodes
+  Points x;                           // of all nodes
   Status status = Status::Converged;  // why the coarser ones ended
-  std::vector<char> is_new;      // of each vertex: the mesh before has it not
-  double distortion = 1;         // the greatest of the mesh before
+  std::vector<char> is_new;           // of each vertex: the mesh before has it not
+  double distortion = 1;              // the greatest of the mesh before
 };
 
 // Positions of all nodes of the finer mesh; the points of the networks follow the vertices.
@@ -88,7 +88,7 @@ Start finer(const Step& step, const Start& coarse) {
 }
 
 // The prescribed nodes go where they belong; slivers that the rest does not fit are relieved.
-void settle(Start& start, Model& model) {
+void fit_to_mesh(Start& start, Model& model) {
   start.x = model.objective->positions(problem_at(start.x, model).q0);
   const Eigen::Index count = model.mesh.vertex_count();
   std::vector<char> may_move = start.is_new;
@@ -103,7 +103,7 @@ void settle(Start& start, Model& model) {
 // their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
 // edge.
 bool make_startable(Start& start, Model& model) {
-  settle(start, model);
+  fit_to_mesh(start, model);
   Points& x = start.x;
   if (model.objective->step_limiting_term() == nullptr) return true;
   const Triangles facets = all_facets(model);

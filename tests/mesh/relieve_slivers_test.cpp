@@ -1,5 +1,6 @@
 // Slivers that a shape carried over from a coarser mesh distorts.
 #include "mesh/remesh/relieve_slivers.hpp"
+
 #include "mesh/shapes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Where prescribed nodes can go, with a spike in the way of the sheet that they hold.
-#include "energy/contact_barrier.hpp"
 #include "optim/move_prescribed.hpp"
+
+#include "energy/contact_barrier.hpp"
 #include "support/contact_scene.hpp"
 #include "support/equilibrium.hpp"
 #include "support/meshes.hpp"

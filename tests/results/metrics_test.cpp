@@ -1,5 +1,4 @@
 #include "results/metrics.hpp"
-#include "results/result_warnings.hpp"
 
 #include "energy/element_term.hpp"
 #include "energy/kernels/cable.hpp"
@@ -8,6 +7,7 @@
 #include "mesh/distance/vertex_gaps.hpp"
 #include "mesh/shapes.hpp"
 #include "results/reference/reference_distance.hpp"
+#include "results/result_warnings.hpp"
 #include "support/sanitized.hpp"
 #include "support/trough_valve.hpp"
 

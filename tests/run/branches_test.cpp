@@ -253,7 +253,8 @@ TEST(Headline, SaysOfAnEquilibriumThatItMayNotBeTheOnlyOne) {
   report.branches.emplace().equilibria.resize(1);
   EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "before any start";
   report.branches->starts = kUsualStarts - 1;
-  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "fewer than advised";
+  EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by")
+      << "fewer than advised";
   report.branches->starts = kUsualStarts + 1;
   report.branches->not_converged = 2;
   EXPECT_EQ(headline(report).text, "converged; there may be other equilibria near by") << "too few converged";

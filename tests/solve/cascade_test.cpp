@@ -108,9 +108,11 @@ TEST_F(CascadeTest, BeginsFromTheCoarserMeshWhereTheFinerHasSlivers) {
   ASSERT_GT(vertices.size(), 40u);
   const Eigen::Index count = mesh.vertex_count();
   mesh.vertices.conservativeResize(3, count + std::ssize(vertices));
-  for (size_t k = 0; k < vertices.size(); ++k) mesh.vertices.col(count + static_cast<Eigen::Index>(k)) = vertices[k];
+  for (size_t k = 0; k < vertices.size(); ++k)
+    mesh.vertices.col(count + static_cast<Eigen::Index>(k)) = vertices[k];
   mesh.triangles.resize(3, std::ssize(triangles));
-  for (size_t k = 0; k < triangles.size(); ++k) mesh.triangles.col(static_cast<Eigen::Index>(k)) = triangles[k];
+  for (size_t k = 0; k < triangles.size(); ++k)
+    mesh.triangles.col(static_cast<Eigen::Index>(k)) = triangles[k];
   write_mesh(folder_.path() / "slivers.obj", mesh);
   const Scene scene = load_scene(folder_.write("slivers.json", R"({"mesh": {"file": "slivers.obj"},
     "boundary": [{"nodes": "boundary", "fix": true}],

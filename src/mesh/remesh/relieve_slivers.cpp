@@ -9,8 +9,8 @@
 namespace coapt {
 namespace {
 
-constexpr int kMostRounds = 10;
-constexpr double kGain = 0.9;  // of the worst distortion around a vertex that moves
+constexpr int kMostRounds = 10;  // through the triangles that are distorted too much
+constexpr double kGain = 0.9;    // of the worst distortion around a vertex that moves
 
 // The greatest principal stretch or inverse of one, from the squared lengths of the edges.
 double distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
@@ -22,7 +22,8 @@ double distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
   const Vec3 first = a / length, second = (b - along * first) / height;
   const double p = first.squaredNorm(), q = second.squaredNorm(), r = first.dot(second);
   const double mean = 0.5 * (p + q), apart = std::hypot(0.5 * (p - q), r), greatest = mean + apart;
-  const double least = first.cross(second).squaredNorm() / greatest;  // their product is the squared area ratio
+  const double least =
+      first.cross(second).squaredNorm() / greatest;  // their product is the squared area ratio
   if (!(least > 0)) return std::numeric_limits<double>::infinity();
   return std::sqrt(std::max(greatest, 1 / least));
 }
@@ -49,7 +50,8 @@ class Relief {
     std::vector<int> worst;
     for (int t = 0; t < distortion_.size(); ++t)
       if (distortion_[t] > most) worst.push_back(t);
-    std::stable_sort(worst.begin(), worst.end(), [&](int s, int t) { return distortion_[s] > distortion_[t]; });
+    std::stable_sort(worst.begin(), worst.end(),
+                     [&](int s, int t) { return distortion_[s] > distortion_[t]; });
     bool has_moved = false;
     for (const int t : worst)
       if (distortion_[t] > most) has_moved = relieve(t) || has_moved;
@@ -59,7 +61,8 @@ class Relief {
  private:
   double worst_around(int v) const {
     double worst = 0;
-    for (const int t : around_[static_cast<size_t>(v)]) worst = std::max(worst, distortion(X_, x_, triangles_.col(t)));
+    for (const int t : around_[static_cast<size_t>(v)])
+      worst = std::max(worst, distortion(X_, x_, triangles_.col(t)));
     return worst;
   }
 
@@ -87,7 +90,8 @@ class Relief {
     }
     if (best < 0) return false;
     x_.col(best) = place;
-    for (const int n : around_[static_cast<size_t>(best)]) distortion_[n] = distortion(X_, x_, triangles_.col(n));
+    for (const int n : around_[static_cast<size_t>(best)])
+      distortion_[n] = distortion(X_, x_, triangles_.col(n));
     return true;
   }
 
@@ -107,8 +111,8 @@ Vector distortions(const Triangles& triangles, const Points& X, const Points& x)
   return result;
 }
 
-void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move, double most,
-                     Points& x) {
+void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move,
+                     double most, Points& x) {
   Relief relief(triangles, X, may_move, x);
   for (int round = 0; round < kMostRounds && relief.round(most); ++round) {
   }

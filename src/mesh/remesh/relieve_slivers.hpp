@@ -16,7 +16,7 @@ Vector distortions(const Triangles& triangles, const Points& X, const Points& x)
 // One of its vertices then goes along with a triangle across the opposite edge, as if both were one affine
 // piece: the vertex and the neighbour that leave the triangles around it least distorted. may_move: of each
 // vertex. Triangles that cannot be bettered stay.
-void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move, double most,
-                     Points& x);
+void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move,
+                     double most, Points& x);
 
 }  // namespace coapt

@@ -219,20 +219,18 @@ std::string described(const AccuracyEstimate& estimate, const SolvedMesh& mesh) 
 
 std::string last_mesh(const AccuracyEstimate& estimate) {
   const AccuracyLevel& level = estimate.levels.back();
-  std::string text =
-      std::to_string(level.triangles) + " triangles in " + fixed_text(level.wall_s, 1) + " s";
+  std::string text = std::to_string(level.triangles) + " triangles in " + fixed_text(level.wall_s, 1) + " s";
   if (level.to_previous)
     text += ": 95 % of the surface moved by up to " + page_number(level.to_previous->p95, 2) +
             " mm, its farthest point by " + page_number(level.to_previous->max, 2) + " mm";
   if (estimate.discretisation_mm)
-    text += "; error by estimate " + page_number(*estimate.discretisation_mm, 2) + " mm (wanted: " +
-            page_number(estimate.wanted_mm) + " mm)";
+    text += "; error by estimate " + page_number(*estimate.discretisation_mm, 2) +
+            " mm (wanted: " + page_number(estimate.wanted_mm) + " mm)";
   return text;
 }
 
 RunReport run_to_accuracy(const Scene& scene, const SolverTable& solvers, double wanted_mm,
-                          const RunOptions& options, const AccuracyObserver& observer,
-                          int most_triangles) {
+                          const RunOptions& options, const AccuracyObserver& observer, int most_triangles) {
   check(scene, wanted_mm, options);
   Search search(scene, solvers, wanted_mm, options, observer, most_triangles);
   RunReport run;
