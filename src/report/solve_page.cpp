@@ -79,12 +79,14 @@ PageCell value_cell(double value, const BranchRange* others) {
 PageTable metric_table(const Report& report) {
   PageTable table{.caption = "All figures of the result",
                   .columns = {{"figure", true}, {"value"}, {"unit", true}, {"meaning", true}}};
-  for (const MetricRow& row : metric_rows(report.metrics))
-    if (row.value)
-      table.rows.push_back({{metric_in_words(row)},
-                            value_cell(*row.value, range_of(report.branches, row.name)),
-                            {unit_sign(row.unit)},
-                            {row.meaning}});
+  const std::string coaptation = coaptation_remark(report.metrics);
+  for (const MetricRow& row : metric_rows(report.metrics)) {
+    const bool is_unresolved = row.name == "coaptation_area_mm2" && !coaptation.empty();
+    if (!row.value && !is_unresolved) continue;
+    PageCell cell = row.value ? value_cell(*row.value, range_of(report.branches, row.name)) : PageCell{"-"};
+    if (is_unresolved) cell.remark = coaptation + (cell.remark.empty() ? "" : "; " + cell.remark);
+    table.rows.push_back({{metric_in_words(row)}, cell, {unit_sign(row.unit)}, {row.meaning}});
+  }
   table.note = "Intersections were counted by: " + report.metrics.intersection_checker +
                ". Figures that the scene does not define are left out.";
   return table;

@@ -54,13 +54,11 @@ std::string yield_warning(const Fields& fields) {
          ", numbered as in closed.vtp (yield_ratio, line_yield_ratio).";
 }
 
-std::string coaptation_warning(const Metrics& metrics) {
+std::string coaptation_remark(const Metrics& metrics) {
   const double near = metrics.near_coaptation_area_mm2, area = metrics.coaptation_area_mm2.value_or(0);
   if (area >= kLeastCoaptation * near) return "";
-  return "The coaptation area is not resolved by this mesh: " + number_text(near, 3) +
-         " mm2 of the leaflets lie within the contact distance of another, half of a mean edge, and " +
-         (metrics.coaptation_area_mm2 ? number_text(area, 2) + " mm2" : std::string("none")) +
-         " of it in contact itself.";
+  return (metrics.coaptation_area_mm2 ? "hardly" : "not") + std::string(" resolved by this mesh: ") +
+         number_text(near, 3) + " mm2 within the contact distance, half of a mean edge";
 }
 
 std::vector<std::string> result_warnings(const Report& report) {

@@ -16,9 +16,10 @@ std::vector<std::string> result_warnings(const Report& report);
 // in closed.vtp, one sentence; empty where none is. Tissue and sailcloth bear neither: the data is at fault.
 std::string stretch_warning(const Fields& fields);
 
-// That of the area within the contact distance less than a quarter is left in contact itself, where finer
-// meshes show a half and more, one sentence; empty where it is not so.
-std::string coaptation_warning(const Metrics& metrics);
+// Beside the coaptation area, or in its place: that of the area within the contact distance less than a
+// quarter is left in contact itself, where finer meshes show a half and more. One clause; empty where it is
+// not so.
+std::string coaptation_remark(const Metrics& metrics);
 
 // Which facets and chords have fibres beyond their yield, one sentence; empty where none has.
 std::string yield_warning(const Fields& fields);

@@ -108,8 +108,7 @@ Report measure_run(const Scene& scene, const SolveSetup& setup, const Model& mod
   if (report.metrics.intersections > 0)
     report.warnings.push_back(std::to_string(report.metrics.intersections) +
                               " pairs of facets pass through each other in the result.");
-  for (const std::string& warning :
-       {coaptation_warning(report.metrics), stretch_warning(report.fields), yield_warning(report.fields)})
+  for (const std::string& warning : {stretch_warning(report.fields), yield_warning(report.fields)})
     if (!warning.empty()) report.warnings.push_back(warning);
   report.surface_doubts = surface_doubts(model.mesh);
   withdraw_penetrated(report);

@@ -151,12 +151,14 @@ const tests = {
   async "figures are those of result.json"({ page, folder }) {
     const result = JSON.parse(readFileSync(join(folder, "result.json")));
     const table = page.getByRole("table", { name: /^All figures/ });
+    const text = title =>
+      table.getByRole("row", { name: title, exact: false }).first().getByRole("cell").first().textContent();
     for (const [title, value] of [["orifice area", result.metrics.orifice_area_mm2],
                                   ["max principal strain", result.metrics.max_principal_strain],
-                                  ["coaptation area", result.metrics.coaptation_area_mm2]]) {
-      const cell = table.getByRole("row", { name: title, exact: false }).first().getByRole("cell").first();
-      near(await cell.textContent(), value, 5);
-    }
+                                  ["coaptation length", result.metrics.coaptation_length_mm]])
+      near(await text(title), value, 5);
+    assert.equal(result.metrics.coaptation_area_mm2, null, "so coarse a mesh resolves none");
+    assert.match(await text("coaptation area"), /^-.*not resolved by this mesh/s);
     assert.equal(await page.locator("header .lead").textContent(), [result.message, ...result.doubts].join("; "));
     assert.ok(await page.getByText(result.certificate.summary).count() > 0);
     assert.equal(await page.locator("figure.plot [role=img]").count(), 2);

@@ -117,9 +117,10 @@ void print_metrics(const Model& model, const Metrics& m, const std::optional<Bra
     print_others(branches, "orifice_area_mm2", "%.2f");
     std::printf("\n");
   }
-  print("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f", "coaptation_area_mm2");
-  if (!m.coaptation_area_mm2 && m.contact_vertices > 0)
-    std::printf("  %-22s not resolved by this mesh\n", "coaptation area");
+  const std::string coaptation = coaptation_remark(m);
+  print("coaptation area", m.coaptation_area_mm2, "mm2", "%.2f", "coaptation_area_mm2", coaptation.c_str());
+  if (!m.coaptation_area_mm2 && !coaptation.empty())
+    std::printf("  %-22s %s\n", "coaptation area", coaptation.c_str());
   print("coaptation length", m.coaptation_length_mm, "mm", "%.2f", "coaptation_length_mm");
   print("coaptation height", m.coaptation_height_mm, "mm", "%.2f", "coaptation_height_mm");
   print("tenting height", m.tenting_height_mm, "mm", "%.2f", "tenting_height_mm");

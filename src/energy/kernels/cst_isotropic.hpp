@@ -99,7 +99,7 @@ struct CstIsotropic {
     if (rest.relaxes) {
       // No strain is greater than that of a sheet as wide as long.
       if (l1 <= 1 || 2 * l1 * l1 + 1 / (l1 * l1 * l1 * l1) - 3 <= rest.law.invariant.limit) return 0;
-      l2 = std::max(l2, free_width(rest.law, l1));
+      l2 = std::max(l2, free_width(rest.law, l1).width);
     }
     return rest.law.invariant.raise_limit(rest.law.strain(l1, l2));
   }
@@ -122,7 +122,8 @@ struct CstIsotropic {
     if constexpr (requires { rest.law.volume_ratio(1.0, 1.0); }) {
       const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
       if (!rest.relaxes || regime == MembraneRegime::Taut) return rest.law.volume_ratio(l1, l2);
-      if (regime == MembraneRegime::Wrinkled) return rest.law.volume_ratio(l1, free_width(rest.law, l1));
+      if (regime == MembraneRegime::Wrinkled)
+        return rest.law.volume_ratio(l1, free_width(rest.law, l1).width);
     }
     return 1;
   }
@@ -150,8 +151,10 @@ struct CstIsotropic {
   // The width at which a strip stretched by l1 >= 1 is free: dw/dl2 is negative below and positive at l2 =
   // l1. Newton from the law's guess; where it leaves the bracket or gains little, as on the steep side of an
   // exponential, the geometric mean of the bracket.
-  static double free_width(const Law& law, double l1) {
-    double low = kThinnest, high = l1, l2 = std::clamp(law.free_width(l1), kThinnest, l1);
+  static FreeWidth free_width(const Law& law, double l1) {
+    const FreeWidth guess = law.free_width(l1);
+    if (guess.is_exact) return guess;
+    double low = kThinnest, high = l1, l2 = std::clamp(guess.width, kThinnest, l1);
     constexpr int kMost = 200;      // steps towards the stress-free width
     constexpr double kLast = 1e-9;  // the error that a step this small leaves is its square
     constexpr double kGain = 0.3;   // of the stress that Newton's step has to leave at most
@@ -161,12 +164,12 @@ struct CstIsotropic {
       (w.w2 < 0 ? low : high) = l2;
       const double next = l2 - w.w2 / w.w22;
       // A slope that overflows leaves no step.
-      if (std::isfinite(w.w22) && std::abs(next - l2) <= kLast * l2) return next;
+      if (std::isfinite(w.w22) && std::abs(next - l2) <= kLast * l2) return {next, true};
       const bool is_slow = !(std::abs(w.w2) <= kGain * std::exchange(last, std::abs(w.w2)));
       l2 = next > low && next < high && !is_slow ? next : std::sqrt(low * high);
       if (high - low <= kLast * kLast * high) break;
     }
-    return l2;
+    return {l2, true};
   }
 
   static Principal respond(const Rest& rest, const CstPrincipal& p) {
@@ -179,10 +182,10 @@ struct CstIsotropic {
                   : l1 > 1      ? MembraneRegime::Wrinkled
                                 : MembraneRegime::Slack);
     if (trial.w2 >= 0) return full(trial, l1, l2, MembraneRegime::Taut);
-    const double l = free_width(rest.law, std::max(l1, 1.0));
-    if (l2 >= l * (1 - kRoundOff)) return full(trial, l1, l2, MembraneRegime::Taut);
+    const FreeWidth free = free_width(rest.law, std::max(l1, 1.0));
+    if (l2 >= free.width * (1 - kRoundOff)) return full(trial, l1, l2, MembraneRegime::Taut);
     if (l1 <= 1) return {};
-    const StretchEnergy w = rest.law.evaluate(l1, l);
+    const StretchEnergy w = rest.law.evaluate(l1, free);
     Principal wrinkled{w.energy, {w.w1 / l1, 0, 0}, {}, MembraneRegime::Wrinkled};
     const double along = w.w11 - w.w12 * (w.w12 / w.w22);
     wrinkled.tangent.c11 = (along - wrinkled.stress.s11) / (l1 * l1);

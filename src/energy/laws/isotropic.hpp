@@ -1,7 +1,8 @@
 // Isotropic membrane laws in plane stress, as functions of the two principal stretches. Energies are per
 // volume at rest [stress]. Each is least, and free of stress, at l1 = l2 = 1. A law gives
 //   evaluate(l1, l2)       energy and its first and second derivatives
-//   free_width(l1)         a guess of the l2 at which a strip stretched by l1 is free of stress across
+//   free_width(l1)         the l2 at which a strip stretched by l1 is free of stress across, or a guess of it
+//   evaluate(l1, width)    the same as evaluate(l1, width.width), with what was found on the way to it
 //   initial_young(), initial_poisson()   of the linear membrane that it is at small strain
 #pragma once
 
@@ -19,6 +20,12 @@ struct StretchEnergy {
   double energy = 0;
   double w1 = 0, w2 = 0;
   double w11 = 0, w22 = 0, w12 = 0;
+};
+
+struct FreeWidth {
+  double width = 1;
+  bool is_exact = false;
+  double root = 0;  // third root of the volume ratio; 0: not known
 };
 
 // Bilinear law: linear elastic with E_pre, and beyond the knee of each principal strain e_i = l_i - 1 stiffer
@@ -41,7 +48,8 @@ struct BilinearLaw {
             k + b.stiffness,
             k * poisson};
   }
-  double free_width(double l1) const { return 1 - poisson * (l1 - 1); }
+  FreeWidth free_width(double l1) const { return {1 - poisson * (l1 - 1)}; }
+  StretchEnergy evaluate(double l1, const FreeWidth& free) const { return evaluate(l1, free.width); }
   double initial_young() const { return young; }
   double initial_poisson() const { return poisson; }
 };
@@ -158,7 +166,7 @@ struct InvariantLaw {
 
   StretchEnergy evaluate(double l1, double l2) const {
     const double thin = 1 / (l1 * l2), thin2 = thin * thin;  // l3 at constant volume, squared
-    if (bulk > 0) return with_volume(l1, l2, thin2);
+    if (bulk > 0) return with_volume(l1, l2, thin2, balanced_root(l1, l2, thin2));
     const InvariantEnergy psi = invariant.at(distortion((l1 - 1) * (l1 + 1), (l2 - 1) * (l2 + 1), thin2));
     const double i1 = 2 * (l1 - thin2 / l1), i2 = 2 * (l2 - thin2 / l2);
     return {psi.energy,
@@ -170,19 +178,25 @@ struct InvariantLaw {
   }
   // A strip that is free across is as much so across its thickness: l2 = l3 = sqrt(J/l1), with the J of least
   // energy.
-  double free_width(double l1) const {
-    const double j = bulk > 0 ? volume_by_newton(l1 * l1 * l1, [&](double at) { return strip(l1, at); }) : 1;
-    return std::sqrt((j > 0 ? j : 1) / l1);
+  FreeWidth free_width(double l1) const {
+    if (bulk == 0) return {std::sqrt(1 / l1), true};
+    const double root = root_by_newton(l1 * l1 * l1, [&](double at) { return strip(l1, at); });
+    return root > 0 ? FreeWidth{std::sqrt(cube(root) / l1), true, root} : FreeWidth{std::sqrt(1 / l1)};
+  }
+  StretchEnergy evaluate(double l1, const FreeWidth& free) const {
+    if (free.root == 0) return evaluate(l1, free.width);
+    const double thin = 1 / (l1 * free.width);
+    return with_volume(l1, free.width, thin * thin, free.root);
   }
   // I1 - 3, of the isochoric part where the volume changes.
   double strain(double l1, double l2) const {
     const double thin = 1 / (l1 * l2), thin2 = thin * thin;
-    if (bulk > 0) return volume(l1, l2, thin2, balanced_volume(l1, l2, thin2)).invariant;
+    if (bulk > 0) return volume(l1, l2, thin2, balanced_root(l1, l2, thin2)).invariant;
     return distortion((l1 - 1) * (l1 + 1), (l2 - 1) * (l2 + 1), thin2);
   }
   // J of the volume: l1 l2 l3.
   double volume_ratio(double l1, double l2) const {
-    return bulk > 0 ? balanced_volume(l1, l2, 1 / (l1 * l2 * l1 * l2)) : 1;
+    return bulk > 0 ? cube(balanced_root(l1, l2, 1 / (l1 * l2 * l1 * l2))) : 1;
   }
   double initial_young() const {
     const double mu = invariant.initial_shear_modulus();
@@ -194,98 +208,105 @@ struct InvariantLaw {
   }
 
  private:
-  static constexpr double kLastStep = 1e-9;  // of J: the error that a step this small leaves is its square
+  // Of the third root of J, by which J is found, as the invariant needs it: the error that a step this small
+  // leaves is its square.
+  static constexpr double kLastStep = 1e-9;
+
+  static double cube(double root) { return root * root * root; }
 
   // W and its derivatives by J at fixed stretches.
   struct Volume {
     double energy, first, second;
     double invariant, di;  // isochoric, less 3, and its derivative by J
-    double root;           // of J, the third one
     InvariantEnergy psi;
   };
-  Volume with_invariant(double j, double root, double isochoric, double di, double ddi) const {
+  Volume with_invariant(double root, double isochoric, double di, double ddi) const {
+    const double j = cube(root);
     const InvariantEnergy psi = invariant.at(isochoric);
     return {psi.energy + 0.5 * bulk * (j - 1) * (j - 1),
             psi.first * di + bulk * (j - 1),
             psi.second * di * di + psi.first * ddi + bulk,
             isochoric,
             di,
-            root,
             psi};
   }
-  Volume volume(double l1, double l2, double thin2, double j) const {
-    const double root = std::cbrt(j), a = 1 / (root * root), plane = l1 * l1 + l2 * l2;
+  Volume volume(double l1, double l2, double thin2, double root) const {
+    const double j = cube(root), a = 1 / (root * root), plane = l1 * l1 + l2 * l2;
     // The stretches without the change of volume, squared, less 1.
     const double shrunk = (1 - root) * (1 + root) * a;
     const double p1 = shrunk + a * (l1 - 1) * (l1 + 1), p2 = shrunk + a * (l2 - 1) * (l2 + 1);
     const double di = (-2.0 / 3 * plane / j + 4.0 / 3 * j * thin2) * a,
                  ddi = (10.0 / 9 * plane / (j * j) + 4.0 / 9 * thin2) * a;
-    return with_invariant(j, root, distortion(p1, p2, thin2 / (a * a)), di, ddi);
+    return with_invariant(root, distortion(p1, p2, thin2 / (a * a)), di, ddi);
   }
   // The same of a strip that is free across.
-  Volume strip(double l1, double j) const {
-    const double root = std::cbrt(j), a = 1 / (root * root), along = l1 * l1 / j;
+  Volume strip(double l1, double root) const {
+    const double j = cube(root), a = 1 / (root * root), along = l1 * l1 / j;
     const double p1 = (1 - root) * (1 + root) * a + a * (l1 - 1) * (l1 + 1), p2 = (root - l1) / l1;
     const double di = 2.0 / 3 * a * (1 / l1 - along), ddi = 2.0 / 9 * a / j * (5 * along - 2 / l1);
-    return with_invariant(j, root, distortion(p1, p2, 1 + p2), di, ddi);
+    return with_invariant(root, distortion(p1, p2, 1 + p2), di, ddi);
   }
 
-  // The J of least energy, which lies between 1 and that of least distortion, by Newton's method from J = 1.
-  // A few steps where the bulk modulus outweighs psi; 0 where they do not suffice, as on the steep side of an
-  // exponential.
-  template <typename AtVolume>
-  double volume_by_newton(double least_distortion, const AtVolume& at) const {
+  // The third root of the J of least energy, which lies between 1 and that of least distortion, by Newton's
+  // method from 1. A few steps where the bulk modulus outweighs psi; 0 where they do not suffice, as on the
+  // steep side of an exponential.
+  template <typename AtRoot>
+  double root_by_newton(double least_distortion, const AtRoot& at) const {
     constexpr int kMost = 6;  // steps
     const double low = std::min(1.0, least_distortion), high = std::max(1.0, least_distortion);
-    double j = 1;
+    double root = 1;
     for (int k = 0; k < kMost; ++k) {
-      const Volume v = at(j);
-      const double next = j - v.first / v.second;
-      if (!std::isfinite(v.second) || !(next >= low && next <= high)) return 0;
-      if (std::abs(next - std::exchange(j, next)) <= kLastStep * next) return j;
+      const Volume v = at(root);
+      const double next = root - v.first / (3 * root * root * v.second), j = cube(next);
+      if (!std::isfinite(v.second) || !(j >= low && j <= high)) return 0;
+      if (std::abs(next - std::exchange(root, next)) <= kLastStep * next) return root;
     }
     return 0;
   }
 
-  // The J of least energy. Where Newton's method does not find it: with J* the J of least distortion,
-  // J = 1 + (J* - 1) s and u = ln(s/(1 - s)) the stress of psi and that of the bulk modulus balance where
-  //   ln psi'(j) + ln(4 thin2/(3 bulk)) - 5/3 ln J + ln(J* + J) - u = 0,
+  // The third root of the J of least energy. Where Newton's method does not find it: with r* that of the J*
+  // of least distortion, r = 1 + (r* - 1) s and u = ln(s/(1 - s)) the stress of psi and that of the bulk
+  // modulus balance where
+  //   ln psi'(j) + ln(4 thin2/(3 bulk) (J* + J) (r*^2 + r* r + r^2) / (r^5 (r^2 + r + 1))) - u = 0,
   // which falls with u from +infinity to -infinity, nearly along a straight line however steep psi is. Newton
   // in u, kept in its bracket by bisection.
-  double balanced_volume(double l1, double l2, double thin2) const {
-    const double plane = l1 * l1 + l2 * l2, least_distortion = std::sqrt(0.5 * plane / thin2);
-    const auto at = [&](double volume_ratio) { return volume(l1, l2, thin2, volume_ratio); };
-    if (const double found = volume_by_newton(least_distortion, at); found > 0) return found;
-    const double width = least_distortion - 1;
+  double balanced_root(double l1, double l2, double thin2) const {
+    const double least_distortion = std::sqrt(0.5 * (l1 * l1 + l2 * l2) / thin2);
+    const auto at = [&](double root) { return volume(l1, l2, thin2, root); };
+    if (const double found = root_by_newton(least_distortion, at); found > 0) return found;
+    const double end = std::cbrt(least_distortion), width = end - 1;
     constexpr int kMost = 200;          // steps towards the change of volume
     constexpr double kMostLogit = 700;  // beyond it exp() overflows
 
     const auto share = [](double u) { return 1 / (1 + std::exp(-u)); };  // s
-    const auto volume_of = [&](double u) {
-      return u < 0 ? 1 + width * share(u) : least_distortion - width * share(-u);
-    };
-    double low = -kMostLogit, high = kMostLogit, u = 0, j = volume_of(u);
+    const auto root_of = [&](double u) { return u < 0 ? 1 + width * share(u) : end - width * share(-u); };
+    double low = -kMostLogit, high = kMostLogit, u = 0, root = root_of(u);
     for (int k = 0; k < kMost; ++k) {
-      const Volume v = at(j);
+      const Volume v = at(root);
       const LogSlope slope = invariant.log_slope(v.invariant);
-      const double balance = slope.log + std::log(4 * thin2 / (3 * bulk)) - 5.0 / 3 * std::log(j) +
-                             std::log(least_distortion + j) - u;
+      const double square = root * root, j = cube(root), from_end = end * (end + root) + square,
+                   from_one = 1 + root + square;
+      const double balance =
+          slope.log - u +
+          std::log(4 * thin2 / (3 * bulk) * (least_distortion + j) * from_end / (square * j * from_one));
       (balance > 0 ? low : high) = u;
-      const double by_u = width * share(u) * share(-u);  // dJ/du
-      const double fall = (slope.growth * v.di - 5 / (3 * j) + 1 / (least_distortion + j)) * by_u - 1;
-      u -= balance / fall;
+      const double by_u = width * share(u) * share(-u);  // dr/du
+      const double by_root = slope.growth * v.di * 3 * square + 3 * square / (least_distortion + j) +
+                             (end + 2 * root) / from_end - 5 / root - (1 + 2 * root) / from_one;
+      u -= balance / (by_root * by_u - 1);
       if (!(u >= low && u <= high)) u = 0.5 * (low + high);
-      const double last = std::exchange(j, volume_of(u));
-      if (std::abs(j - last) <= kLastStep * j) break;
+      const double last = std::exchange(root, root_of(u));
+      if (std::abs(root - last) <= kLastStep * root) break;
     }
-    return j;
+    return root;
   }
 
-  StretchEnergy with_volume(double l1, double l2, double thin2) const {
-    const double j = balanced_volume(l1, l2, thin2);
-    const Volume v = volume(l1, l2, thin2, j);
+  // root: of the J of least energy.
+  StretchEnergy with_volume(double l1, double l2, double thin2, double root) const {
+    const double j = cube(root);
+    const Volume v = volume(l1, l2, thin2, root);
     // At fixed J the derivatives by the stretches; then those through J, which the minimum fixes.
-    const double a = 1 / (v.root * v.root), b = j * j * a * thin2;  // I = a plane + b
+    const double a = 1 / (root * root), b = j * j * a * thin2;  // I = a plane + b
     const double i1 = 2 * (a * l1 - b / l1), i2 = 2 * (a * l2 - b / l2);
     const double da = -2.0 / 3 * a / j, db = 4.0 / 3 * b / j;
     const double i1j = 2 * (da * l1 - db / l1), i2j = 2 * (da * l2 - db / l2);
