@@ -66,10 +66,11 @@ std::vector<Step> coarser_meshes(const Scene& scene, const SceneGeometry& geomet
 
 // What the coarser meshes give a finer one to begin with.
 struct Start {
-  Points x;                           // of all nodes
-  Status status = Status::Converged;  // why the coarser ones ended
-  std::vector<char> is_new;           // of each vertex: the mesh before has it not
-  double distortion = 1;              // the greatest of the mesh before
+  Points x;                                // of all nodes
+  Status status = Status::Converged;       // why the coarser ones ended
+  std::vector<char> is_new;                // of each vertex: the mesh before has it not
+  std::vector<Eigen::Matrix3d> gradients;  // of the motion of each vertex
+  Distortion distortion;                   // the greatest of the mesh before
 };
 
 // Positions of all nodes of the finer mesh; the points of the networks follow the vertices.
@@ -83,19 +84,23 @@ Start finer(const Step& step, const Start& coarse) {
   fine.x.leftCols(fine_count) = prolonged(step.coarsening, step.X, surface);
   fine.x.rightCols(coarse.x.cols() - coarse_count) = coarse.x.rightCols(coarse.x.cols() - coarse_count);
   for (const int host : step.coarsening.host) fine.is_new.push_back(host >= 0);
-  fine.distortion = distortions(mesh.triangles, mesh.vertices, surface).maxCoeff();
+  fine.gradients = prolonged_gradients(step.coarsening, surface);
+  fine.distortion = greatest_distortion(mesh.triangles, mesh.vertices, surface);
   return fine;
 }
 
-// The prescribed nodes go where they belong; slivers that the rest does not fit are relieved.
+// The prescribed nodes go where they belong, and the vertices that are new where the triangles between them
+// fit best; slivers that do not are relieved.
 void fit_to_mesh(Start& start, Model& model) {
   start.x = model.objective->positions(problem_at(start.x, model).q0);
   const Eigen::Index count = model.mesh.vertex_count();
   std::vector<char> may_move = start.is_new;
   for (Eigen::Index v = 0; v < count; ++v)
     if (model.objective->fixed().col(v).any()) may_move[static_cast<size_t>(v)] = 0;
+  const Points X = model.X.leftCols(count);
   Points surface = start.x.leftCols(count);
-  relieve_slivers(model.mesh.triangles, model.X.leftCols(count), may_move, start.distortion, surface);
+  fit_to_gradients(model.mesh.triangles, X, start.gradients, may_move, surface);
+  relieve_slivers(model.mesh.triangles, X, may_move, start.distortion, surface);
   start.x.leftCols(count) = surface;
 }
 

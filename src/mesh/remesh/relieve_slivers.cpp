@@ -12,20 +12,19 @@ namespace {
 constexpr int kMostRounds = 10;  // through the triangles that are distorted too much
 constexpr double kGain = 0.9;    // of the worst distortion around a vertex that moves
 
-// The greatest principal stretch or inverse of one, from the squared lengths of the edges.
-double distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
+// From the squared lengths of the edges.
+Distortion distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
   const Vec3 A = X.col(t[1]) - X.col(t[0]), B = X.col(t[2]) - X.col(t[0]);
   const Vec3 a = x.col(t[1]) - x.col(t[0]), b = x.col(t[2]) - x.col(t[0]);
   const double length = A.norm(), along = length > 0 ? B.dot(A) / length : 0;
   const double height = length > 0 ? (B - along / length * A).norm() : 0;
-  if (!(height > 0)) return 1;
+  if (!(height > 0)) return {};
   const Vec3 first = a / length, second = (b - along * first) / height;
   const double p = first.squaredNorm(), q = second.squaredNorm(), r = first.dot(second);
   const double mean = 0.5 * (p + q), apart = std::hypot(0.5 * (p - q), r), greatest = mean + apart;
   const double least =
       first.cross(second).squaredNorm() / greatest;  // their product is the squared area ratio
-  if (!(least > 0)) return std::numeric_limits<double>::infinity();
-  return std::sqrt(std::max(greatest, 1 / least));
+  return {std::sqrt(greatest), least > 0 ? 1 / std::sqrt(least) : std::numeric_limits<double>::infinity()};
 }
 
 std::vector<std::vector<int>> triangles_around(const Triangles& triangles, Eigen::Index vertices) {
@@ -37,32 +36,40 @@ std::vector<std::vector<int>> triangles_around(const Triangles& triangles, Eigen
 
 class Relief {
  public:
-  Relief(const Triangles& triangles, const Points& X, const std::vector<char>& may_move, Points& x)
+  Relief(const Triangles& triangles, const Points& X, const std::vector<char>& may_move,
+         const Distortion& most, Points& x)
       : triangles_(triangles),
         X_(X),
         may_move_(may_move),
+        most_(most),
         x_(x),
-        distortion_(distortions(triangles, X, x)),
-        around_(triangles_around(triangles, X.cols())) {}
+        excess_(triangles.cols()),
+        around_(triangles_around(triangles, X.cols())) {
+    for (int t = 0; t < excess_.size(); ++t) excess_[t] = excess(t);
+  }
 
   // Whether any vertex moved.
-  bool round(double most) {
+  bool round() {
     std::vector<int> worst;
-    for (int t = 0; t < distortion_.size(); ++t)
-      if (distortion_[t] > most) worst.push_back(t);
-    std::stable_sort(worst.begin(), worst.end(),
-                     [&](int s, int t) { return distortion_[s] > distortion_[t]; });
+    for (int t = 0; t < excess_.size(); ++t)
+      if (excess_[t] > 1) worst.push_back(t);
+    std::stable_sort(worst.begin(), worst.end(), [&](int s, int t) { return excess_[s] > excess_[t]; });
     bool has_moved = false;
     for (const int t : worst)
-      if (distortion_[t] > most) has_moved = relieve(t) || has_moved;
+      if (excess_[t] > 1) has_moved = relieve(t) || has_moved;
     return has_moved;
   }
 
  private:
+  // Distortion of a triangle over the most that it may have.
+  double excess(int t) const {
+    const Distortion found = distortion(X_, x_, triangles_.col(t));
+    return std::max(found.stretch / most_.stretch, found.shrinkage / most_.shrinkage);
+  }
+
   double worst_around(int v) const {
     double worst = 0;
-    for (const int t : around_[static_cast<size_t>(v)])
-      worst = std::max(worst, distortion(X_, x_, triangles_.col(t)));
+    for (const int t : around_[static_cast<size_t>(v)]) worst = std::max(worst, excess(t));
     return worst;
   }
 
@@ -90,31 +97,35 @@ class Relief {
     }
     if (best < 0) return false;
     x_.col(best) = place;
-    for (const int n : around_[static_cast<size_t>(best)])
-      distortion_[n] = distortion(X_, x_, triangles_.col(n));
+    for (const int n : around_[static_cast<size_t>(best)]) excess_[n] = excess(n);
     return true;
   }
 
   const Triangles& triangles_;
   const Points& X_;
   const std::vector<char>& may_move_;
+  const Distortion most_;
   Points& x_;
-  Vector distortion_;  // of each triangle
+  Vector excess_;  // of each triangle
   std::vector<std::vector<int>> around_;
 };
 
 }  // namespace
 
-Vector distortions(const Triangles& triangles, const Points& X, const Points& x) {
-  Vector result(triangles.cols());
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) result[t] = distortion(X, x, triangles.col(t));
-  return result;
+Distortion greatest_distortion(const Triangles& triangles, const Points& X, const Points& x) {
+  Distortion greatest;
+  for (const auto t : triangles.colwise()) {
+    const Distortion found = distortion(X, x, t);
+    greatest.stretch = std::max(greatest.stretch, found.stretch);
+    greatest.shrinkage = std::max(greatest.shrinkage, found.shrinkage);
+  }
+  return greatest;
 }
 
 void relieve_slivers(const Triangles& triangles, const Points& X, const std::vector<char>& may_move,
-                     double most, Points& x) {
-  Relief relief(triangles, X, may_move, x);
-  for (int round = 0; round < kMostRounds && relief.round(most); ++round) {
+                     const Distortion& most, Points& x) {
+  Relief relief(triangles, X, may_move, most, x);
+  for (int round = 0; round < kMostRounds && relief.round(); ++round) {
   }
 }
 
