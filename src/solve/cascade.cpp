@@ -265,11 +265,12 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
                              const std::function<void(const RunPhase&)>& phase) {
   Cascade cascade(make_solver, stop, observer, phase);
   std::optional<Start> start = coarse_start(scene, geometry, continuation, cascade);
-  if (start && !make_startable(*start, model)) {
-    cascade.warn(
-        "The start that the cascade gave passes through itself: the mesh was solved from its own start.");
+  const auto give_up = [&](const std::string& reason) {
+    cascade.warn("The start that the cascade gave " + reason + ": the mesh was solved from its own start.");
+    model.objective->prescribe(model.X);
     start.reset();
-  }
+  };
+  if (start && !make_startable(*start, model)) give_up("passes through itself");
   if (start) {
     Problem problem = problem_at(start->x, model);
     problem.stability = stability;
@@ -277,13 +278,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
       cascade.finish(judged(problem, start->status, *make_solver(model)));
       return std::move(cascade.outcome);
     }
-    if (!is_bearable(problem)) {
-      cascade.warn(
-          "The start that the cascade gave is bent or stretched beyond measure: the mesh was solved from its "
-          "own start.");
-      model.objective->prescribe(model.X);
-      start.reset();
-    }
+    if (!is_bearable(problem)) give_up("is bent or stretched beyond measure");
   }
   if (start) {
     Problem problem = problem_near(start->x, model, continuation);
@@ -294,9 +289,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
       cascade.finish(std::move(result));
       return std::move(cascade.outcome);
     }
-    cascade.warn("The start that the cascade gave led nowhere (" + result.message +
-                 "): the mesh was solved from its own start.");
-    model.objective->prescribe(model.X);
+    give_up("led nowhere (" + result.message + ")");
   }
   cascade.finish(cascade.level({*model.objective, model.q0, model.motion, continuation, stability}, model,
                                stop.tolerance));

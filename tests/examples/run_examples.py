@@ -33,8 +33,10 @@ def scene_defects(coapt: str, scene: pathlib.Path, expected: list[dict]) -> list
         return defects
 
 
-def verdict(entry: dict, found: float) -> tuple[str, bool]:
+def verdict(entry: dict, found: float | None) -> tuple[str, bool]:
     unit = f" {entry['unit']}" if "unit" in entry else ""
+    if "value" in entry and entry["value"] is None:
+        return f"{entry['what']}: {found}, expected to be left open", found is None
     if "at_most" in entry:
         return f"{entry['what']}: {found:.9g}{unit}, at most {entry['at_most']}", found <= entry["at_most"]
     value, tolerance = entry["value"], entry["tolerance"]

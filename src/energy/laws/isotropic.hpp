@@ -257,7 +257,7 @@ struct InvariantLaw {
     double root = 1;
     for (int k = 0; k < kMost; ++k) {
       const Volume v = at(root);
-      const double next = root - v.first / (3 * root * root * v.second), j = cube(next);
+      const double next = root - v.first / v.second / (3 * root * root), j = cube(next);
       if (!std::isfinite(v.second) || !(j >= low && j <= high)) return 0;
       if (std::abs(next - std::exchange(root, next)) <= kLastStep * next) return root;
     }
