@@ -19,19 +19,12 @@ bool is_finite(Objective& objective, const Vector& q) {
 
 namespace {
 
-// Whether the prescribed nodes can go from `start` to `x` with the free ones carried along; where these would
-// collide, without them. Leaves the prescribed ones at x, and the free ones in `carried`.
+// Whether the prescribed nodes can go from `start` to `x` with the free ones carried along. Leaves them at x.
 enum class Way { Free, Collision, Overload };
 Way way_to(const Points& x, const Points& start, Objective& objective, const Vector& q, Vector& carried) {
   carried = extended_harmonically(objective, q, x);
   objective.prescribe(x);
-  const auto collides = [&] {
-    return objective.step_limit(start, objective.positions(carried) - start, 1) < 1;
-  };
-  if (collides()) {
-    carried = q;
-    if (collides()) return Way::Collision;
-  }
+  if (objective.step_limit(start, objective.positions(carried) - start, 1) < 1) return Way::Collision;
   return is_finite(objective, carried) ? Way::Free : Way::Overload;
 }
 

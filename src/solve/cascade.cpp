@@ -90,8 +90,8 @@ Start finer(const Step& step, const Start& coarse) {
 }
 
 // The prescribed nodes go where they belong, and the vertices that are new where the triangles between them
-// fit best; slivers that do not are relieved.
-void fit_to_mesh(Start& start, Model& model) {
+// fit best, if wanted; slivers that do not are relieved.
+void fit_to_mesh(Start& start, Model& model, bool fits_gradients) {
   start.x = model.objective->positions(problem_at(start.x, model).q0);
   const Eigen::Index count = model.mesh.vertex_count();
   std::vector<char> may_move = start.is_new;
@@ -99,7 +99,7 @@ void fit_to_mesh(Start& start, Model& model) {
     if (model.objective->fixed().col(v).any()) may_move[static_cast<size_t>(v)] = 0;
   const Points X = model.X.leftCols(count);
   Points surface = start.x.leftCols(count);
-  fit_to_gradients(model.mesh.triangles, X, start.gradients, may_move, surface);
+  if (fits_gradients) fit_to_gradients(model.mesh.triangles, X, start.gradients, may_move, surface);
   relieve_slivers(model.mesh.triangles, X, may_move, start.distortion, surface);
   start.x.leftCols(count) = surface;
 }
@@ -107,8 +107,8 @@ void fit_to_mesh(Start& start, Model& model) {
 // Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
 // their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
 // edge.
-bool make_startable(Start& start, Model& model) {
-  fit_to_mesh(start, model);
+bool make_startable(Start& start, Model& model, bool fits_gradients = true) {
+  fit_to_mesh(start, model, fits_gradients);
   Points& x = start.x;
   if (model.objective->step_limiting_term() == nullptr) return true;
   const Triangles facets = all_facets(model);
@@ -135,6 +135,15 @@ bool is_bearable(const Problem& problem) {
   return residual < kMostResidual;
 }
 
+bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
+
+// Makes the carried-over shape a start of the scene's own mesh. Why it is none; empty where it is one.
+std::string start_defect(Start& start, Model& model, bool fits_gradients) {
+  if (!make_startable(start, model, fits_gradients)) return "passes through itself";
+  if (was_interrupted(start.status) || is_bearable(problem_at(start.x, model))) return "";
+  return "is bent or stretched beyond measure";
+}
+
 // From the shape that a coarser mesh gave; the dampers of a damped path keep it to the equilibrium next to
 // it.
 Problem problem_near(const Points& x, Model& model, const Continuation& continuation) {
@@ -143,8 +152,6 @@ Problem problem_near(const Points& x, Model& model, const Continuation& continua
   problem.continuation.is_loaded = continuation.damped_steps > 0;
   return problem;
 }
-
-bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
 
 class Cascade {
  public:
@@ -270,15 +277,20 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
     model.objective->prescribe(model.X);
     start.reset();
   };
-  if (start && !make_startable(*start, model)) give_up("passes through itself");
   if (start) {
+    const Start carried = *start;
+    std::string defect = start_defect(*start, model, true);
+    if (!defect.empty()) {  // on some meshes of slivers what is not fitted to the gradients serves better
+      *start = carried;
+      defect = start_defect(*start, model, false);
+    }
+    if (!defect.empty()) give_up(defect);
+  }
+  if (start && was_interrupted(start->status)) {
     Problem problem = problem_at(start->x, model);
     problem.stability = stability;
-    if (was_interrupted(start->status)) {
-      cascade.finish(judged(problem, start->status, *make_solver(model)));
-      return std::move(cascade.outcome);
-    }
-    if (!is_bearable(problem)) give_up("is bent or stretched beyond measure");
+    cascade.finish(judged(problem, start->status, *make_solver(model)));
+    return std::move(cascade.outcome);
   }
   if (start) {
     Problem problem = problem_near(start->x, model, continuation);

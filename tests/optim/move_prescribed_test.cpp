@@ -61,17 +61,6 @@ TEST(MovePrescribed, CarriesFreeNodesAlong) {
   for (int v = 0; v < scene.sheet.vertex_count(); ++v) EXPECT_NEAR(x(2, v), 0.05, 1e-8) << v;
 }
 
-TEST(MovePrescribed, LeavesFreeNodesBehindWhereSomethingIsInTheirWay) {
-  SheetOverSpike scene({0.53, 0.47, 0});
-  const Vector start = scene.objective->unknowns(scene.both.vertices);
-  Vector q = start;
-  const Move move = scene.lowered(0.15, q);
-  EXPECT_EQ(move.reached, 1) << "all of it: nothing is in the way of the rim";
-  EXPECT_EQ(q, start);
-  const Points x = scene.objective->positions(q);
-  for (const int v : scene.rim) EXPECT_NEAR(x(2, v), -0.05, 1e-12) << v;
-}
-
 TEST(MovePrescribed, EndsWhereThePrescribedNodesThemselvesCollide) {
   SheetOverSpike scene({0, 0.47, 0});  // under the rim
   Vector q = scene.objective->unknowns(scene.both.vertices);
