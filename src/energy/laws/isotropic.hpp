@@ -25,7 +25,7 @@ struct StretchEnergy {
 struct FreeWidth {
   double width = 1;
   bool is_exact = false;
-  double root = 0;  // third root of the volume ratio; 0: not known
+  double root = 0;  // cube root of the volume ratio; 0: not known
 };
 
 // Bilinear law: linear elastic with E_pre, and beyond the knee of each principal strain e_i = l_i - 1 stiffer
@@ -208,7 +208,7 @@ struct InvariantLaw {
   }
 
  private:
-  // Of the third root of J, by which J is found, as the invariant needs it: the error that a step this small
+  // Of the cube root of J, by which J is found, as the invariant needs it: the error that a step this small
   // leaves is its square.
   static constexpr double kLastStep = 1e-9;
 
@@ -247,7 +247,7 @@ struct InvariantLaw {
     return with_invariant(root, distortion(p1, p2, 1 + p2), di, ddi);
   }
 
-  // The third root of the J of least energy, which lies between 1 and that of least distortion, by Newton's
+  // The cube root of the J of least energy, which lies between 1 and that of least distortion, by Newton's
   // method from 1. A few steps where the bulk modulus outweighs psi; 0 where they do not suffice, as on the
   // steep side of an exponential.
   template <typename AtRoot>
@@ -264,7 +264,7 @@ struct InvariantLaw {
     return 0;
   }
 
-  // The third root of the J of least energy. Where Newton's method does not find it: with r* that of the J*
+  // The cube root of the J of least energy. Where Newton's method does not find it: with r* that of the J*
   // of least distortion, r = 1 + (r* - 1) s and u = ln(s/(1 - s)) the stress of psi and that of the bulk
   // modulus balance where
   //   ln psi'(j) + ln(4 thin2/(3 bulk) (J* + J) (r*^2 + r* r + r^2) / (r^5 (r^2 + r + 1))) - u = 0,

@@ -19,7 +19,7 @@ std::vector<Eigen::Matrix3d> prolonged_gradients(const Coarsening& coarsening, c
 // Moves vertices so that the triangles between them follow the gradients at their corners as nearly as they
 // can, in least squares by area: what is carried over triangle by triangle does not meet where fine triangles
 // lie across several coarse ones. Sumner and Popovic, Deformation transfer for triangle meshes, ACM Trans.
-// Graph. 23 (2004), equation 7. X: at rest; gradients, may_move: of each vertex. The others must hold every
+// Graph. 23 (2004). X: at rest; gradients, may_move: of each vertex. The others must hold every
 // part of the mesh.
 void fit_to_gradients(const Triangles& triangles, const Points& X,
                       const std::vector<Eigen::Matrix3d>& gradients, const std::vector<char>& may_move,

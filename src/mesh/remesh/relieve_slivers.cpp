@@ -12,7 +12,7 @@ namespace {
 constexpr int kMostRounds = 10;  // through the triangles that are distorted too much
 constexpr double kGain = 0.9;    // of the worst distortion around a vertex that moves
 
-// From the squared lengths of the edges.
+// From the metric of the motion in the plane of the triangle at rest.
 Distortion distortion(const Points& X, const Points& x, const Eigen::Vector3i& t) {
   const Vec3 A = X.col(t[1]) - X.col(t[0]), B = X.col(t[2]) - X.col(t[0]);
   const Vec3 a = x.col(t[1]) - x.col(t[0]), b = x.col(t[2]) - x.col(t[0]);
@@ -86,8 +86,8 @@ class Relief {
         if (n == t || (triangles_.col(n).array() == b).count() == 0) continue;
         const Eigen::Vector3i beyond = triangles_.col(n);
         x_.col(v) = x_.col(a) + motion_gradient(X_, x_, beyond) * (X_.col(v) - X_.col(a));
-        const double ratio = std::isinf(worst) ? 0 : worst_around(v) / worst;
-        if (ratio < least && std::isfinite(worst_around(v))) {
+        const double after = worst_around(v), ratio = std::isinf(worst) ? 0 : after / worst;
+        if (ratio < least && std::isfinite(after)) {
           least = ratio;
           best = v;
           place = x_.col(v);
