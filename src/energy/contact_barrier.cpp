@@ -7,13 +7,13 @@
 #include "mesh/triangle_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 namespace coapt {
 namespace {
 
-constexpr size_t kShare = 1024;        // pairs that a thread takes at once in a search
 constexpr double kSkin = 0.1;          // of the gap: candidates are found this much ahead
 constexpr double kMoved = 0.25;        // of the skin, by which a node has moved that is searched around anew
 constexpr double kShareOfRest = 0.5;   // of the distance at rest, which the range never exceeds
@@ -191,15 +191,11 @@ class ContactBarrier final : public EnergyTerm, public TermAccess {
     Points at = x;
     for (Eigen::Index node = 0; node < at.cols(); ++node)
       if (!moved[static_cast<size_t>(node)]) at.col(node) = candidates_.found_at().col(node);
-    const std::vector<FeaturePair> pairs = surface_.near_pairs(at, gap_ + skin_, moved, *team_);
-    std::vector<std::optional<BarrierCandidate>> looked_at(pairs.size());
-    team_->run_ranges(pairs.size(), kShare, [&](size_t first, size_t last) {
-      for (size_t k = first; k < last; ++k) looked_at[k] = candidate(pairs[k], at, skin_);
+    std::array<std::vector<BarrierCandidate>, ContactSurface::kShares> found;
+    surface_.visit_near(at, gap_ + skin_, moved, *team_, [&](int share, const FeaturePair& pair) {
+      if (const auto one = candidate(pair, at, skin_)) found[static_cast<size_t>(share)].push_back(*one);
     });
-    std::vector<BarrierCandidate> found;
-    for (const auto& one : looked_at)
-      if (one) found.push_back(*one);
-    return candidates_.renew(at, moved, std::move(found));
+    return candidates_.renew(at, moved, found);
   }
 
   // Of a pair that at x is less than `ahead` from its range; nothing of any other.

@@ -12,18 +12,29 @@ bool is_contact(const EnergyTerm& term) { return term.role() == TermRole::Contac
 
 }  // namespace
 
+size_t HessianPattern::number_slots(const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact,
+                                    size_t first) {
+  first_slot_.resize(terms.size());
+  for (size_t k = 0; k < terms.size(); ++k) {
+    if (is_contact(*terms[k]) != of_contact) continue;
+    first_slot_[k] = first;
+    first += terms[k]->stencils().nodes.size() * static_cast<size_t>(terms[k]->stencils().width);
+  }
+  return first;
+}
+
 HessianPattern::ElementBlocks HessianPattern::element_blocks(
     const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact) const {
   const auto visit_blocks = [&](const auto& visit) {
     for (size_t k = 0; k < terms.size(); ++k) {
       if (is_contact(*terms[k]) != of_contact) continue;
       const Stencils& stencils = terms[k]->stencils();
-      size_t slot = 0;
+      auto slot = static_cast<std::uint32_t>(first_slot_[k]);
       for (size_t first = 0; first < stencils.nodes.size(); first += stencils.width)
         for (int a = 0; a < stencils.width; ++a)
           for (int b = 0; b < stencils.width; ++b, ++slot) {
             const int row = block_[stencils.nodes[first + a]], column = block_[stencils.nodes[first + b]];
-            if (column >= 0 && row >= column) visit(column, ElementBlock{row, slot, k});
+            if (column >= 0 && row >= column) visit(column, ElementBlock{row, slot});
           }
     }
   };
@@ -52,13 +63,7 @@ HessianPattern::HessianPattern(const std::vector<std::unique_ptr<EnergyTerm>>& t
 }
 
 void HessianPattern::couple_fixed(const std::vector<std::unique_ptr<EnergyTerm>>& terms) {
-  slots_.resize(terms.size());
-  fixed_entry_.resize(terms.size());
-  for (size_t k = 0; k < terms.size(); ++k) {
-    if (is_contact(*terms[k])) continue;
-    slots_[k].resize(terms[k]->stencils().nodes.size() * terms[k]->stencils().width);
-    fixed_entry_[k].assign(slots_[k].size(), -1);
-  }
+  fixed_entry_.assign(number_slots(terms, false, 0), -1);
   const ElementBlocks elements = element_blocks(terms, false);
   std::vector<int> rows, place(block_count_), column_of(block_count_, -1);
   fixed_start_.assign(1, 0);
@@ -70,16 +75,16 @@ void HessianPattern::couple_fixed(const std::vector<std::unique_ptr<EnergyTerm>>
     std::sort(rows.begin(), rows.end());
     for (size_t k = 0; k < rows.size(); ++k) place[rows[k]] = static_cast<int>(fixed_row_.size() + k);
     for (size_t k = elements.start[j]; k < elements.start[j + 1]; ++k)
-      fixed_entry_[elements.block[k].term][elements.block[k].slot] = place[elements.block[k].row];
+      fixed_entry_[elements.block[k].slot] = place[elements.block[k].row];
     fixed_row_.insert(fixed_row_.end(), rows.begin(), rows.end());
     fixed_start_.push_back(fixed_row_.size());
   }
 }
 
 void HessianPattern::renew_pairs(const std::vector<std::unique_ptr<EnergyTerm>>& terms) {
-  for (size_t k = 0; k < terms.size(); ++k)
-    if (is_contact(*terms[k]))
-      slots_[k].assign(terms[k]->stencils().nodes.size() * terms[k]->stencils().width, {});
+  const size_t fixed_count = fixed_entry_.size();
+  slots_.resize(number_slots(terms, true, fixed_count));
+  std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(fixed_count), slots_.end(), BlockSlot{});
   const ElementBlocks pairs = element_blocks(terms, true);
   std::vector<int> more, place(block_count_), column_of(block_count_, -1);
   std::vector<BlockSlot> of_entry(fixed_row_.size());
@@ -99,12 +104,11 @@ void HessianPattern::renew_pairs(const std::vector<std::unique_ptr<EnergyTerm>>&
     const auto slot_of = [&](int row) { return BlockSlot{9 * begin + 3 * place[row], 3 * (end - begin)}; };
     for (size_t k = fixed_start_[j]; k < fixed_start_[j + 1]; ++k) of_entry[k] = slot_of(fixed_row_[k]);
     for (size_t k = pairs.start[j]; k < pairs.start[j + 1]; ++k)
-      slots_[pairs.block[k].term][pairs.block[k].slot] = slot_of(pairs.block[k].row);
+      slots_[pairs.block[k].slot] = slot_of(pairs.block[k].row);
     start_.push_back(end);
   }
-  for (size_t k = 0; k < terms.size(); ++k)
-    for (size_t i = 0; i < fixed_entry_[k].size(); ++i)
-      if (fixed_entry_[k][i] >= 0) slots_[k][i] = of_entry[fixed_entry_[k][i]];
+  for (size_t i = 0; i < fixed_entry_.size(); ++i)
+    if (fixed_entry_[i] >= 0) slots_[i] = of_entry[static_cast<size_t>(fixed_entry_[i])];
   write_matrix();
   find_masked();
 }

@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCore>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -27,7 +28,7 @@ class HessianPattern {
   const Eigen::SparseMatrix<double>& zero_matrix() const { return zero_; }
 
   // Slots of one term, width * width for each element, as Sink wants them.
-  const BlockSlot* slots(size_t term) const { return slots_[term].data(); }
+  const BlockSlot* slots(size_t term) const { return slots_.data() + first_slot_[term]; }
 
   // Place of one block of unknowns; base < 0 above the diagonal. Pre: below it, an element couples the two.
   BlockSlot slot(int block_row, int block_column) const;
@@ -42,8 +43,7 @@ class HessianPattern {
   // A 3x3 block of an element at or below the diagonal.
   struct ElementBlock {
     int row;
-    size_t slot;  // of the term
-    size_t term;
+    std::uint32_t slot;
   };
   // By block column.
   struct ElementBlocks {
@@ -51,6 +51,8 @@ class HessianPattern {
     std::vector<ElementBlock> block;
   };
 
+  // Gives the terms of contact, or all others, slots from `first` on, and returns how many there are then.
+  size_t number_slots(const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact, size_t first);
   ElementBlocks element_blocks(const std::vector<std::unique_ptr<EnergyTerm>>& terms, bool of_contact) const;
   void couple_fixed(const std::vector<std::unique_ptr<EnergyTerm>>& terms);
   void write_matrix();
@@ -62,10 +64,11 @@ class HessianPattern {
   // which of them each slot of these terms is, -1 above the diagonal.
   std::vector<size_t> fixed_start_;
   std::vector<int> fixed_row_;
-  std::vector<std::vector<int>> fixed_entry_;  // per term
-  std::vector<int> start_, row_;               // of all block columns, contact included
+  std::vector<int> fixed_entry_;
+  std::vector<int> start_, row_;  // of all block columns, contact included
   Eigen::SparseMatrix<double> zero_;
-  std::vector<std::vector<BlockSlot>> slots_;  // per term
+  std::vector<size_t> first_slot_;  // of each term; those of contact are the last
+  std::vector<BlockSlot> slots_;
   std::vector<char> is_masked_;                // of each unknown
   std::vector<int> masked_;                    // unknowns
   std::vector<int> masked_zero_, masked_one_;  // positions in the values

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <tuple>
+#include <cstdint>
 #include <utility>
 
 namespace coapt {
@@ -13,6 +13,15 @@ namespace {
 
 constexpr double kDistanceRoundOff = 1e-13;  // of a distance, relative to the greatest coordinate
 constexpr double kLookedAt = 1 - 1e-9;       // share of the way that pairs are left out by
+
+// The place of a pair in the order of all: vertices with triangles, then edges, by their numbers.
+using Rank = std::uint64_t;
+constexpr Rank kAfterAll = ~Rank{0};
+
+Rank rank(const FeaturePair& pair) {
+  const Rank kind = pair.kind == PairKind::PointTriangle ? 0 : 1;
+  return kind << 63 | static_cast<Rank>(pair.first) << 32 | static_cast<Rank>(pair.second);
+}
 
 template <int kFirst>
 bool are_apart(const PairCorners& x, double range) {
@@ -53,26 +62,30 @@ void BarrierCandidates::add(const BarrierCandidate& found) {
 }
 
 bool BarrierCandidates::renew(const Points& x, const NodeMask& searched,
-                              std::vector<BarrierCandidate> found) {
-  const auto comes_before = [](const FeaturePair& a, const FeaturePair& b) {
-    return std::tie(a.kind, a.first, a.second) < std::tie(b.kind, b.first, b.second);
+                              std::span<const std::vector<BarrierCandidate>> found) {
+  struct Place {
+    Rank rank;
+    const BarrierCandidate* found;
   };
-  std::sort(found.begin(), found.end(),
-            [&](const auto& a, const auto& b) { return comes_before(a.pair, b.pair); });
+  std::vector<Place> in_order;
+  for (const auto& share : found)
+    for (const BarrierCandidate& one : share) in_order.push_back({rank(one.pair), &one});
+  std::sort(in_order.begin(), in_order.end(),
+            [](const Place& a, const Place& b) { return a.rank < b.rank; });
   BarrierCandidates both(x);
   size_t old = 0;
-  const auto keep_while = [&](const auto& comes_first) {
-    for (; old < size() && comes_first(pairs_[old]); ++old) {
+  const auto keep_until = [&](Rank end) {
+    for (; old < size() && rank(pairs_[old]) < end; ++old) {
       if (has_any(searched, pairs_[old].nodes)) continue;
       both.add({pairs_[old], rest_[old], 0});
       both.distance_.back() = distance_[old];
     }
   };
-  for (const BarrierCandidate& one : found) {
-    keep_while([&](const FeaturePair& pair) { return comes_before(pair, one.pair); });
-    both.add(one);
+  for (const Place& one : in_order) {
+    keep_until(one.rank);
+    both.add(*one.found);
   }
-  keep_while([](const FeaturePair&) { return true; });
+  keep_until(kAfterAll);
   std::swap(*this, both);
   return stencils_.nodes != both.stencils_.nodes;
 }

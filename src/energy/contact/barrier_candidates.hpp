@@ -6,6 +6,7 @@
 #include "energy/contact/pair_barrier.hpp"
 #include "energy/term.hpp"
 
+#include <span>
 #include <vector>
 
 namespace coapt {
@@ -36,10 +37,11 @@ class BarrierCandidates {
 
   void add(const BarrierCandidate& found);
 
-  // After a search around some nodes at x, where all others are as in found_at(): `found` takes the
-  // place of all pairs with such a node. The order of pairs is that of their features, by whichever search
-  // they were found. Returns whether they are others than before.
-  bool renew(const Points& x, const NodeMask& searched, std::vector<BarrierCandidate> found);
+  // After a search around some nodes at x, where all others are as in found_at(): what it found, in several
+  // shares, takes the place of all pairs with such a node. The order of pairs is that of their features, by
+  // whichever search they were found. Returns whether they are others than before.
+  bool renew(const Points& x, const NodeMask& searched,
+             std::span<const std::vector<BarrierCandidate>> found);
 
   // For a part of a scene: numbers the nodes anew.
   void renumber(MovingPart& moving);

@@ -225,26 +225,22 @@ void ContactSurface::visit_near(const Points& x, double reach, const Visit& visi
   visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
 }
 
-std::vector<FeaturePair> ContactSurface::near_pairs(const Points& x, double reach, const NodeMask& nodes,
-                                                    ThreadTeam& team) const {
-  constexpr size_t kShare = 256;  // pairs of triangles that a thread takes at once
+void ContactSurface::visit_near(
+    const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
+    const std::function<void(int share, const FeaturePair& pair)>& visit) const {
   const NearBoxes boxes(x, reach, around_);
   const auto box = [&](int node) { return boxes.around(node, nodes[static_cast<size_t>(node)] != 0); };
   const auto of = feature_bounds<NearBox>(box, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
-  const size_t shares = (near.size() + kShare - 1) / kShare;
-  std::vector<std::vector<FeaturePair>> found(shares);
-  team.run(static_cast<int>(shares), [&](int share, int) {
-    const size_t first = static_cast<size_t>(share) * kShare;
-    for (size_t k = first; k < std::min(first + kShare, near.size()); ++k)
+  team.run(kShares, [&](int share, int) {
+    const size_t first = near.size() * static_cast<size_t>(share) / kShares,
+                 last = near.size() * static_cast<size_t>(share + 1) / kShares;
+    for (size_t k = first; k < last; ++k)
       visit_features(near[k][0], near[k][1], of, overlap, [&](const FeaturePair& pair) {
-        if (has_any(nodes, pair.nodes)) found[static_cast<size_t>(share)].push_back(pair);
+        if (has_any(nodes, pair.nodes)) visit(share, pair);
       });
   });
-  std::vector<FeaturePair> all;
-  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
-  return all;
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,

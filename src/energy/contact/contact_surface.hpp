@@ -54,10 +54,11 @@ class ContactSurface {
 
   using Visit = std::function<void(const FeaturePair&)>;
 
-  // Pairs with one of the nodes whose boxes come within `reach` of each other at x, each once, in an order
-  // that does not depend on x, nor on the number of threads that gather them.
-  std::vector<FeaturePair> near_pairs(const Points& x, double reach, const NodeMask& nodes,
-                                      ThreadTeam& team) const;
+  // The pairs with one of the nodes whose boxes come within `reach` of each other at x, each once, in shares
+  // that a thread each visits, 0 <= share < kShares.
+  static constexpr int kShares = 64;
+  void visit_near(const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
+                  const std::function<void(int share, const FeaturePair& pair)>& visit) const;
 
   void visit_near(const Points& x, double reach, const Visit& visit) const;
 
