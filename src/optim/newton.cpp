@@ -53,6 +53,9 @@ constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;  // widest and least
 constexpr double kSharpen = 0.3;                             // fall of the rounding
 constexpr double kSharpenBelow = 0.03;                       // residual at which it falls
 
+// Residual below which limits of stress are raised.
+constexpr double kGivenWay = 1;
+
 class Newton {
  public:
   // is_part: the objective is part of one whose laws are in the hands of another run.
@@ -116,12 +119,14 @@ class Newton {
     if (junctions_->slacken(at_.q)) evaluate();
   }
 
-  // Where elements lie beyond the limits of their laws the limits follow. Near an equilibrium they follow to
-  // the end, and go.
+  // Where elements lie beyond the limits of their laws the limits follow, once what is stretched has given
+  // way as far as these allow. Near an equilibrium they follow to the end, and go.
   void raise_limits() {
     while (objective_.has_stress_limits()) {
+      const double residual = objective_.relative_residual(at_.q, at_.g);
+      if (residual > kGivenWay) return;
       const double excess = objective_.raise_stress_limits(at_.q);
-      const bool is_near = objective_.relative_residual(at_.q, at_.g) < kSharpenBelow;
+      const bool is_near = residual < kSharpenBelow;
       if (is_near && excess < kExact) objective_.release_stress_limits();
       if (excess > 0) evaluate();
       if (!is_near) return;
