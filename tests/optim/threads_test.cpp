@@ -1,10 +1,14 @@
 // Solves side by side and solves shared by threads: what ThreadSanitizer watches (preset tsan).
+#include "energy/contact_barrier.hpp"
 #include "optim/solver.hpp"
+#include "support/meshes.hpp"
 #include "support/valve_scene.hpp"
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace coapt {
@@ -45,6 +49,38 @@ TEST(SharedSolve, ByFourThreadsGivesTheBitsOfOne) {
   EXPECT_TRUE((shared.x.array() == alone.x.array()).all());
   EXPECT_EQ(shared.result.energy, alone.result.energy);
   EXPECT_EQ(shared.result.residual, alone.result.residual);
+}
+
+// Every pair has nodes of the upper sheet, which one half of the threads pours, and of the lower one.
+TEST(SharedAssembly, OfSheetsInContactGivesTheBitsOfOneThread) {
+  const TriangleMesh lower = grid_mesh(20, 20), upper = grid_mesh(21, 21);
+  const int n = lower.vertex_count(), count = n + upper.vertex_count();
+  Points rest(3, count), state(3, count);
+  rest << lower.vertices, upper.vertices.colwise() + Vec3(0, 0, 5);
+  state << lower.vertices, upper.vertices.colwise() + Vec3(0.003, 0.002, 0.012);
+  Triangles triangles(3, lower.triangle_count() + upper.triangle_count());
+  triangles << lower.triangles, upper.triangles.array() + n;
+  ContactBarrierOptions options;
+  options.gap = 0.02;
+  options.pressure = 1;
+  std::vector<std::unique_ptr<EnergyTerm>> terms;
+  terms.push_back(make_contact_barrier("contact", rest, triangles, options));
+  Objective objective(rest, Eigen::Array<bool, 3, Eigen::Dynamic>::Constant(3, count, false),
+                      std::move(terms));
+  const Vector q = objective.unknowns(state);
+  for (const Projection projection : {Projection::None, Projection::PositiveSemidefinite}) {
+    Vector g1, g;
+    SparseMatrix h1, h;
+    objective.use_threads(1);
+    const double energy = objective.hessian(q, g1, h1, projection);
+    ASSERT_GT(objective.terms()[0]->counters().elements, 4000);  // kWorthThreads of pour_elements.hpp
+    for (const int threads : {2, 3, 4}) {
+      objective.use_threads(threads);
+      EXPECT_EQ(objective.hessian(q, g, h, projection), energy) << threads;
+      EXPECT_TRUE((g.array() == g1.array()).all()) << threads;
+      EXPECT_TRUE((h.coeffs() == h1.coeffs()).all()) << threads;
+    }
+  }
 }
 
 }  // namespace
