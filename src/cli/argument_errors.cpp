@@ -61,6 +61,22 @@ std::optional<std::string> unknown_value(const CLI::App& command) {
   return std::nullopt;
 }
 
+// Of an option that takes a number, and was given something else: CLI11 names the two, but not what is
+// wanted.
+std::optional<std::string> not_a_number(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string message = error.what();
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string begin = "Could not convert: " + option->get_name() + " = ",
+                      type = option->get_type_name();
+    if (!message.starts_with(begin)) continue;
+    const char* wanted = type.starts_with("UINT")  ? "a whole number, 0 or greater"
+                         : type.starts_with("INT") ? "a whole number"
+                                                   : "a number";
+    return option->get_name() + ": '" + message.substr(begin.size()) + "' is not " + wanted;
+  }
+  return std::nullopt;
+}
+
 // "--solvr" of "--solvr=newton".
 std::string name_of(const std::string& argument) { return argument.substr(0, argument.find('=')); }
 
@@ -102,6 +118,8 @@ std::string argument_error(const CLI::App& app, const CLI::ParseError& error,
       return place.path + ": there is no option " + name + suggestion(name, options) + place.help;
   }
   if (const auto value = unknown_value(*place.command)) return place.path + ": " + *value + place.help;
+  if (const auto number = not_a_number(*place.command, error))
+    return place.path + ": " + *number + place.help;
   return place.path + ": " + error.what() + place.help;
 }
 

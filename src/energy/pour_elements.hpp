@@ -27,8 +27,8 @@ inline bool parts_are_apart(const Stencils& stencils, const std::vector<Sink>& p
 // All elements, some at a time: evaluated by shares first, then poured into each part in their order. For
 // elements that lie across the parts, as pairs in contact do.
 template <class Evaluated, class Evaluate, class Scatter>
-void pour_across(std::vector<Sink>& parts, ThreadTeam& team, const Evaluate& evaluate,
-                 const Scatter& scatter, std::vector<double>& energies) {
+void pour_across(std::vector<Sink>& parts, ThreadTeam& team, const Evaluate& evaluate, const Scatter& scatter,
+                 std::vector<double>& energies) {
   constexpr size_t kAtOnce = 2048, kShare = 128;  // elements: what is evaluated stays in the cache
   const size_t count = energies.size();
   std::vector<Evaluated> out(std::min(kAtOnce, count));

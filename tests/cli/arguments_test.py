@@ -87,6 +87,15 @@ class Arguments(CommandCase):
         for name, meant in [("chords.lenth", "length_scale"), ("pressure.value", "load_pressure")]:
             self.assert_bad_input(coapt("sensitivity", scene, "--parameters", name), f'did you mean "{meant}"?')
 
+    def test_a_number_that_is_none_is_told_what_it_should_be(self):
+        new = self.folder / "new"
+        for word in ("0.3", "-1", "many"):
+            self.assert_bad_input(coapt("generate", "mitral", "--rough", word, "-o", new),
+                                  f"--rough: '{word}' is not a whole number, 0 or greater")
+        self.assert_bad_input(coapt("solve", "scene.json", "--checkpoint-every", "soon"),
+                              "--checkpoint-every: 'soon' is not a number")
+        self.assertFalse(new.exists())
+
     def test_help_of_an_unknown_command_names_the_nearest(self):
         for words in ("help", "slve"), ("slve", "--help"):
             self.assert_bad_input(coapt(*words), 'there is no "slve"', 'did you mean "solve"')

@@ -40,8 +40,7 @@ class BarrierCandidates {
   // After a search around some nodes at x, where all others are as in found_at(): what it found, in several
   // shares, takes the place of all pairs with such a node. The order of pairs is that of their features, by
   // whichever search they were found. Returns whether they are others than before.
-  bool renew(const Points& x, const NodeMask& searched,
-             std::span<const std::vector<BarrierCandidate>> found);
+  bool renew(const Points& x, const NodeMask& searched, std::span<const std::vector<BarrierCandidate>> found);
 
   // For a part of a scene: numbers the nodes anew.
   void renumber(MovingPart& moving);

@@ -225,9 +225,8 @@ void ContactSurface::visit_near(const Points& x, double reach, const Visit& visi
   visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
 }
 
-void ContactSurface::visit_near(
-    const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
-    const std::function<void(int share, const FeaturePair& pair)>& visit) const {
+void ContactSurface::visit_near(const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
+                                const std::function<void(int share, const FeaturePair& pair)>& visit) const {
   const NearBoxes boxes(x, reach, around_);
   const auto box = [&](int node) { return boxes.around(node, nodes[static_cast<size_t>(node)] != 0); };
   const auto of = feature_bounds<NearBox>(box, true);
