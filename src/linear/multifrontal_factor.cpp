@@ -125,25 +125,25 @@ bool MultifrontalFactor::for_each_front(const Eliminate& eliminate) {
 
 bool MultifrontalFactor::factorise(const double* values) {
   const bool is_definite = for_each_front([&](int s, Workspace& own, ThreadTeam* team) {
-    const DenseFront front = assembled_front(s, values, own);
+    const DenseFront front = assembled_front(s, values, own, team);
     if (!eliminate_positive_definite(front, team)) return false;
-    add_updates(s, front, Part::Below, own);
+    add_updates(s, front, Part::Below, own, team);
     return true;
   });
   if (!is_definite) return false;
-  if (eliminated_ < nodes_.size()) assembled_front(eliminated_, values, workspaces_[0]);
+  if (eliminated_ < nodes_.size()) assembled_front(eliminated_, values, workspaces_[0], nullptr);
   return measure_pivots();
 }
 
 void MultifrontalFactor::count_signs(const double* values, int& negative, int& positive) {
   std::atomic<int> below_zero = 0, above_zero = 0;
-  for_each_front([&](int s, Workspace& own, ThreadTeam*) {
-    const DenseFront front = assembled_front(s, values, own);
+  for_each_front([&](int s, Workspace& own, ThreadTeam* team) {
+    const DenseFront front = assembled_front(s, values, own, team);
     int fewer = 0, more = 0;
     const bool goes_on = eliminate_indefinite(front, own.scaled, fewer, more);
     below_zero += fewer;
     above_zero += more;
-    if (goes_on) add_updates(s, front, Part::Below, own);
+    if (goes_on) add_updates(s, front, Part::Below, own, team);
     return goes_on;
   });
   negative += below_zero;
@@ -180,7 +180,8 @@ void MultifrontalFactor::place_blocks(const NodeGraph& graph) {
 
 // The front of a supernode with its entries and, in its columns, the updates of its children. Those in its
 // update matrix come once that is written.
-DenseFront MultifrontalFactor::assembled_front(int s, const double* source, Workspace& own) {
+DenseFront MultifrontalFactor::assembled_front(int s, const double* source, Workspace& own,
+                                               ThreadTeam* team) {
   const DenseFront front = front_of(s, update_of(s, own));
   std::fill(values_.data() + panel_[s], values_.data() + panel_[s + 1], 0.0);
   for (int k = first_move_[s]; k < first_move_[s + 1]; ++k) {
@@ -190,20 +191,31 @@ DenseFront MultifrontalFactor::assembled_front(int s, const double* source, Work
         front.panel[move.to + r + c * front.panel_stride()] =
             source[move.from + r * move.row_step + c * move.column_step];
   }
-  add_updates(s, front, Part::Columns, own);
+  add_updates(s, front, Part::Columns, own, team);
   return front;
 }
 
-void MultifrontalFactor::add_updates(int s, const DenseFront& front, Part part, Workspace& own) {
+void MultifrontalFactor::add_updates(int s, const DenseFront& front, Part part, Workspace& own,
+                                     ThreadTeam* team) {
+  constexpr size_t kShare = 16;  // columns of nodes that a thread adds at once
   for (int k = nodes_.child_start[s]; k < nodes_.child_start[s + 1]; ++k) {
     const int child = nodes_.child[k], rows = nodes_.rows_below(child);
     const int* place = nodes_.place.data() + nodes_.below[child];
     const int split = static_cast<int>(std::lower_bound(place, place + rows, nodes_.columns(s)) - place);
     const double* update = update_of(child, own);
-    if (part == Part::Columns)
-      add_columns(update, child, 0, split, 0, front.panel, front.panel_stride());
+    const auto add = [&](int first, int last) {
+      if (part == Part::Columns)
+        add_columns(update, child, first, last, 0, front.panel, front.panel_stride());
+      else
+        add_columns(update, child, first, last, nodes_.columns(s), front.update, front.update_stride());
+    };
+    const int first = part == Part::Columns ? 0 : split, last = part == Part::Columns ? split : rows;
+    if (team == nullptr)
+      add(first, last);
     else
-      add_columns(update, child, split, rows, nodes_.columns(s), front.update, front.update_stride());
+      team->run_ranges(static_cast<size_t>(last - first), kShare, [&](size_t from, size_t to) {
+        add(first + static_cast<int>(from), first + static_cast<int>(to));
+      });
   }
 }
 

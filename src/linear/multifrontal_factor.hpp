@@ -97,8 +97,8 @@ class MultifrontalFactor {
     return {3 * nodes_.columns(s), 3 * nodes_.rows_below(s), values_.data() + panel_[s], update};
   }
   void place_blocks(const NodeGraph& graph);
-  DenseFront assembled_front(int s, const double* source, Workspace& own);
-  void add_updates(int s, const DenseFront& front, Part part, Workspace& own);
+  DenseFront assembled_front(int s, const double* source, Workspace& own, ThreadTeam* team);
+  void add_updates(int s, const DenseFront& front, Part part, Workspace& own, ThreadTeam* team);
   void add_columns(const double* update, int child, int first, int last, int begin, double* target,
                    int stride);
   void solve_front_forward(int s, Vector& x, Scratch& column);
