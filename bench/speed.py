@@ -5,7 +5,7 @@
 
 Cases: the generated mitral valve with and without contact, by the method that a scene gets with no option, and the disc and the
 airbag. Valves are solved for the seeds 0 to N - 1 of their dimensions (default 3), each by both builds in turn, again and again
-(default 3 times, fewer where that takes more than ten seconds), of which the fastest counts, and every number is the median over the seeds. CPU s: of the solve with its certificate, to a residual of 1e-8, and of one thread. floor: iterations
+(default 3 times, fewer where that takes more than half a minute), of which the fastest counts, and every number is the median over the seeds. CPU s: of the solve with its certificate, to a residual of 1e-8, and of one thread. floor: iterations
 times one factorisation and one assembly of the Hessian, both timed in the same run, with those of coarser meshes. shares: of the
 time of the processor (`time.cpu_by_phase` of result.json), in percent. 2 threads: time by the clock with two over that with one,
 which means something only on a machine that does nothing else. ratio: the time over that of OTHER on the same seed, which may be
@@ -24,7 +24,7 @@ CASES += [("mitral", "none", size) for size in (630, 2500, 10000, 40000)]
 CASES += [("disc", "none", size) for size in (10000, 40000)] + [("airbag", "none", size) for size in (2500, 10000)]
 PHASES = {"factor": ("factorise", "analyse"), "gradient": ("gradient", "value"), "Hessian": ("hessian",), "solves": ("direction",),
           "collisions": ("collisions",), "certificate": ("certificate",), "coarser": ("coarse_levels",)}
-MOST_SECONDS = 10  # by the clock, for the runs of one program on one scene
+MOST_SECONDS = 30  # by the clock, of all runs on one scene, after which none is repeated
 
 
 def generated(coapt: str, shape: str, contact: str, triangles: int, seed: int, folder: pathlib.Path) -> pathlib.Path:
@@ -56,7 +56,7 @@ def fastest(programs: list[tuple[str, int]], scene: pathlib.Path, repeats: int) 
             result = solved(coapt, scene, "--tolerance", "1e-8", "--max-seconds", "900", "--no-report", threads=threads)
             if not best[k] or result["time"]["wall_s"] < best[k]["time"]["wall_s"]:
                 best[k] = result
-        spent += best[0]["time"]["wall_s"]
+            spent += result["time"]["wall_s"]
         if spent > MOST_SECONDS:
             break
     return best
@@ -79,8 +79,8 @@ def main() -> None:
                 scene = generated(options.coapt, shape, contact, triangles, seed, pathlib.Path(folder))
                 others = [(options.against, 1)] if options.against else []
                 one, two, *other = fastest([(options.coapt, 1), (options.coapt, 2), *others], scene, options.repeats)
-                ratio = [one["time"]["cpu_s"] / theirs["time"]["cpu_s"] for theirs in other]
-                rows.append(figures(one) | {"two": two["time"]["wall_s"] / one["time"]["wall_s"]} | dict(zip(["ratio"], ratio)))
+                ratio = {"ratio": one["time"]["cpu_s"] / other[0]["time"]["cpu_s"]} if other else {}
+                rows.append(figures(one) | {"two": two["time"]["wall_s"] / one["time"]["wall_s"]} | ratio)
                 converged += one["converged"]
         row = medians(rows)
         name = shape + (", contact" if contact == "barrier" else "")

@@ -66,13 +66,17 @@ std::optional<std::string> unknown_value(const CLI::App& command) {
 std::optional<std::string> not_a_number(const CLI::App& command, const CLI::ParseError& error) {
   const std::string message = error.what();
   for (const CLI::Option* option : command.get_options()) {
-    const std::string begin = "Could not convert: " + option->get_name() + " = ",
-                      type = option->get_type_name();
-    if (!message.starts_with(begin)) continue;
-    const char* wanted = type.starts_with("UINT")  ? "a whole number, 0 or greater"
-                         : type.starts_with("INT") ? "a whole number"
-                                                   : "a number";
-    return option->get_name() + ": '" + message.substr(begin.size()) + "' is not " + wanted;
+    const std::string name = option->get_name(), wanted = option->get_type_name(),
+                      begin = "Could not convert: " + name + " = ";
+    const bool is_natural = wanted.starts_with("UINT"), is_whole = is_natural || wanted.starts_with("INT");
+    if (!message.starts_with(begin) || !(is_whole || wanted.starts_with("FLOAT"))) continue;
+    const std::string value = message.substr(begin.size());
+    if (!value.empty() && value.find_first_not_of("0123456789") == std::string::npos)
+      return name + ": " + value + " is too large";
+    return name + ": '" + value + "' is not " +
+           (is_natural ? "a whole number, 0 or greater"
+            : is_whole ? "a whole number"
+                       : "a number");
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include "energy/term.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace coapt {
@@ -29,9 +30,10 @@ inline bool parts_are_apart(const Stencils& stencils, const std::vector<Sink>& p
 template <class Evaluated, class Evaluate, class Scatter>
 void pour_across(std::vector<Sink>& parts, ThreadTeam& team, const Evaluate& evaluate, const Scatter& scatter,
                  std::vector<double>& energies) {
-  constexpr size_t kAtOnce = 2048, kShare = 128;  // elements: what is evaluated stays in the cache
+  constexpr size_t kAtOnce = 2048;  // elements; pairs in contact take 2.5 MB then
+  constexpr size_t kShare = 128;    // elements that a thread evaluates at once
   const size_t count = energies.size();
-  std::vector<Evaluated> out(std::min(kAtOnce, count));
+  const auto out = std::make_unique_for_overwrite<Evaluated[]>(std::min(kAtOnce, count));
   for (size_t first = 0; first < count; first += kAtOnce) {
     const size_t some = std::min(kAtOnce, count - first);
     team.run_ranges(some, kShare, [&](size_t from, size_t to) {

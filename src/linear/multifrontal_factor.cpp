@@ -118,8 +118,7 @@ bool MultifrontalFactor::for_each_front(const Eliminate& eliminate) {
       if (!eliminate(s, own, nullptr)) goes_on = false;
   });
   for (const int s : top_)
-    if (goes_on && s < eliminated_ && !eliminate(s, workspaces_[0], is_shared() ? team_.get() : nullptr))
-      goes_on = false;
+    if (goes_on && s < eliminated_ && !eliminate(s, workspaces_[0], shared_team())) goes_on = false;
   return goes_on;
 }
 
@@ -131,7 +130,7 @@ bool MultifrontalFactor::factorise(const double* values) {
     return true;
   });
   if (!is_definite) return false;
-  if (eliminated_ < nodes_.size()) assembled_front(eliminated_, values, workspaces_[0], nullptr);
+  if (eliminated_ < nodes_.size()) assembled_front(eliminated_, values, workspaces_[0], shared_team());
   return measure_pivots();
 }
 
@@ -203,11 +202,11 @@ void MultifrontalFactor::add_updates(int s, const DenseFront& front, Part part, 
     const int* place = nodes_.place.data() + nodes_.below[child];
     const int split = static_cast<int>(std::lower_bound(place, place + rows, nodes_.columns(s)) - place);
     const double* update = update_of(child, own);
-    const auto add = [&](int first, int last) {
+    const auto add = [&](int from, int to) {
       if (part == Part::Columns)
-        add_columns(update, child, first, last, 0, front.panel, front.panel_stride());
+        add_columns(update, child, from, to, 0, front.panel, front.panel_stride());
       else
-        add_columns(update, child, first, last, nodes_.columns(s), front.update, front.update_stride());
+        add_columns(update, child, from, to, nodes_.columns(s), front.update, front.update_stride());
     };
     const int first = part == Part::Columns ? 0 : split, last = part == Part::Columns ? split : rows;
     if (team == nullptr)

@@ -83,6 +83,7 @@ class MultifrontalFactor {
   template <class Visit>
   void in_subtrees(const Visit& visit);
   bool is_shared() const { return team_->size() > 1 && work_ > kWorthThreads; }
+  ThreadTeam* shared_team() const { return is_shared() ? team_.get() : nullptr; }
   int height(int s) const { return 3 * (nodes_.columns(s) + nodes_.rows_below(s)); }
   int stride(int s) const { return DenseFront::stride(height(s)); }
   Panel panel(int s) const {

@@ -52,9 +52,7 @@ constexpr double kOverloaded = 3;                            // residual of a st
 constexpr double kFirstRounding = 1, kLeastRounding = 1e-3;  // widest and least rounding
 constexpr double kSharpen = 0.3;                             // fall of the rounding
 constexpr double kSharpenBelow = 0.03;                       // residual at which it falls
-
-// Residual below which limits of stress are raised.
-constexpr double kGivenWay = 1;
+constexpr double kGivenWay = 1;                              // below which limits of stress are raised
 
 class Newton {
  public:
@@ -126,10 +124,9 @@ class Newton {
       const double residual = objective_.relative_residual(at_.q, at_.g);
       if (residual > kGivenWay) return;
       const double excess = objective_.raise_stress_limits(at_.q);
-      const bool is_near = residual < kSharpenBelow;
-      if (is_near && excess < kExact) objective_.release_stress_limits();
+      if (residual < kSharpenBelow && excess < kExact) objective_.release_stress_limits();
       if (excess > 0) evaluate();
-      if (!is_near) return;
+      if (residual >= kSharpenBelow) return;
     }
   }
 

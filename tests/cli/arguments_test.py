@@ -94,6 +94,10 @@ class Arguments(CommandCase):
                                   f"--rough: '{word}' is not a whole number, 0 or greater")
         self.assert_bad_input(coapt("solve", "scene.json", "--checkpoint-every", "soon"),
                               "--checkpoint-every: 'soon' is not a number")
+        self.assert_bad_input(coapt("generate", "mitral", "--rough", 5000000000, "-o", new), "--rough: 5000000000 is too large")
+        run = coapt("solve", "scene.json", "--no-report=perhaps")
+        self.assertEqual(run.returncode, 2)
+        self.assertNotIn("is not a number", run.stderr)
         self.assertFalse(new.exists())
 
     def test_help_of_an_unknown_command_names_the_nearest(self):

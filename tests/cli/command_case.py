@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 COAPT = os.path.abspath(sys.argv[1])
+FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv", "report.html"}  # of a result with a surface
 
 
 def coapt(*arguments, cwd=None, timeout=120, keeps_progress=False):

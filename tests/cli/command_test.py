@@ -13,7 +13,7 @@ import sys
 import unittest
 from xml.etree import ElementTree
 
-from command_case import COAPT, CommandCase, coapt, content_of
+from command_case import COAPT, FILES, CommandCase, coapt, content_of
 
 try:
     import jsonschema
@@ -21,7 +21,6 @@ except ImportError:
     jsonschema = None
 
 SCHEMA = pathlib.Path(sys.argv[2])
-FILES = {"result.json", "closed.vtp", "closed.obj", "trace.csv", "metrics.csv", "report.html"}
 VALVE_FILES = {"coaptation_line.vtp", "orifice.vtp"}
 
 

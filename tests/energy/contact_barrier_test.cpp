@@ -3,6 +3,9 @@
 #include "core/error.hpp"
 #include "core/timing.hpp"
 #include "energy/contact/pair_barrier.hpp"
+#include "energy/element_term.hpp"
+#include "energy/kernels/surface_tension.hpp"
+#include "energy/objective.hpp"
 #include "mesh/distance/intersections.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
@@ -220,6 +223,40 @@ TEST(ContactBarrier, SearchesAroundWhatHasMovedAsIfItBeganThere) {
   EXPECT_GT(active, 80);
   EXPECT_GT(limited, 8);
   EXPECT_GT(same_pairs, 20);
+}
+
+// First or last among the terms, with more pairs than before or fewer.
+TEST(ContactBarrier, HasItsPlaceInTheHessianWhateverPairsThereWere) {
+  const TriangleMesh sheet = grid_mesh(6, 6);
+  const int n = sheet.vertex_count();
+  Points rest(3, 2 * n);
+  rest << sheet.vertices, sheet.vertices.colwise() + Vec3(0, 0, 5);
+  Triangles triangles(3, 2 * sheet.triangle_count());
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const auto objective_of = [&](bool contact_first) {
+    std::vector<std::unique_ptr<EnergyTerm>> terms;
+    if (contact_first) terms.push_back(barrier_of(rest, triangles, 0.1));
+    terms.push_back(std::make_unique<ElementTerm<SurfaceTension>>(
+        "film", std::vector<int>(triangles.data(), triangles.data() + triangles.size()),
+        std::vector<SurfaceTension::Rest>(static_cast<size_t>(triangles.cols()), {1})));
+    if (!contact_first) terms.push_back(barrier_of(rest, triangles, 0.1));
+    return Objective(rest, FixedMask::Constant(3, 2 * n, false), std::move(terms));
+  };
+  Objective first = objective_of(true), last = objective_of(false);
+  for (const double height : {1.0, 0.09, 0.02, 0.09, 1.0, 0.05}) {
+    Points x = rest;
+    x.rightCols(n).row(2).setConstant(height);
+    x.rightCols(n).row(0).array() += 0.3 * height;
+    Objective anew = objective_of(true);
+    Vector g;
+    SparseMatrix a, b, c;
+    const Vector q = anew.unknowns(x);
+    first.hessian(q, g, a);
+    last.hessian(q, g, b);
+    anew.hessian(q, g, c);
+    EXPECT_EQ((a - c).norm(), 0) << height;
+    EXPECT_LT((b - c).norm(), 1e-14 * c.norm()) << height;
+  }
 }
 
 TEST(ContactBarrier, BecomesStifferOnlyWhereItIsPressedTooHard) {

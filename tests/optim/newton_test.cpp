@@ -297,6 +297,47 @@ TEST(Solve, DoesNotDependOnWhatAnEarlierOneMadeStiffer) {
   EXPECT_EQ(first.iterations, second.iterations);
 }
 
+// x^4 / 4 of the only node, which is asked where it stands whenever limits of stress are raised.
+class Asked final : public EnergyTerm {
+ public:
+  explicit Asked(std::vector<double>& raised_at) : EnergyTerm("asked"), raised_at_(raised_at) {}
+  std::string_view type() const override { return "asked"; }
+  TermRole role() const override { return TermRole::Internal; }
+  const Stencils& stencils() const override { return stencils_; }
+  double evaluate(const Points& x, Sink& sink) const override {
+    const double s = x(0, 0);
+    if (sink.wants_gradient()) sink.add_gradient(0, Vec3(s * s * s, 0, 0));
+    if (sink.wants_hessian()) sink.add_block(0, 1, 0, 0, Eigen::Matrix3d(Vec3(3 * s * s, 1, 1).asDiagonal()));
+    return 0.25 * s * s * s * s;
+  }
+  bool limit_stress(const TensionScale& /*scale*/) override { return true; }
+  double raise_stress_limits(const Points& x) override {
+    raised_at_.push_back(x(0, 0));
+    return 0;
+  }
+
+ private:
+  std::vector<double>& raised_at_;
+  Stencils stencils_{1, {0}};
+};
+
+TEST(StressLimits, AreRaisedOnceWhatIsStretchedHasGivenWay) {
+  std::vector<double> raised_at;
+  Points X(3, 2), force = Points::Zero(3, 2);
+  X << 10, 0, 0, 0, 0, 0;  // a residual of 999
+  force(0, 0) = 1;
+  const Equilibrium found =
+      find_equilibrium(X, fixed_nodes(2, {1}),
+                       terms_of(std::make_unique<Asked>(raised_at),
+                                std::make_unique<LoadDead>("pull", "load_field", force, X)),
+                       1e-8, "newton");
+  ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
+  EXPECT_NEAR(found.x(0, 0), 1, 1e-8);
+  EXPECT_GT(found.result.iterations, 8);  // a third off x in each
+  ASSERT_FALSE(raised_at.empty());
+  for (const double x : raised_at) EXPECT_LE(x * x * x - 1, 1);  // the residual
+}
+
 // No residual of a sum of forces is below its rounding.
 TEST(Newton, SaysWhereRoundOffForbidsMore) {
   const ValveScene scene({.triangles = 200});

@@ -51,7 +51,7 @@ TEST(SharedSolve, ByFourThreadsGivesTheBitsOfOne) {
   EXPECT_EQ(shared.result.residual, alone.result.residual);
 }
 
-// Every pair has nodes of the upper sheet, which one half of the threads pours, and of the lower one.
+// Every pair has nodes of both sheets, which lie in the parts of different threads.
 TEST(SharedAssembly, OfSheetsInContactGivesTheBitsOfOneThread) {
   const TriangleMesh lower = grid_mesh(20, 20), upper = grid_mesh(21, 21);
   const int n = lower.vertex_count(), count = n + upper.vertex_count();
@@ -79,6 +79,8 @@ TEST(SharedAssembly, OfSheetsInContactGivesTheBitsOfOneThread) {
       EXPECT_EQ(objective.hessian(q, g, h, projection), energy) << threads;
       EXPECT_TRUE((g.array() == g1.array()).all()) << threads;
       EXPECT_TRUE((h.coeffs() == h1.coeffs()).all()) << threads;
+      EXPECT_EQ(objective.gradient(q, g), energy) << threads;
+      EXPECT_TRUE((g.array() == g1.array()).all()) << threads;
     }
   }
 }

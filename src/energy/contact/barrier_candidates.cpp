@@ -70,8 +70,7 @@ bool BarrierCandidates::renew(const Points& x, const NodeMask& searched,
   std::vector<Place> in_order;
   for (const auto& share : found)
     for (const BarrierCandidate& one : share) in_order.push_back({rank(one.pair), &one});
-  std::sort(in_order.begin(), in_order.end(),
-            [](const Place& a, const Place& b) { return a.rank < b.rank; });
+  std::sort(in_order.begin(), in_order.end(), [](const Place& a, const Place& b) { return a.rank < b.rank; });
   BarrierCandidates both(x);
   size_t old = 0;
   const auto keep_until = [&](Rank end) {

@@ -232,9 +232,11 @@ void ContactSurface::visit_near(const Points& x, double reach, const NodeMask& n
   const auto of = feature_bounds<NearBox>(box, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
-  team.run(kShares, [&](int share, int) {
-    const size_t first = near.size() * static_cast<size_t>(share) / kShares,
-                 last = near.size() * static_cast<size_t>(share + 1) / kShares;
+  constexpr size_t kFewest = 256;  // pairs of triangles of a share, where there are several
+  const size_t shares = std::min<size_t>(kShares, near.size() / kFewest + 1);
+  team.run(static_cast<int>(shares), [&](int share, int) {
+    const size_t first = near.size() * static_cast<size_t>(share) / shares,
+                 last = near.size() * static_cast<size_t>(share + 1) / shares;
     for (size_t k = first; k < last; ++k)
       visit_features(near[k][0], near[k][1], of, overlap, [&](const FeaturePair& pair) {
         if (has_any(nodes, pair.nodes)) visit(share, pair);
