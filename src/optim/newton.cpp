@@ -126,7 +126,7 @@ class Newton {
       const double excess = objective_.raise_stress_limits(at_.q);
       if (residual < kSharpenBelow && excess < kExact) objective_.release_stress_limits();
       if (excess > 0) evaluate();
-      if (residual >= kSharpenBelow) return;
+      if (!(residual < kSharpenBelow)) return;
     }
   }
 
