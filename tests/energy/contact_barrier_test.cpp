@@ -249,7 +249,7 @@ TEST(ContactBarrier, HasItsPlaceInTheHessianWhateverPairsThereWere) {
     x.rightCols(n).row(0).array() += 0.3 * height;
     Objective anew = objective_of(true);
     Vector g;
-    SparseMatrix a, b, c;
+    Eigen::SparseMatrix<double> a, b, c;
     const Vector q = anew.unknowns(x);
     first.hessian(q, g, a);
     last.hessian(q, g, b);
