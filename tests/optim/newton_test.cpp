@@ -297,7 +297,7 @@ TEST(Solve, DoesNotDependOnWhatAnEarlierOneMadeStiffer) {
   EXPECT_EQ(first.iterations, second.iterations);
 }
 
-// x^4 / 4 of the only node, which is asked where it stands whenever limits of stress are raised.
+// x^4 / 4 of the first node, which is asked where it stands whenever limits of stress are raised.
 class Asked final : public EnergyTerm {
  public:
   explicit Asked(std::vector<double>& raised_at) : EnergyTerm("asked"), raised_at_(raised_at) {}
@@ -307,7 +307,7 @@ class Asked final : public EnergyTerm {
   double evaluate(const Points& x, Sink& sink) const override {
     const double s = x(0, 0);
     if (sink.wants_gradient()) sink.add_gradient(0, Vec3(s * s * s, 0, 0));
-    if (sink.wants_hessian()) sink.add_block(0, 1, 0, 0, Eigen::Matrix3d(Vec3(3 * s * s, 1, 1).asDiagonal()));
+    if (sink.wants_hessian()) sink.add_block(0, 2, 0, 0, Eigen::Matrix3d(Vec3(3 * s * s, 1, 1).asDiagonal()));
     return 0.25 * s * s * s * s;
   }
   bool limit_stress(const TensionScale& /*scale*/) override { return true; }
@@ -318,7 +318,7 @@ class Asked final : public EnergyTerm {
 
  private:
   std::vector<double>& raised_at_;
-  Stencils stencils_{1, {0}};
+  Stencils stencils_{2, {0, 1}};
 };
 
 TEST(StressLimits, AreRaisedOnceWhatIsStretchedHasGivenWay) {
