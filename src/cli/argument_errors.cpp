@@ -71,8 +71,9 @@ std::optional<std::string> not_a_number(const CLI::App& command, const CLI::Pars
     const bool is_natural = wanted.starts_with("UINT"), is_whole = is_natural || wanted.starts_with("INT");
     if (!message.starts_with(begin) || !(is_whole || wanted.starts_with("FLOAT"))) continue;
     const std::string value = message.substr(begin.size());
-    if (!value.empty() && value.find_first_not_of("0123456789") == std::string::npos)
-      return name + ": " + value + " is too large";
+    const size_t sign = !is_natural && value.starts_with('-') ? 1 : 0;
+    if (value.size() > sign && value.find_first_not_of("0123456789", sign) == std::string::npos)
+      return name + ": " + value + " is out of range";
     return name + ": '" + value + "' is not " +
            (is_natural ? "a whole number, 0 or greater"
             : is_whole ? "a whole number"

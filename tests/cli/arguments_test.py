@@ -94,7 +94,7 @@ class Arguments(CommandCase):
                                   f"--rough: '{word}' is not a whole number, 0 or greater")
         self.assert_bad_input(coapt("solve", "scene.json", "--checkpoint-every", "soon"),
                               "--checkpoint-every: 'soon' is not a number")
-        self.assert_bad_input(coapt("generate", "mitral", "--rough", 5000000000, "-o", new), "--rough: 5000000000 is too large")
+        self.assert_bad_input(coapt("generate", "mitral", "--rough", 5000000000, "-o", new), "--rough: 5000000000 is out of range")
         run = coapt("solve", "scene.json", "--no-report=perhaps")
         self.assertEqual(run.returncode, 2)
         self.assertNotIn("is not a number", run.stderr)
