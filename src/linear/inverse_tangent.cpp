@@ -58,13 +58,16 @@ InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& ske
   is_made_ = sparse_->info() == Eigen::Success;
 }
 
-void InverseTangent::perform_op(const double* in, double* out) const {
-  in_ = Eigen::Map<const Vector>(in, size_);
-  if (sparse_)
-    out_ = sparse_->solve(in_);
-  else
-    bordered_->solve(in_, out_);
-  Eigen::Map<Vector>(out, size_) = out_;
+Eigen::MatrixXd InverseTangent::times(const Eigen::MatrixXd& block) {
+  if (sparse_) return sparse_->solve(block);
+  Eigen::MatrixXd result(block.rows(), block.cols());
+  Vector in, out;
+  for (Eigen::Index k = 0; k < block.cols(); ++k) {
+    in = block.col(k);
+    bordered_->solve(in, out);
+    result.col(k) = out;
+  }
+  return result;
 }
 
 }  // namespace coapt

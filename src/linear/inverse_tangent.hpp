@@ -1,5 +1,4 @@
-// The inverse of a shifted tangent with a skew part, applied to vectors, in the form in which Spectra asks
-// for it.
+// The inverse of a shifted tangent with a skew part, applied to vectors.
 #pragma once
 
 #include "linear/bordered_factor.hpp"
@@ -13,8 +12,6 @@ namespace coapt {
 
 class InverseTangent {
  public:
-  using Scalar = double;
-
   // Of K + W + shift, where K + shift is positive definite. lower: K as Factorisation wants it. start: with
   // no zero where W couples. Where W couples few nodes they are eliminated last, which takes a tenth of the
   // time of a sparse L U. team: may share that work.
@@ -22,10 +19,7 @@ class InverseTangent {
                  const std::shared_ptr<ThreadTeam>& team);
 
   bool is_made() const { return is_made_; }
-  Eigen::Index rows() const { return size_; }
-  Eigen::Index cols() const { return size_; }
-  void set_shift(double) {}  // it is in the factor already
-  void perform_op(const double* in, double* out) const;
+  Eigen::MatrixXd times(const Eigen::MatrixXd& block);
 
  private:
   // Minimum degree on the pattern, which is symmetric: half the fill that an ordering of columns leaves.
@@ -41,9 +35,8 @@ class InverseTangent {
 
   Eigen::Index size_;
   bool is_made_ = false;
-  mutable std::optional<BorderedFactor> bordered_;
+  std::optional<BorderedFactor> bordered_;
   std::optional<Eigen::SparseLU<SparseMatrix, SymmetricOrdering>> sparse_;
-  mutable Vector in_, out_;
 };
 
 }  // namespace coapt

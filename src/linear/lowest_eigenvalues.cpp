@@ -1,37 +1,109 @@
 #include "linear/lowest_eigenvalues.hpp"
 
-#include "core/bounded_int.hpp"
 #include "linear/inverse_tangent.hpp"
+#include "linear/krylov_basis.hpp"
 
 #include <Eigen/Eigenvalues>
-
-#ifdef COAPT_HAS_SPECTRA
-#include <Spectra/GenEigsRealShiftSolver.h>
-#endif
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <numeric>
 
 namespace coapt {
 namespace {
 
-constexpr int kMostDense = 240;  // unknowns up to which all eigenvalues are found
+constexpr double kChange = 0.05;   // of F, relative
+constexpr int kMostVectors = 600;  // of the Krylov space
+// Imaginary parts at which F is looked at, in magnitudes of the lowest eigenvalue of K. Far beyond, F is
+// -l but for what the space has at once.
+constexpr std::array kFrequencies = {0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
 
-LowestEigenvalues sorted(const Eigen::VectorXcd& values, const Eigen::MatrixXcd& vectors) {
+std::vector<Eigen::Index> by_real_part(const Eigen::VectorXcd& values) {
   std::vector<Eigen::Index> order(static_cast<size_t>(values.size()));
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return values[a].real() < values[b].real(); });
-  LowestEigenvalues found{.values = values, .vectors = vectors};
-  for (size_t k = 0; k < order.size(); ++k) {
-    found.values[static_cast<Eigen::Index>(k)] = values[order[k]];
-    found.vectors.col(static_cast<Eigen::Index>(k)) = vectors.col(order[k]);
-  }
-  return found;
+  return order;
 }
+
+// K + W on a Krylov space.
+class ProjectedTangent {
+ public:
+  ProjectedTangent(const SparseMatrix& lower, const SkewProduct& skew, const Eigen::MatrixXd& starts)
+      : lower_(lower), skew_(skew), basis_(lower.cols()) {
+    append(starts);
+    starts_ = basis_.count();
+  }
+
+  Eigen::Index count() const { return basis_.count(); }
+  auto last() const { return basis_.last(); }
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+  // False where the block adds nothing: the space is mapped to itself.
+  bool append(const Eigen::MatrixXd& block) {
+    const Eigen::Index before = count();
+    basis_.append(block);
+    const Eigen::Index added = count() - before;
+    if (added == 0) return false;
+    const Eigen::MatrixXd symmetric = lower_.selfadjointView<Eigen::Lower>() * basis_.last();
+    Eigen::MatrixXd skew(symmetric.rows(), added);
+    Vector product(symmetric.rows());
+    for (Eigen::Index k = 0; k < added; ++k) {
+      product.setZero();
+      skew_(basis_.last().col(k), product);
+      skew.col(k) = product;
+    }
+    matrix_.conservativeResize(count(), count());
+    matrix_.rightCols(added).noalias() = basis_.vectors().transpose() * (symmetric + skew);
+    matrix_.bottomLeftCorner(added, before).noalias() =
+        (symmetric - skew).transpose() * basis_.vectors().leftCols(before);
+    return true;
+  }
+
+  Eigen::VectorXcd values() const { return matrix_.eigenvalues(); }
+
+  // Those with real parts up to `most`, one at least.
+  LowestEigenvalues eigenvalues(double most) const {
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix_);
+    if (solver.info() != Eigen::Success) return {};
+    const Eigen::VectorXcd values = solver.eigenvalues();
+    std::vector<Eigen::Index> order = by_real_part(values);
+    while (order.size() > 1 && values[order.back()].real() > most) order.pop_back();
+    return {.values = values(order), .vectors = basis_.vectors() * solver.eigenvectors()(Eigen::all, order)};
+  }
+
+  // F(l) on the first `size` vectors: the Schur complement of the starts.
+  Eigen::MatrixXcd response(Eigen::Index size, std::complex<double> l) const {
+    Eigen::MatrixXcd shifted = matrix_.topLeftCorner(size, size).cast<std::complex<double>>();
+    shifted.diagonal().array() -= l;
+    const Eigen::Index rest = size - starts_;
+    const Eigen::MatrixXcd follows =
+        shifted.bottomRightCorner(rest, rest).partialPivLu().solve(shifted.bottomLeftCorner(rest, starts_));
+    return shifted.topLeftCorner(starts_, starts_) - shifted.topRightCorner(starts_, rest) * follows;
+  }
+
+  // By how much F differs on all vectors from what it is on the first `size`.
+  double change(Eigen::Index size, std::complex<double> l) const {
+    const Eigen::MatrixXcd ratio = response(count(), l) * response(size, l).partialPivLu().inverse();
+    return (ratio - Eigen::MatrixXcd::Identity(starts_, starts_)).norm();
+  }
+
+ private:
+  const SparseMatrix& lower_;
+  const SkewProduct& skew_;
+  KrylovBasis basis_;
+  Eigen::Index starts_ = 0;
+  Eigen::MatrixXd matrix_;
+};
+
+bool has_settled(const ProjectedTangent& space, Eigen::Index before, double zero, double magnitude) {
+  return std::all_of(kFrequencies.begin(), kFrequencies.end(), [&](double frequency) {
+    return space.change(before, {-zero, frequency * magnitude}) <= kChange;  // false for NaN
+  });
+}
+
+}  // namespace
 
 LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start) {
   const Eigen::Index size = lower.cols();
@@ -45,119 +117,32 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
   }
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(tangent);
   if (solver.info() != Eigen::Success) return {};
-  LowestEigenvalues found = sorted(solver.eigenvalues(), solver.eigenvectors());
-  found.is_complete = true;
-  return found;
+  const std::vector<Eigen::Index> order = by_real_part(solver.eigenvalues());
+  return {true, solver.eigenvalues()(order), solver.eigenvectors()(Eigen::all, order)};
 }
-
-}  // namespace
-
-#ifdef COAPT_HAS_SPECTRA
-namespace {
-
-constexpr double kShift = 10;  // times the magnitude of the lowest eigenvalue of the symmetric part
-constexpr std::array kBoundShifts = {2.0, 4.0};  // likewise, at which imaginary parts are bounded
-constexpr int kPowerSteps = 40;                  // towards the greatest imaginary part
-constexpr double kMargin = 1.1;                  // on the imaginary part that they find
-constexpr double kConverged = 1e-8;              // relative residual of an eigenpair
-constexpr int kFewest = 10, kMost = 160;         // eigenvalues that are asked for
-constexpr int kSpare = 40;                       // vectors of the Krylov space beyond two for each of them
-constexpr int kRestarts = 100;                   // of Arnoldi's method
-constexpr double kMoreThanNeeded = 1.3;          // asked for, over what is expected
-
-// An estimate from below of the greatest |v^* W v| / (v^* M v), by the power method from v: M^-1 W is normal
-// in the scalar product of M, which has been factorised.
-double greatest_ratio(Factorisation& factor, const SkewProduct& skew, Vector v) {
-  Vector image, force = v;
-  double ratio = 0;
-  for (int k = 0; k <= kPowerSteps; ++k) {
-    factor.solve(force, image);
-    ratio = std::sqrt(std::max(0.0, force.dot(image)));
-    if (ratio == 0) return 0;
-    v = image / ratio;
-    force.setZero();
-    skew(v, force);
-  }
-  return ratio;
-}
-
-// Of eigenvalues with a negative real part. Their vectors v, of length 1, have v^* K v < 0, so that s times
-// the greatest |v^* W v| / (v^* (K + s) v) is a bound for every s that makes K + s positive definite: the
-// least of some. Infinity where none of them does.
-double greatest_imaginary(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                          double magnitude, Factorisation& factor) {
-  double least = kInfinity;
-  SparseMatrix shifted = lower;
-  for (const double multiple : kBoundShifts) {
-    const double shift = multiple * magnitude;
-    shifted.diagonal() = lower.diagonal().array() + shift;
-    if (factor.factorise(shifted))
-      least = std::min(least, kMargin * greatest_ratio(factor, skew, start) * shift);
-  }
-  return least;
-}
-
-// How many eigenvalues of the symmetric part lie below a value: about as many as of the tangent lie as near
-// to the shift.
-int count_below(const SparseMatrix& lower, double value, Factorisation& factor) {
-  SparseMatrix shifted = lower;
-  shifted.diagonal().array() -= value;
-  return factor.inertia(shifted).negative;
-}
-
-// How many values to ask for where the `last` reach to `far` from the shift and not to `reach`, as if they
-// lay evenly.
-int more_values(int last, double shift, double far, double reach) {
-  const double share = far > shift ? (reach - shift) / (far - shift) : kInfinity;
-  return bounded_int(std::max(kMoreThanNeeded * share, 2.0) * last, 1, kMost);
-}
-
-}  // namespace
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, double unstable, Factorisation& factor) {
-  if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
-  const double shift = kShift * std::abs(least_value);
-  LowestEigenvalues found;
-  found.factorisations = 2 + static_cast<int>(kBoundShifts.size());
-  const double reach =
-      std::hypot(shift, greatest_imaginary(lower, skew, start, std::abs(least_value), factor));
-  if (!std::isfinite(reach)) return found;
-  InverseTangent inverse(lower, skew, start, shift, factor.team());
-  if (!inverse.is_made()) return found;
-
-  const auto free = static_cast<int>((start.array() != 0).count());
-  const int expected = count_below(lower, reach - shift, factor);
-  for (int wanted = bounded_int(kMoreThanNeeded * expected, kFewest, kMost);;) {
-    const int subspace = std::min(free, 2 * wanted + kSpare);
-    if (wanted + 2 > subspace) break;
-    Spectra::GenEigsRealShiftSolver<InverseTangent> solver(inverse, wanted, subspace, -shift);
-    try {
-      solver.init(start.data());
-      solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kConverged, Spectra::SortRule::SmallestReal);
-    } catch (const std::exception&) {  // its dense eigenvalue method did not converge
+                                     const LowestModes& modes, double zero,
+                                     const std::shared_ptr<ThreadTeam>& team) {
+  InverseTangent inverse(lower, skew, start, modes.shift, team);
+  if (!inverse.is_made()) return {};
+  ProjectedTangent space(lower, skew, modes.vectors);
+  bool is_complete = false;
+  double last = kInfinity;
+  while (!is_complete && space.count() < kMostVectors) {
+    const Eigen::Index before = space.count();
+    if (!space.append(inverse.times(space.last()))) {
+      is_complete = true;
       break;
     }
-    LowestEigenvalues more = sorted(solver.eigenvalues(), solver.eigenvectors());
-    more.factorisations = found.factorisations;
-    found = std::move(more);
-    if (solver.info() != Spectra::CompInfo::Successful) break;
-    const double far = (found.values.array() + shift).abs().maxCoeff();
-    found.is_complete = far > reach;
-    if (found.is_complete || wanted == kMost || found.values[0].real() < unstable) break;
-    wanted = more_values(wanted, shift, far, reach);
+    const double lowest = space.values().real().minCoeff();
+    is_complete =
+        std::abs(lowest - last) <= zero && has_settled(space, before, zero, std::abs(modes.values[0]));
+    last = lowest;
   }
+  LowestEigenvalues found = space.eigenvalues(zero);
+  found.is_complete = is_complete && found.values.size() > 0;
   return found;
 }
-
-#else
-
-LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double, double, Factorisation&) {
-  if (lower.cols() <= kMostDense) return all_eigenvalues(lower, skew, start);
-  return {};
-}
-
-#endif
 
 }  // namespace coapt

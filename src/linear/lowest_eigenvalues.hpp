@@ -2,29 +2,37 @@
 #pragma once
 
 #include "linear/free_directions.hpp"
+#include "linear/lowest_modes.hpp"
 
 #include <Eigen/Core>
+
+#include <memory>
 
 namespace coapt {
 
 struct LowestEigenvalues {
-  bool is_complete = false;  // no eigenvalue with a negative real part is missing
+  bool is_complete = false;  // no eigenvalue with a real part below -zero is missing
   Eigen::VectorXcd values;   // ascending real parts [unit of the matrix]
   Eigen::MatrixXcd vectors;  // a column each
-  int factorisations = 0;
 };
 
-// Of K + W, K symmetric and W skew.
-//   Small matrices: all eigenvalues, by a dense method.
-//   Others: shift and invert (Arnoldi's method) around a negative shift. An eigenvalue whose real part is
-//   negative lies in the disc around -shift through the ends of the segment between -i b and i b of the
-//   imaginary axis, b bounding the imaginary parts of such values: the search is complete when what it found
-//   reaches beyond.
-// lower: K as Factorisation wants it. start: zero at unknowns that shall stay at rest. least_value: an
-// estimate of K's lowest eigenvalue, negative. unstable: a real part below it ends the search, as the verdict
-// is known. factor: has analysed the pattern of K; its factor is lost. In a build without Spectra large
-// matrices give nothing.
+// Unknowns up to which all eigenvalues are found, by a dense method.
+constexpr int kMostDense = 240;
+
+// All of K + W, K symmetric and W skew. lower: K as Factorisation wants it. start: zero at unknowns that
+// shall stay at rest.
+LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start);
+
+// Those of K + W with real parts up to zero, or the lowest: of those that couple to the lowest modes V of K,
+// which are complete. As K is not negative on what is
+// orthogonal to V, an eigenvalue l with a real part below -zero is a pole of V^T (K + W - l)^-1 V, a matrix
+// as small as V has columns, and a zero of the determinant of its inverse F(l). K + W is projected onto the
+// block Krylov space of (K + W + shift)^-1 from V, until another block neither moves the lowest eigenvalue by
+// more than zero nor changes F by more than a twentieth on the line Re l = -zero: by Rouche's theorem F and
+// its projection have as many zeros to the left of it, unless the next blocks do what the last one did not.
+// team: may share the work.
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                                     double least_value, double unstable, Factorisation& factor);
+                                     const LowestModes& modes, double zero,
+                                     const std::shared_ptr<ThreadTeam>& team);
 
 }  // namespace coapt

@@ -144,28 +144,32 @@ class Judgement {
   }
 
   void classify_indefinite() {
-    Vector mode;
-    const double lowest = skew_ || options_.finds_descent ? find_lowest(mode) : 0;
     if (!skew_) {
       report_.verdict = Stability::Saddle;
-      if (options_.finds_descent && lowest < 0) report_.descent = mode;
+      Vector mode;
+      if (options_.finds_descent && find_lowest(mode) < 0) report_.descent = mode;
     } else {
       report_.verdict = Stability::NotDecided;
-      if (lowest < 0) classify_tangent(lowest);
+      classify_tangent();
     }
     const std::optional<int> negative = below(-zero_);
     report_.negative_modes = negative.value_or(-1);
     if (!skew_) count(report_.negative_modes);
   }
 
-  // The lowest mode, roughly, by inverse iteration with the first shift that makes the matrix definite. Zero
-  // where none does.
-  double find_lowest(Vector& v) {
+  // Factorises with the first shift that makes the matrix definite; false where none does.
+  bool lift() {
     double lift = 10 * zero_;
     while (!factorise(lift)) {
       lift *= 10;
-      if (lift > 1e4 * report_.scale) return 0;
+      if (lift > 1e4 * report_.scale) return false;
     }
+    return true;
+  }
+
+  // The lowest mode, roughly, by inverse iteration. Zero where no shift makes the matrix definite.
+  double find_lowest(Vector& v) {
+    if (!lift()) return 0;
     v = start_vector().normalized();
     Vector next;
     for (int k = 0; k < kInverseIterations; ++k) {
@@ -175,11 +179,25 @@ class Judgement {
     return v.dot(h_.selfadjointView<Eigen::Lower>() * v) - shift_;
   }
 
-  void classify_tangent(double lowest_of_symmetric_part) {
+  LowestEigenvalues lowest_of_tangent() {
+    const Vector start = start_vector();
+    if (h_.cols() <= kMostDense) {
+      shift(0);
+      return all_eigenvalues(h_, skew_, start);
+    }
+    if (!lift()) return {};
+    const double lifted = shift_;
     shift(0);
-    const LowestEigenvalues found =
-        lowest_eigenvalues(h_, skew_, start_vector(), lowest_of_symmetric_part, -zero_, *factor_);
-    report_.factorisations += found.factorisations;
+    Eigen::MatrixXd starts(h_.cols(), 2);
+    starts << start, start_vector(2);
+    const LowestModes modes = lowest_modes(h_, zero_, lifted, starts, *factor_);
+    report_.factorisations += modes.factorisations + 1;
+    return modes.is_complete ? lowest_eigenvalues(h_, skew_, start, modes, zero_, factor_->team())
+                             : LowestEigenvalues{};
+  }
+
+  void classify_tangent() {
+    const LowestEigenvalues found = lowest_of_tangent();
     if (found.values.size() == 0) return;
     report_.is_tangent_checked = true;
     report_.lowest = found.values[0];
