@@ -39,8 +39,7 @@ SparseMatrix whole_tangent(const SparseMatrix& lower, const SkewProduct& skew, c
 }  // namespace
 
 InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
-                               double shift, const std::shared_ptr<ThreadTeam>& team)
-    : size_(lower.cols()) {
+                               double shift, const std::shared_ptr<ThreadTeam>& team) {
   const std::vector<int> border = coupled_nodes(skew, start);
   if (border.size() <= kMostBorder) {
     SparseMatrix shifted = lower;
@@ -48,7 +47,7 @@ InverseTangent::InverseTangent(const SparseMatrix& lower, const SkewProduct& ske
     bordered_.emplace();
     bordered_->use_threads(team);
     bordered_->analyse(shifted, border);
-    is_made_ = bordered_->factorise(shifted, skew_entries(skew, border, size_));
+    is_made_ = bordered_->factorise(shifted, skew_entries(skew, border, lower.cols()));
     return;
   }
   sparse_.emplace();

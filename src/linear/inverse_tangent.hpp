@@ -33,7 +33,6 @@ class InverseTangent {
     }
   };
 
-  Eigen::Index size_;
   bool is_made_ = false;
   std::optional<BorderedFactor> bordered_;
   std::optional<Eigen::SparseLU<SparseMatrix, SymmetricOrdering>> sparse_;

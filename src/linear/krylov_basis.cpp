@@ -4,6 +4,14 @@ namespace coapt {
 namespace {
 
 constexpr double kDependent = 1e-10;  // length that is left of a vector, over what it had: round-off
+constexpr double kShrunk = 0.1;       // the same beside its own block: once more against all
+
+// Takes away what lies along orthonormal vectors: twice, as once leaves round-off (Giraud, Langou and
+// Rozloznik 2005).
+template <class Vectors, class Block>
+void remove(const Vectors& vectors, Block&& block) {
+  block.noalias() -= vectors * (vectors.transpose() * block).eval();
+}
 
 }  // namespace
 
@@ -13,14 +21,15 @@ void KrylovBasis::append(Eigen::MatrixXd block) {
   first_of_last_ = count_;
   const Eigen::VectorXd lengths = block.colwise().norm().transpose();
   const auto before = columns_.leftCols(count_);
-  for (int pass = 0; pass < 2; ++pass)  // twice is enough: Giraud, Langou and Rozloznik (2005)
-    block.noalias() -= before * (before.transpose() * block).eval();
+  remove(before, block);
+  remove(before, block);
   for (Eigen::Index k = 0; k < block.cols(); ++k) {
     auto column = block.col(k);
-    for (int pass = 0; pass < 2; ++pass) {
-      const auto new_ones = last();
-      column.noalias() -= new_ones * (new_ones.transpose() * column).eval();
-    }
+    const double beside_others = column.norm();
+    remove(last(), column);
+    remove(last(), column);
+    if (column.norm() < kShrunk * beside_others)
+      remove(vectors(), column);  // round-off of the others has grown
     const double length = column.norm();
     if (length > kDependent * lengths[k]) columns_.col(count_++) = column / length;
   }

@@ -18,8 +18,7 @@ class KrylovBasis {
   auto last() const { return columns_.middleCols(first_of_last_, count_ - first_of_last_); }  // of append()
 
  private:
-  static constexpr Eigen::Index kRoom =
-      200;  // vectors; no page of the memory is touched before its vector is
+  static constexpr Eigen::Index kRoom = 64;  // vectors at first
 
   Eigen::MatrixXd columns_;
   Eigen::Index count_ = 0, first_of_last_ = 0;

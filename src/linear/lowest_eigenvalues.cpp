@@ -6,18 +6,22 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <complex>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace coapt {
 namespace {
 
 constexpr double kChange = 0.05;   // of F, relative
+constexpr int kTimes = 2;          // in a row that nothing may change
 constexpr int kMostVectors = 600;  // of the Krylov space
-// Imaginary parts at which F is looked at, in magnitudes of the lowest eigenvalue of K. Far beyond, F is
-// -l but for what the space has at once.
-constexpr std::array kFrequencies = {0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
+// Imaginary parts at which F is looked at: zero, and from the first on, in magnitudes of the lowest
+// eigenvalue of K, in this ratio up to the greatest of the projection; and those of its eigenvalues near the
+// line.
+constexpr double kFirstFrequency = 0.1, kRatio = 3;
 
 std::vector<Eigen::Index> by_real_part(const Eigen::VectorXcd& values) {
   std::vector<Eigen::Index> order(static_cast<size_t>(values.size()));
@@ -61,7 +65,11 @@ class ProjectedTangent {
     return true;
   }
 
-  Eigen::VectorXcd values() const { return matrix_.eigenvalues(); }
+  // Empty where they could not be found.
+  Eigen::VectorXcd values() const {
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix_, false);
+    return solver.info() == Eigen::Success ? solver.eigenvalues() : Eigen::VectorXcd();
+  }
 
   // Those with real parts up to `most`, one at least.
   LowestEigenvalues eigenvalues(double most) const {
@@ -70,7 +78,8 @@ class ProjectedTangent {
     const Eigen::VectorXcd values = solver.eigenvalues();
     std::vector<Eigen::Index> order = by_real_part(values);
     while (order.size() > 1 && values[order.back()].real() > most) order.pop_back();
-    return {.values = values(order), .vectors = basis_.vectors() * solver.eigenvectors()(Eigen::all, order)};
+    return {true, values(order), basis_.vectors() * solver.eigenvectors()(Eigen::all, order),
+            static_cast<int>(count())};
   }
 
   // F(l) on the first `size` vectors: the Schur complement of the starts.
@@ -97,9 +106,35 @@ class ProjectedTangent {
   Eigen::MatrixXd matrix_;
 };
 
-bool has_settled(const ProjectedTangent& space, Eigen::Index before, double zero, double magnitude) {
-  return std::all_of(kFrequencies.begin(), kFrequencies.end(), [&](double frequency) {
-    return space.change(before, {-zero, frequency * magnitude}) <= kChange;  // false for NaN
+// What is looked at of a projection.
+struct Look {
+  Eigen::Index size = 0;
+  Eigen::VectorXcd values;
+
+  double lowest() const { return values.real().minCoeff(); }
+  Eigen::Index count_below(double value) const { return (values.real().array() < value).count(); }
+};
+
+std::vector<double> frequencies(const Look& before, const Look& now, double magnitude) {
+  std::vector<double> chosen{0};
+  const double greatest = std::max(now.values.imag().maxCoeff(), magnitude);
+  for (double next = kFirstFrequency * magnitude; next < kRatio * greatest; next *= kRatio)
+    chosen.push_back(next);
+  for (const Look* look : {&before, &now})
+    for (const std::complex<double> value : look->values)
+      if (value.imag() > 0 && value.real() < magnitude) chosen.push_back(value.imag());
+  return chosen;
+}
+
+// Whether the last blocks changed nothing that matters; false for NaN.
+bool has_settled(const ProjectedTangent& space, const Look& before, const Look& now, double zero,
+                 double magnitude) {
+  if (before.values.size() == 0 || now.values.size() == 0) return false;
+  if (!(std::abs(now.lowest() - before.lowest()) <= zero)) return false;
+  if (now.count_below(-zero) != before.count_below(-zero)) return false;
+  const std::vector<double> chosen = frequencies(before, now, magnitude);
+  return std::all_of(chosen.begin(), chosen.end(), [&](double frequency) {
+    return space.change(before.size, {-zero, frequency}) <= kChange;
   });
 }
 
@@ -118,7 +153,7 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(tangent);
   if (solver.info() != Eigen::Success) return {};
   const std::vector<Eigen::Index> order = by_real_part(solver.eigenvalues());
-  return {true, solver.eigenvalues()(order), solver.eigenvectors()(Eigen::all, order)};
+  return {true, solver.eigenvalues()(order), solver.eigenvectors()(Eigen::all, order), 0};
 }
 
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
@@ -127,22 +162,23 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   InverseTangent inverse(lower, skew, start, modes.shift, team);
   if (!inverse.is_made()) return {};
   ProjectedTangent space(lower, skew, modes.vectors);
-  bool is_complete = false;
-  double last = kInfinity;
-  while (!is_complete && space.count() < kMostVectors) {
-    const Eigen::Index before = space.count();
-    if (!space.append(inverse.times(space.last()))) {
-      is_complete = true;
-      break;
+  const double magnitude = std::abs(modes.values[0]);
+  Look before;
+  int settled = 0;
+  while (settled < kTimes && space.count() < kMostVectors) {
+    const Eigen::Index last = space.count();
+    bool grows = true;
+    while (grows && (space.count() == last || space.count() < last + last / 10)) {  // a look costs its cube
+      const Eigen::MatrixXd block = inverse.times(space.last());
+      if (!block.allFinite()) return {};
+      grows = space.append(block);
     }
-    const double lowest = space.values().real().minCoeff();
-    is_complete =
-        std::abs(lowest - last) <= zero && has_settled(space, before, zero, std::abs(modes.values[0]));
-    last = lowest;
+    if (!grows) return space.eigenvalues(zero);  // the space is mapped to itself
+    Look now{space.count(), space.values()};
+    settled = has_settled(space, before, now, zero, magnitude) ? settled + 1 : 0;
+    before = std::move(now);
   }
-  LowestEigenvalues found = space.eigenvalues(zero);
-  found.is_complete = is_complete && found.values.size() > 0;
-  return found;
+  return settled < kTimes ? LowestEigenvalues{} : space.eigenvalues(zero);
 }
 
 }  // namespace coapt

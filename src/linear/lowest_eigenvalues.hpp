@@ -11,9 +11,10 @@
 namespace coapt {
 
 struct LowestEigenvalues {
-  bool is_complete = false;  // no eigenvalue with a real part below -zero is missing
+  bool is_complete = false;  // else nothing was found that can be relied on, and nothing is here
   Eigen::VectorXcd values;   // ascending real parts [unit of the matrix]
   Eigen::MatrixXcd vectors;  // a column each
+  int krylov_vectors = 0;    // that they were found among
 };
 
 // Unknowns up to which all eigenvalues are found, by a dense method.
@@ -23,13 +24,13 @@ constexpr int kMostDense = 240;
 // shall stay at rest.
 LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start);
 
-// Those of K + W with real parts up to zero, or the lowest: of those that couple to the lowest modes V of K,
-// which are complete. As K is not negative on what is
-// orthogonal to V, an eigenvalue l with a real part below -zero is a pole of V^T (K + W - l)^-1 V, a matrix
-// as small as V has columns, and a zero of the determinant of its inverse F(l). K + W is projected onto the
-// block Krylov space of (K + W + shift)^-1 from V, until another block neither moves the lowest eigenvalue by
-// more than zero nor changes F by more than a twentieth on the line Re l = -zero: by Rouche's theorem F and
-// its projection have as many zeros to the left of it, unless the next blocks do what the last one did not.
+// Those of K + W with real parts up to zero, or the lowest alone: of those that couple to the lowest modes V
+// of K, which are complete. As K is not negative on what is orthogonal to V, an eigenvalue l with a real part
+// below -zero is a pole of V^T (K + W - l)^-1 V, a matrix as small as V has columns, and a zero of the
+// determinant of its inverse F(l). K + W is projected onto the block Krylov space of (K + W + shift)^-1 from
+// V. It is complete when, twice in a row, another block moves the lowest eigenvalue by zero at most, leaves
+// the number of those below -zero, and changes F by a twentieth at most on the line Re l = -zero, wherever it
+// is looked at: by Rouche's theorem a change of less than one leaves the number of zeros beyond the line.
 // team: may share the work.
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,
                                      const LowestModes& modes, double zero,

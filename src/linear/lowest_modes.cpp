@@ -15,8 +15,9 @@ namespace {
 constexpr double kShift = 2;       // wanted, in magnitudes of the lowest eigenvalue
 constexpr double kFarther = 1.5;   // than wanted: a shift that is replaced
 constexpr double kSettled = 0.1;   // change of the lowest eigenvalue, relative, that lets it be judged
-constexpr int kLooks = 8;          // vectors between two looks at what was found
-constexpr int kMostLanczos = 600;  // of the Krylov space
+constexpr int kLooks = 8;          // vectors, or a tenth of those before, between two looks
+constexpr int kMostLanczos = 600;  // vectors of the Krylov space
+constexpr int kMostModes = 200;    // that are looked for
 constexpr int kBeyond = 2;         // modes kept beyond those below zero
 constexpr double kRest = 0.5;      // of zero: what the other directions may be lower by
 constexpr std::array kNudges = {1.0, 1.37, 0.71};  // a pivot that vanishes is an accident of the value
@@ -38,11 +39,12 @@ Eigen::MatrixXd inverse_times(const Eigen::MatrixXd& block, Factorisation& facto
   return result;
 }
 
-// Others than those from which `number` vectors came: these span all that they lead to.
+// Others than those from which `number` vectors came, which span all that they lead to; scaled node by node,
+// so that what rests stays at rest.
 Eigen::MatrixXd other_starts(const Eigen::MatrixXd& starts, Eigen::Index number) {
   Eigen::MatrixXd others = starts;
   for (Eigen::Index k = 0; k < others.rows(); ++k)
-    others.row(k) *= std::sin(0.3 * static_cast<double>(k) * static_cast<double>(number + k));
+    others.row(k) *= std::sin(0.3 * static_cast<double>(k / 3) * static_cast<double>(number + k / 3));
   return others;
 }
 
@@ -63,7 +65,7 @@ class ProjectedMatrix {
     const Eigen::MatrixXd images = lower_.selfadjointView<Eigen::Lower>() * basis_.last();
     matrix_.conservativeResize(count(), count());
     matrix_.rightCols(added).noalias() = basis_.vectors().transpose() * images;
-    matrix_.bottomRows(added) = matrix_.rightCols(added).transpose();
+    matrix_.bottomLeftCorner(added, before) = matrix_.topRightCorner(before, added).transpose();
     return true;
   }
 
@@ -126,14 +128,16 @@ LowestModes lowest_modes(const SparseMatrix& lower, double zero, double shift, c
   LowestModes modes;
   modes.shift = shift;
   const std::optional<Counted> counted = count_below(zero, lower, factor, modes);
+  if (!counted || counted->number > kMostModes) return modes;
   ++modes.factorisations;
-  if (!counted || !factor.factorise(shifted(lower, shift))) return modes;
+  if (!factor.factorise(shifted(lower, shift))) return modes;
 
   ProjectedMatrix space(lower);
   space.append(starts);
   bool is_near = false;
   double last = kInfinity;
-  for (Eigen::Index next = kLooks; space.count() < kMostLanczos; next += kLooks) {
+  for (Eigen::Index next = kLooks; space.count() < kMostLanczos;
+       next = space.count() + std::max<Eigen::Index>(kLooks, space.count() / 10)) {
     bool grows = true;
     while (grows && space.count() < next) grows = space.append(inverse_times(space.last(), factor));
     space.solve();
@@ -144,6 +148,7 @@ LowestModes lowest_modes(const SparseMatrix& lower, double zero, double shift, c
     }
     last = lowest;
     const Eigen::Index found = (space.values().array() < counted->value).count();
+    if (found > counted->number) return modes;  // pivots that are all but zero have miscounted
     if (found < counted->number || !(space.uncertainty(found, counted->value) <= kRest * zero)) {
       if (!grows && !space.append(other_starts(starts, space.count()))) break;
       continue;
@@ -151,6 +156,8 @@ LowestModes lowest_modes(const SparseMatrix& lower, double zero, double shift, c
     const Eigen::Index kept = std::min<Eigen::Index>(found + kBeyond, space.count());
     modes.values = space.values().head(kept);
     modes.vectors = space.vectors(kept);
+    modes.shift = std::min(modes.shift, -kShift * modes.values[0]);
+    modes.krylov_vectors = static_cast<int>(space.count());
     modes.is_complete = true;
     return modes;
   }

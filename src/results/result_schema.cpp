@@ -181,7 +181,7 @@ OrderedJson certificate() {
        {"lowest_eigenvalue",
         described({{"type", OrderedJson::array({"object", "null"})},
                    {"properties", {{"real", {{"type", "number"}}}, {"imaginary", {{"type", "number"}}}}}},
-                  "of those of that tangent that were found, the one with the lowest real part [N/mm]")},
+                  "of that tangent, the lowest real part of those that were found [N/mm]")},
        {"free_directions", count_or_null("directions in which single nodes can be moved at no cost, left out "
                                          "of the judgement")},
        {"loose_nodes", count_or_null("nodes that can be moved at no cost in every direction")},

@@ -8,7 +8,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numeric>
 #include <random>
+#include <vector>
 
 namespace coapt {
 namespace {
@@ -64,18 +69,6 @@ Eigen::VectorXd many_soft(int negative, std::mt19937& random) {
   return values;
 }
 
-// Between the coordinates of every eighteenth node.
-Eigen::MatrixXd skew_on_few_nodes(Eigen::Index size, double greatest, std::mt19937& random) {
-  std::vector<Eigen::Index> coupled;
-  for (Eigen::Index k = 0; k < size; ++k)
-    if (k / 3 % 18 == 0) coupled.push_back(k);
-  const auto count = static_cast<Eigen::Index>(coupled.size());
-  const Eigen::MatrixXd part = random_matrix(count, count, random);
-  Eigen::MatrixXd skew = Eigen::MatrixXd::Zero(size, size);
-  skew(coupled, coupled) = greatest * (part - part.transpose());
-  return skew;
-}
-
 TEST(KrylovBasis, HoldsOrthonormalVectorsThatSpanWhatWasAppended) {
   std::mt19937 random(1);
   const Eigen::MatrixXd first = random_matrix(50, 4, random), second = random_matrix(50, 300, random);
@@ -83,7 +76,15 @@ TEST(KrylovBasis, HoldsOrthonormalVectorsThatSpanWhatWasAppended) {
   basis.append(first);
   EXPECT_EQ(basis.count(), 4);
   basis.append(1e-9 * first + 1e-14 * random_matrix(50, 4, random));  // all but dependent
-  EXPECT_EQ(basis.last().cols(), basis.count() - 4);
+  EXPECT_EQ(basis.count(), 8);
+  EXPECT_EQ(basis.last().cols(), 4);
+  Eigen::MatrixXd dependent = random_matrix(50, 4, random);
+  dependent.col(1) = dependent.col(0) + 1e-9 * dependent.col(2);  // on the others of its own block
+  dependent.col(3).setZero();
+  basis.append(dependent);
+  EXPECT_EQ(basis.count(), 11);
+  EXPECT_LT((basis.vectors().transpose() * basis.vectors() - Eigen::MatrixXd::Identity(11, 11)).norm(),
+            1e-13);
   basis.append(first * random_matrix(4, 3, random));
   EXPECT_EQ(basis.last().cols(), 0);
   basis.append(second);  // of more than 50 vectors, no more than 50 are independent
@@ -123,30 +124,107 @@ TEST(LowestModes, OfRepeatedEigenvaluesAreAllFound) {
   EXPECT_GE(matrix.lowest_beside(modes.vectors.leftCols(7)), -1e-12);
 }
 
-// The skew part takes negative eigenvalues away and moves others off the axis.
-TEST(LowestEigenvalues, CountAsManyUnstableOnesAsADenseMethod) {
-  int stable = 0, unstable = 0;
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    std::mt19937 random(seed);
-    const Symmetric matrix(many_soft(1 + static_cast<int>(seed % 3), random), random);
-    const double greatest = std::pow(10.0, static_cast<double>(seed % 5) - 2.5);
-    const Eigen::MatrixXd skew = skew_on_few_nodes(300, greatest, random);
-    const SkewProduct product = [&](const Vector& v, Vector& out) { out += skew * v; };
-    const LowestModes modes = matrix.modes(0.0025);
-    ASSERT_TRUE(modes.is_complete);
-    const LowestEigenvalues found = lowest_eigenvalues(matrix.lower, product, Vector::Ones(300), modes, kZero,
-                                                       std::make_shared<ThreadTeam>());
-    ASSERT_TRUE(found.is_complete) << "seed " << seed;
-    const Eigen::VectorXcd exact = (matrix.whole + skew).eigenvalues();
-    const auto count = [](const Eigen::VectorXcd& values) {
-      return (values.real().array() < -kZero).count();
-    };
-    EXPECT_EQ(count(found.values), count(exact)) << "seed " << seed;
-    EXPECT_NEAR(found.values[0].real(), exact.real().minCoeff(), 10 * kZero) << "seed " << seed;
-    ++(count(exact) > 0 ? unstable : stable);
+// A large sparse tangent whose eigenvalues are known: groups of coordinates that W couples among themselves
+// alone, some with negative eigenvalues of K, all mixed.
+struct Groups {
+  static constexpr int kSize = 30, kCount = 20, kCoupled = 4, kUnknowns = kSize * kCount;
+
+  // greatest: of the entries of W, in magnitudes of the lowest eigenvalues of K.
+  Groups(double greatest, std::mt19937& random) : skew(kUnknowns, kUnknowns) {
+    std::uniform_real_distribution<double> uniform;
+    std::vector<int> place(kUnknowns);
+    std::iota(place.begin(), place.end(), 0);
+    std::shuffle(place.begin(), place.end(), random);
+    std::vector<Eigen::Triplet<double>> entries;
+    lower.resize(kUnknowns, kUnknowns);
+    lower.reserve(Eigen::VectorXi::Constant(kUnknowns, 3));
+    for (int column = 0; column < kUnknowns; ++column)
+      for (int row = 3 * (column / 3); row < 3 * (column / 3) + 3; ++row) lower.insert(row, column) = 0;
+    for (int group = 0; group < kCount; ++group) {
+      Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(kSize, kSize);
+      for (int k = 0; k < kSize; ++k)
+        whole(k, k) = k == 0 && group < kCoupled ? -0.001 * (0.2 + uniform(random))
+                                                 : std::pow(10.0, 5 * uniform(random) - 4.5);
+      const bool flutters = group == 1 && random() % 2 == 0;  // unless the others prevent it
+      if (flutters) whole(1, 1) = 1e-4;
+      for (int k = 0; k < kSize; ++k)
+        lower.coeffRef(place[kSize * group + k], place[kSize * group + k]) = whole(k, k);
+      if (group < kCoupled) {
+        const Eigen::MatrixXd part = random_matrix(kSize, kSize, random);
+        for (int i = 0; i < kSize; ++i)
+          for (int j = 0; j < kSize; ++j) {
+            const bool couples_the_two = flutters && i == 0 && j == 1;
+            if (i == j || (uniform(random) > 0.2 && !couples_the_two)) continue;
+            const double entry = 0.001 * greatest * (couples_the_two ? 10 : part(i, j));
+            whole(i, j) += entry;
+            whole(j, i) -= entry;
+            entries.emplace_back(place[kSize * group + i], place[kSize * group + j], entry);
+            entries.emplace_back(place[kSize * group + j], place[kSize * group + i], -entry);
+          }
+      }
+      const Eigen::VectorXcd values = whole.eigenvalues();
+      unstable += static_cast<int>((values.real().array() < -kZero).count());
+      lowest = std::min(lowest, values.real().minCoeff());
+    }
+    skew.setFromTriplets(entries.begin(), entries.end());
+    lower.makeCompressed();
   }
-  EXPECT_GE(stable, 5);
-  EXPECT_GE(unstable, 5);
+
+  SparseMatrix lower, skew;
+  int unstable = 0;
+  double lowest = kInfinity;
+};
+
+// The skew part takes negative eigenvalues away, moves others off the axis, and makes some that flutter, also
+// far from the axis. What is found stays far from the whole space.
+TEST(LowestEigenvalues, AreAsManyUnstableOnesAsThereAre) {
+  int stable = 0, unstable = 0, flutter = 0, greatest_space = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    const Groups groups(std::pow(10.0, static_cast<double>(seed % 5) / 2 - 0.5), random);
+    const SkewProduct product = [&](const Vector& v, Vector& out) { out += groups.skew * v; };
+    const auto factor = make_multifrontal_factorisation();
+    factor->analyse(groups.lower);
+    const Vector start = Vector::Ones(Groups::kUnknowns);
+    Eigen::MatrixXd starts(Groups::kUnknowns, 2);
+    for (Eigen::Index k = 0; k < starts.rows(); ++k)
+      starts.row(k) << 1 + 0.5 * std::sin(1.7 * k * k), 1 + 0.5 * std::sin(1.7 * k * k + 2);
+    const LowestModes modes = lowest_modes(groups.lower, kZero, 0.01, starts, *factor);
+    ASSERT_TRUE(modes.is_complete) << "seed " << seed;
+    EXPECT_EQ((modes.values.array() < 0).count(), Groups::kCoupled);
+    const LowestEigenvalues found =
+        lowest_eigenvalues(groups.lower, product, start, modes, kZero, std::make_shared<ThreadTeam>());
+    ASSERT_TRUE(found.is_complete) << "seed " << seed;
+    EXPECT_EQ((found.values.real().array() < -kZero).count(), groups.unstable) << "seed " << seed;
+    if (groups.unstable > 0) {
+      EXPECT_NEAR(found.values[0].real(), groups.lowest, 10 * kZero) << "seed " << seed;
+    }
+    greatest_space = std::max({greatest_space, modes.krylov_vectors, found.krylov_vectors});
+    ++(groups.unstable > 0 ? unstable : stable);
+    flutter += groups.unstable > 0 && found.values[0].imag() != 0;
+  }
+  std::printf("%d stable, %d unstable, %d of them complex; up to %d vectors of %d\n", stable, unstable,
+              flutter, greatest_space, Groups::kUnknowns);
+  EXPECT_GE(stable, 20);
+  EXPECT_GE(unstable, 20);
+  EXPECT_GE(flutter, 5);
+  EXPECT_LT(greatest_space, 500);
+}
+
+// Only those are counted that the space has come to; a factor that fails leaves nothing.
+TEST(LowestEigenvalues, AreNotGuessed) {
+  std::mt19937 random(1);
+  const Groups groups(3, random);
+  LowestModes modes;
+  modes.shift = 1e-9;  // with which K is not positive definite
+  modes.values = Eigen::VectorXd::Constant(1, -0.001);
+  modes.vectors = Eigen::MatrixXd::Identity(Groups::kUnknowns, 1);
+  const SkewProduct nothing_finite = [](const Vector& v, Vector& out) { out += kNaN * v; };
+  const LowestEigenvalues found =
+      lowest_eigenvalues(groups.lower, nothing_finite, Vector::Ones(Groups::kUnknowns), modes, kZero,
+                         std::make_shared<ThreadTeam>());
+  EXPECT_FALSE(found.is_complete);
+  EXPECT_EQ(found.values.size(), 0);
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ class _CertificateOfEvery(TypedDict):
     negative_modes: int | None  #: modes along which the energy falls, or the work of the symmetric part of the tangent
     unstable_modes: int | None  #: eigenvalues with a negative real part that were found of a tangent that is not
     #: symmetric; null: it did not have to be looked at
-    lowest_eigenvalue: Eigenvalue | None  #: of that tangent, the one with the lowest real part [N/mm]
+    lowest_eigenvalue: Eigenvalue | None  #: of that tangent, the lowest real part of those that were found [N/mm]
     free_directions: int | None  #: directions in which single nodes can be moved at no cost, left out of the judgement
     loose_nodes: int | None  #: nodes that can be moved at no cost in every direction
     free_nodes: list[int]  #: nodes whose place is not determined: they can be moved, alone or with others, at no cost

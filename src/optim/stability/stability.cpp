@@ -191,14 +191,15 @@ class Judgement {
     Eigen::MatrixXd starts(h_.cols(), 2);
     starts << start, start_vector(2);
     const LowestModes modes = lowest_modes(h_, zero_, lifted, starts, *factor_);
-    report_.factorisations += modes.factorisations + 1;
-    return modes.is_complete ? lowest_eigenvalues(h_, skew_, start, modes, zero_, factor_->team())
-                             : LowestEigenvalues{};
+    report_.factorisations += modes.factorisations;
+    if (!modes.is_complete) return {};
+    ++report_.factorisations;
+    return lowest_eigenvalues(h_, skew_, start, modes, zero_, factor_->team());
   }
 
   void classify_tangent() {
     const LowestEigenvalues found = lowest_of_tangent();
-    if (found.values.size() == 0) return;
+    if (!found.is_complete) return;
     report_.is_tangent_checked = true;
     report_.lowest = found.values[0];
     report_.zero_modes = 0;
@@ -214,7 +215,7 @@ class Judgement {
     }
     if (report_.unstable_modes > 0)
       report_.verdict = real < 0 ? Stability::Flutter : Stability::Divergence;
-    else if (found.is_complete)
+    else
       report_.verdict = report_.zero_modes > 0 ? Stability::Flat : Stability::Stable;
     if (real >= 0 && options_.finds_descent) report_.descent = found.vectors.col(real).real().normalized();
   }

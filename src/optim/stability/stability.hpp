@@ -57,7 +57,7 @@ struct StabilityReport {
   std::vector<int> free_blocks;
 
   // Of a tangent with a skew part that was looked at as a whole: eigenvalues with a negative real part, and
-  // the one with the lowest [force/length].
+  // of all that were found the one with the lowest [force/length]; others above -zero may be lower.
   bool is_tangent_checked = false;
   int unstable_modes = 0;
   std::complex<double> lowest;
