@@ -127,8 +127,8 @@ std::vector<double> frequencies(const Look& before, const Look& now, double magn
 }
 
 // Whether the last blocks changed nothing that matters; false for NaN.
-bool has_settled(const ProjectedTangent& space, const Look& before, const Look& now, double zero,
-                 double magnitude) {
+bool is_unchanged(const ProjectedTangent& space, const Look& before, const Look& now, double zero,
+                  double magnitude) {
   if (before.values.size() == 0 || now.values.size() == 0) return false;
   if (!(std::abs(now.lowest() - before.lowest()) <= zero)) return false;
   if (now.count_below(-zero) != before.count_below(-zero)) return false;
@@ -164,8 +164,8 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
   ProjectedTangent space(lower, skew, modes.vectors);
   const double magnitude = std::abs(modes.values[0]);
   Look before;
-  int settled = 0;
-  while (settled < kTimes && space.count() < kMostVectors) {
+  int unchanged = 0;
+  while (unchanged < kTimes && space.count() < kMostVectors) {
     const Eigen::Index last = space.count();
     bool grows = true;
     while (grows && (space.count() == last || space.count() < last + last / 10)) {  // a look costs its cube
@@ -175,10 +175,10 @@ LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduc
     }
     if (!grows) return space.eigenvalues(zero);  // the space is mapped to itself
     Look now{space.count(), space.values()};
-    settled = has_settled(space, before, now, zero, magnitude) ? settled + 1 : 0;
+    unchanged = is_unchanged(space, before, now, zero, magnitude) ? unchanged + 1 : 0;
     before = std::move(now);
   }
-  return settled < kTimes ? LowestEigenvalues{} : space.eigenvalues(zero);
+  return unchanged < kTimes ? LowestEigenvalues{} : space.eigenvalues(zero);
 }
 
 }  // namespace coapt

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kShift = 2;       // wanted, in magnitudes of the lowest eigenvalue
 constexpr double kFarther = 1.5;   // than wanted: a shift that is replaced
-constexpr double kSettled = 0.1;   // change of the lowest eigenvalue, relative, that lets it be judged
+constexpr double kSteady = 0.1;    // change of the lowest eigenvalue, relative, that lets it be judged
 constexpr int kLooks = 8;          // vectors, or a tenth of those before, between two looks
 constexpr int kMostLanczos = 600;  // vectors of the Krylov space
 constexpr int kMostModes = 200;    // that are looked for
@@ -142,7 +142,7 @@ LowestModes lowest_modes(const SparseMatrix& lower, double zero, double shift, c
     while (grows && space.count() < next) grows = space.append(inverse_times(space.last(), factor));
     space.solve();
     const double lowest = space.values()[0];
-    if (!is_near && lowest < 0 && std::abs(lowest - last) < kSettled * std::abs(lowest)) {
+    if (!is_near && lowest < 0 && std::abs(lowest - last) < kSteady * std::abs(lowest)) {
       is_near = true;
       if (!approach(-kShift * lowest, lower, factor, modes)) return modes;
     }
