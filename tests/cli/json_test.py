@@ -108,7 +108,7 @@ class Json(CommandCase):
         self.assertGreater(float(wanted[order[0]]), float(wanted["finest mesh"]))
 
     def test_a_log_has_a_line_every_five_seconds(self):
-        scene = self.generate("mitral", "--triangles", 20000)
+        scene = self.generate("mitral", "--triangles", 60000)
         run = coapt("solve", scene, "--tolerance", "1e-13", "--max-seconds", 12, keeps_progress=True)
         lines = [line for line in run.stderr.splitlines() if re.match(r"  (mesh \d of \d, |finest mesh, )?step ", line)]
         self.assertIn(len(lines), [1, 2, 3], run.stderr)
@@ -131,7 +131,7 @@ class Json(CommandCase):
             self.assertEqual([line for line in lines if not re.search(r"\(wanted \S+\)", line)], [], command)
 
     def test_a_study_tells_how_many_points_are_through(self):
-        scene = self.generate("mitral", "--triangles", 6000)
+        scene = self.generate("mitral", "--triangles", 20000)
         run = coapt("study", scene, "--sweep", "load_pressure.value=100,120,140mmHg", "-j", 1, "--max-seconds", 6,
                     "-o", self.folder / "out", keeps_progress=True)
         self.assertRegex(run.stderr, r"(?m)^  [012] of 3 points, \d+\.\d s(, about [\d.]+ s left)?$")
