@@ -6,8 +6,7 @@ namespace {
 constexpr double kDependent = 1e-10;  // length that is left of a vector, over what it had: round-off
 constexpr double kShrunk = 0.1;       // the same beside its own block: once more against all
 
-// Takes away what lies along orthonormal vectors: twice, as once leaves round-off (Giraud, Langou and
-// Rozloznik 2005).
+// Takes away what lies along orthonormal vectors. Once leaves round-off of what was taken, twice does not.
 template <class Vectors, class Block>
 void remove(const Vectors& vectors, Block&& block) {
   block.noalias() -= vectors * (vectors.transpose() * block).eval();
@@ -15,7 +14,7 @@ void remove(const Vectors& vectors, Block&& block) {
 
 }  // namespace
 
-void KrylovBasis::append(Eigen::MatrixXd block) {
+Eigen::Index KrylovBasis::append(Eigen::MatrixXd block) {
   if (count_ + block.cols() > columns_.cols())
     columns_.conservativeResize(Eigen::NoChange, 2 * (columns_.cols() + block.cols()));
   first_of_last_ = count_;
@@ -33,6 +32,7 @@ void KrylovBasis::append(Eigen::MatrixXd block) {
     const double length = column.norm();
     if (length > kDependent * lengths[k]) columns_.col(count_++) = column / length;
   }
+  return count_ - first_of_last_;
 }
 
 }  // namespace coapt

@@ -10,8 +10,8 @@ class KrylovBasis {
   explicit KrylovBasis(Eigen::Index size) : columns_(size, kRoom) {}
 
   // Adds what the columns of a block, with numbers that are finite, have beside the span of those before:
-  // vectors of length 1. Those of which nothing but round-off is left add none.
-  void append(Eigen::MatrixXd block);
+  // vectors of length 1. Those of which nothing but round-off is left add none. Returns how many were added.
+  Eigen::Index append(Eigen::MatrixXd block);
 
   Eigen::Index count() const { return count_; }
   auto vectors() const { return columns_.leftCols(count_); }

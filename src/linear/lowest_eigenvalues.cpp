@@ -42,13 +42,10 @@ class ProjectedTangent {
 
   Eigen::Index count() const { return basis_.count(); }
   auto last() const { return basis_.last(); }
-  const Eigen::MatrixXd& matrix() const { return matrix_; }
 
   // False where the block adds nothing: the space is mapped to itself.
   bool append(const Eigen::MatrixXd& block) {
-    const Eigen::Index before = count();
-    basis_.append(block);
-    const Eigen::Index added = count() - before;
+    const Eigen::Index before = count(), added = basis_.append(block);
     if (added == 0) return false;
     const Eigen::MatrixXd symmetric = lower_.selfadjointView<Eigen::Lower>() * basis_.last();
     Eigen::MatrixXd skew(symmetric.rows(), added);

@@ -28,8 +28,8 @@ LowestEigenvalues all_eigenvalues(const SparseMatrix& lower, const SkewProduct& 
 // of K, which are complete. As K is not negative on what is orthogonal to V, an eigenvalue l with a real part
 // below -zero is a pole of V^T (K + W - l)^-1 V, a matrix as small as V has columns, and a zero of the
 // determinant of its inverse F(l). K + W is projected onto the block Krylov space of (K + W + shift)^-1 from
-// V. It is complete when, twice in a row, another block moves the lowest eigenvalue by zero at most, leaves
-// the number of those below -zero, and changes F by a twentieth at most on the line Re l = -zero, wherever it
+// V. It is complete when, twice in a row, further blocks move the lowest eigenvalue by zero at most, leave
+// the number of those below -zero, and change F by a twentieth at most on the line Re l = -zero, wherever it
 // is looked at: by Rouche's theorem a change of less than one leaves the number of zeros beyond the line.
 // team: may share the work.
 LowestEigenvalues lowest_eigenvalues(const SparseMatrix& lower, const SkewProduct& skew, const Vector& start,

@@ -58,9 +58,7 @@ class ProjectedMatrix {
 
   // False where the block adds nothing.
   bool append(const Eigen::MatrixXd& block) {
-    const Eigen::Index before = count();
-    basis_.append(block);
-    const Eigen::Index added = count() - before;
+    const Eigen::Index before = count(), added = basis_.append(block);
     if (added == 0) return false;
     const Eigen::MatrixXd images = lower_.selfadjointView<Eigen::Lower>() * basis_.last();
     matrix_.conservativeResize(count(), count());
