@@ -72,7 +72,7 @@ class ProjectedTangent {
   LowestEigenvalues eigenvalues(double most) const {
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix_);
     if (solver.info() != Eigen::Success) return {};
-    const Eigen::VectorXcd values = solver.eigenvalues();
+    const Eigen::VectorXcd& values = solver.eigenvalues();
     std::vector<Eigen::Index> order = by_real_part(values);
     while (order.size() > 1 && values[order.back()].real() > most) order.pop_back();
     return {true, values(order), basis_.vectors() * solver.eigenvectors()(Eigen::all, order),

@@ -43,8 +43,10 @@ Eigen::MatrixXd inverse_times(const Eigen::MatrixXd& block, Factorisation& facto
 // so that what rests stays at rest.
 Eigen::MatrixXd other_starts(const Eigen::MatrixXd& starts, Eigen::Index number) {
   Eigen::MatrixXd others = starts;
-  for (Eigen::Index k = 0; k < others.rows(); ++k)
-    others.row(k) *= std::sin(0.3 * static_cast<double>(k / 3) * static_cast<double>(number + k / 3));
+  for (Eigen::Index k = 0; k < others.rows(); ++k) {
+    const Eigen::Index node = k / 3;
+    others.row(k) *= std::sin(0.3 * static_cast<double>(node) * static_cast<double>(number + node));
+  }
   return others;
 }
 
