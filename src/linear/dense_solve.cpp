@@ -9,6 +9,7 @@ template <int kColumns>
 COAPT_INLINE void forward_columns(const DenseFront& front, int first, double* y) {
   const std::ptrdiff_t stride = front.panel_stride();
   const double* block = front.panel + first + first * stride;
+  const double* next = block + kColumns * (stride + 1);
   double x[kColumns];
   for (int j = 0; j < kColumns; ++j) {
     x[j] = y[first + j];
@@ -20,6 +21,7 @@ COAPT_INLINE void forward_columns(const DenseFront& front, int first, double* y)
   for (int i = kColumns; i < rest; i += 4) {
     Quad sum;
     load(sum, y + first + i);
+    for (int j = 0; j < kColumns; ++j) __builtin_prefetch(next + j * stride + i);
     for (int j = 0; j < kColumns; ++j) {
       Quad entries;
       load(entries, block + j * stride + i);
@@ -33,11 +35,13 @@ template <int kColumns>
 COAPT_INLINE void backward_columns(const DenseFront& front, int first, double* y) {
   const std::ptrdiff_t stride = front.panel_stride();
   const double* block = front.panel + first + first * stride;
+  const double* next = block - kColumns * (stride + 1);
   Quad sum[kColumns] = {};
   const int rest = front.height() - first;
   for (int i = kColumns; i < rest; i += 4) {
     Quad known;
     load(known, y + first + i);
+    for (int j = 0; j < kColumns; ++j) __builtin_prefetch(next + j * stride + i);
     for (int j = 0; j < kColumns; ++j) {
       Quad entries;
       load(entries, block + j * stride + i);
