@@ -4,7 +4,8 @@
 namespace coapt {
 namespace {
 
-// The next kColumns columns from `first` on.
+// The next kColumns columns from `first` on. Those that follow are prefetched, as columns are too short for
+// the processor to foresee them; beyond the panel lies that of the next front, and no prefetch faults.
 template <int kColumns>
 COAPT_INLINE void forward_columns(const DenseFront& front, int first, double* y) {
   const std::ptrdiff_t stride = front.panel_stride();
