@@ -14,10 +14,10 @@ void BorderedFactor::analyse(const SparseMatrix& lower, const std::vector<int>& 
     order.insert(order.end(), border.begin(), border.end());
     return order;
   };
-  const std::vector<int> last = border == border_ ? factor_.nodes().order : std::vector<int>{};
+  if (border != border_) kept_.forget();
   border_ = border;
   const auto count = static_cast<int>(border.size());
-  factor_.analyse(graph, kept_.supernodes(graph, last, border_last, count), count);
+  factor_.analyse(graph, kept_.supernodes(graph, border_last, count), count);
 }
 
 bool BorderedFactor::factorise(const SparseMatrix& lower, const Eigen::MatrixXd& border_part) {

@@ -4,6 +4,7 @@
 
 #include "linear/factorisation.hpp"
 #include "linear/multifrontal_factor.hpp"
+#include "linear/updated_order.hpp"
 
 #include <Eigen/LU>
 

@@ -1,5 +1,6 @@
 #include "linear/factorisation.hpp"
 #include "linear/last_factor.hpp"
+#include "linear/updated_order.hpp"
 
 #include <memory>
 #include <string_view>
@@ -23,7 +24,7 @@ class Multifrontal final : public Factorisation {
     if (!factor_) factor_ = std::make_unique<MultifrontalFactor>();
     const NodeGraph graph = node_graph(lower);
     factor_->use_threads(team());
-    factor_->analyse(graph, kept_.supernodes(graph, factor_->nodes().order, [&] {
+    factor_->analyse(graph, kept_.supernodes(graph, [&] {
       if (kept_.is_changing()) return brief_order(graph);
       return last() ? last()->order.of(graph) : node_order(graph);
     }));

@@ -207,14 +207,13 @@ void find_places(Supernodes& nodes) {
   }
 }
 
-double entries_of(const Supernodes& nodes) {
+}  // namespace
+
+double Supernodes::entries() const {
   double entries = 0;
-  for (int s = 0; s < nodes.size(); ++s)
-    entries += static_cast<double>(nodes.columns(s)) * (nodes.columns(s) + nodes.rows_below(s));
+  for (int s = 0; s < size(); ++s) entries += static_cast<double>(columns(s)) * (columns(s) + rows_below(s));
   return entries;
 }
-
-}  // namespace
 
 Supernodes supernodes_of(const NodeGraph& graph, const std::vector<int>& order, int border) {
   Supernodes nodes;
@@ -228,18 +227,6 @@ Supernodes supernodes_of(const NodeGraph& graph, const std::vector<int>& order, 
   nodes.first = partition(parent, column_counts(earlier, parent), border);
   find_rows(nodes, later_neighbours(earlier));
   find_places(nodes);
-  return nodes;
-}
-
-Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::vector<int>& last,
-                                 const std::function<std::vector<int>()>& order, int border) {
-  constexpr double kMostFill = 1.1;  // of an order that is kept, over that of the pattern it was made for
-  if (fill_ > 0 && last.size() == static_cast<size_t>(graph.size())) {
-    Supernodes nodes = supernodes_of(graph, last, border);
-    if (entries_of(nodes) <= kMostFill * fill_) return nodes;
-  }
-  Supernodes nodes = supernodes_of(graph, order(), border);
-  fill_ = entries_of(nodes);
   return nodes;
 }
 

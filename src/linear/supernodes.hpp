@@ -6,7 +6,6 @@
 
 #include "linear/permuted_matrix.hpp"
 
-#include <functional>
 #include <vector>
 
 namespace coapt {
@@ -26,26 +25,12 @@ struct Supernodes {
   int size() const { return static_cast<int>(parent.size()); }
   int columns(int s) const { return first[s + 1] - first[s]; }
   int rows_below(int s) const { return below[s + 1] - below[s]; }
+  double entries() const;  // of the factor, one for a node
 };
 
 // order: any order of the nodes; that of the result differs by a postordering of the elimination tree, which
 // changes no entry of the factor. Small supernodes are merged with their parents where few zeros come in. The
 // last `border` nodes of the order stay the last ones, and are one supernode whatever couples them.
 Supernodes supernodes_of(const NodeGraph& graph, const std::vector<int>& order, int border = 0);
-
-// The order of one pattern after another. Most differ by a few pairs in contact, and an ordering takes longer
-// than the rest of an analysis.
-class KeptOrder {
- public:
-  // By `last`, the order of the pattern before; anew where it is none of this graph or fills more.
-  Supernodes supernodes(const NodeGraph& graph, const std::vector<int>& last,
-                        const std::function<std::vector<int>()>& order, int border = 0);
-
-  // Whether there was a pattern before: contacts come and go, and this one will not last.
-  bool is_changing() const { return fill_ > 0; }
-
- private:
-  double fill_ = 0;  // entries of the pattern that was ordered last
-};
 
 }  // namespace coapt
