@@ -14,7 +14,8 @@ class EliminationTree {
   explicit EliminationTree(const Supernodes& nodes) : nodes_(nodes), begin_(nodes.size()) {
     std::iota(begin_.begin(), begin_.end(), 0);
     for (int s = 0; s < nodes.size(); ++s)
-      if (const int parent = nodes.parent[s]; parent >= 0) begin_[parent] = std::min(begin_[parent], begin_[s]);
+      if (const int parent = nodes.parent[s]; parent >= 0)
+        begin_[parent] = std::min(begin_[parent], begin_[s]);
   }
   bool are_in_line(int s, int t) const { return begin_[std::max(s, t)] <= std::min(s, t); }
 
@@ -51,8 +52,8 @@ std::vector<Link> links_of(const Supernodes& last, const NodeGraph& graph, int b
   return links;
 }
 
-// For each node the supernode to which it moves up; -1 where it stays. The node with the most links first, again and again,
-// so that few move.
+// For each node the supernode to which it moves up; -1 where it stays. The node with the most links first,
+// again and again, so that few move.
 std::vector<int> moves(const std::vector<Link>& links, int size) {
   std::vector<std::vector<int>> of(size);
   for (int k = 0; k < static_cast<int>(links.size()); ++k)
@@ -83,7 +84,8 @@ std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, i
   const std::vector<Link> links = links_of(last, graph, border);
   if (links.empty()) return last.order;
   const std::vector<int> move = moves(links, graph.size());
-  const int end = last.size() - (border > 0 ? 1 : 0);  // what has no separator above it goes before the border
+  const int end =
+      last.size() - (border > 0 ? 1 : 0);  // what has no separator above it goes before the border
   std::vector<std::vector<int>> arrivals(last.size() + 1);
   for (const int node : last.order)
     if (move[node] >= 0) arrivals[std::min(move[node], end)].push_back(node);

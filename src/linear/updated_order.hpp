@@ -8,9 +8,9 @@
 
 namespace coapt {
 
-// Two branches of an elimination tree have no entry in common, so that an edge between them costs one of them all its rows up
-// to where they meet, a separator. One end of each such edge therefore goes up to there, just before the separator's
-// own columns; all others keep their places.
+// Two branches of an elimination tree have no entry in common, so that an edge between them costs one of them
+// all its rows up to where they meet, a separator. One end of each such edge therefore goes up to there, just
+// before the separator's own columns; all others keep their places.
 //
 // last: of the other graph. graph: the same nodes. border: as in supernodes_of(); it stays the last.
 std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, int border = 0);
@@ -19,8 +19,10 @@ std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, i
 // than the rest of an analysis.
 class KeptOrder {
  public:
-  // By the last order that was found anew, updated; anew where there is none of this many nodes or it fills more.
-  Supernodes supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order, int border = 0);
+  // By the last order that was found anew, updated; anew where there is none of this many nodes or it fills
+  // more.
+  Supernodes supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
+                        int border = 0);
 
   // Whether there was a pattern before: contacts come and go, and this one will not last.
   bool is_changing() const { return ordered_.size() > 0; }

@@ -30,8 +30,8 @@ NodeGraph joined(const NodeGraph& graph, const Pairs& pairs) {
   return result;
 }
 
-// A sheet that is folded over: nodes of one part touch those that lie on them, the first `moved` rows of them the ones
-// `slid` rows farther.
+// A sheet that is folded over: nodes of one part touch those that lie on them, the first `moved` rows of them
+// the ones `slid` rows farther.
 NodeGraph folded_sheet(int side, int slid, int moved) {
   Pairs pairs;
   const auto node = [&](int i, int j) { return i * side + j; };
@@ -48,7 +48,9 @@ NodeGraph folded_sheet(int side, int slid, int moved) {
   return joined(graph, pairs);
 }
 
-double fill(const NodeGraph& graph, const std::vector<int>& order) { return supernodes_of(graph, order).entries(); }
+double fill(const NodeGraph& graph, const std::vector<int>& order) {
+  return supernodes_of(graph, order).entries();
+}
 
 bool is_permutation(std::vector<int> order) {
   std::sort(order.begin(), order.end());
@@ -129,7 +131,8 @@ TEST(KeptOrder, OrdersAnewOnlyWhereAnUpdateFillsMore) {
   EXPECT_TRUE(kept.is_changing());
   EXPECT_EQ(calls, 1);
   ask(folded_sheet(60, 1, 15));
-  EXPECT_EQ(ask(graph).order, supernodes_of(graph, node_order(graph)).order) << "of the order found, not of its update";
+  EXPECT_EQ(ask(graph).order, supernodes_of(graph, node_order(graph)).order)
+      << "of the order found, not of its update";
   EXPECT_EQ(calls, 1);
   ask(folded_sheet(60, 25, 60));
   EXPECT_EQ(calls, 2);
