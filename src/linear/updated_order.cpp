@@ -102,7 +102,7 @@ std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, i
 
 Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
                                  int border) {
-  constexpr double kMostFill = 1.1;  // of an updated order, over that of the pattern it was made for
+  constexpr double kMostFill = 1.05;  // of an updated order, over that of the pattern it was made for
   if (ordered_.order.size() == static_cast<size_t>(graph.size())) {
     Supernodes nodes = supernodes_of(graph, updated_order(ordered_, graph, border), border);
     if (nodes.entries() <= kMostFill * ordered_.entries()) return nodes;

@@ -10,18 +10,6 @@
 namespace coapt {
 namespace {
 
-// A box, the box of the displacements of what is in it, and whether any of that is searched around.
-struct SweptBounds {
-  Bounds at, move;
-  bool is_searched = false;
-
-  void include(const SweptBounds& other) {
-    at.include(other.at);
-    move.include(other.move);
-    is_searched = is_searched || other.is_searched;
-  }
-};
-
 // Four numbers that are compared at once.
 using Four [[gnu::vector_size(16)]] = float;
 using Mask [[gnu::vector_size(16)]] = int;
@@ -47,6 +35,41 @@ struct NearBox {
 // What a search spends its time on.
 bool overlap(const NearBox& a, const NearBox& b) { return all_of((a.low <= b.high) & (b.low <= a.high)); }
 
+// A box, and the box of the displacements of what is in it over the whole way, whose fourth number is
+// positive where anything in it is searched around.
+struct SweptBox {
+  NearBox at, move;
+
+  void include(const SweptBox& other) {
+    at.include(other.at);
+    move.include(other.move);
+  }
+};
+
+bool is_searched(const SweptBox& box) { return box.move.high[3] > 0; }
+
+float least_of_three(const Four& a) { return std::min(std::min(a[0], a[1]), a[2]); }
+float greatest_of_three(const Four& a) { return std::max(std::max(a[0], a[1]), a[2]); }
+
+// Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, share of the way]:
+// along each axis the relative positions form an interval whose ends move linearly, and the times at which it
+// holds zero are an interval too. What moves alike, such as neighbours on the surface, is so told apart
+// however far it goes.
+bool may_meet(const SweptBox& a, const SweptBox& b, float share) {
+  constexpr float kAmple = 1 + 1e-5F;  // on a time: beyond round-off
+  constexpr Four kNever = {1e30F, 1e30F, 1e30F, 1e30F}, kZero = {};
+  if (!is_searched(a) && !is_searched(b)) return false;
+  const Four low = b.at.low - a.at.high, high = b.at.high - a.at.low;
+  const Four low_rate = b.move.low - a.move.high, high_rate = b.move.high - a.move.low;
+  const Four low_zero = -low / low_rate, high_zero = -high / high_rate, end = {share, share, share, share};
+  const Four from = low > 0    ? (low_rate < 0 ? low_zero : kNever)
+                    : high < 0 ? (high_rate > 0 ? high_zero : kNever)
+                               : kZero;
+  const Four low_end = (low <= 0) & (low_rate > 0) ? low_zero : end,
+             high_end = (high >= 0) & (high_rate < 0) ? high_zero : end;
+  return !(greatest_of_three(from) > kAmple * least_of_three(low_end < high_end ? low_end : high_end));
+}
+
 // Makes boxes around nodes.
 class NearBoxes {
  public:
@@ -66,6 +89,13 @@ class NearBoxes {
     const Four point = {at[0], at[1], at[2], 0}, half = {half_, half_, half_, moves ? 2.0f : -1.0f};
     return {point - half, point + half};
   }
+  // way: of the node.
+  SweptBox swept(int node, const Vec3& way, bool is_searched) const {
+    const Eigen::Vector3f by = (scale_ * way).cast<float>();
+    const Four move = {by[0], by[1], by[2], 0};
+    const Four half = kRounding * (move < 0 ? -move : move) + Four{0, 0, 0, is_searched ? 1.0F : -1.0F};
+    return {around(node, true), {move - half, move + half}};
+  }
 
  private:
   static constexpr float kRounding = 1e-6F;  // of the extent: of the coordinates and of the sums with them
@@ -75,36 +105,6 @@ class NearBoxes {
   double scale_ = 0;
   float half_ = 0;
 };
-
-// Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, most]: along each axis
-// the relative positions form an interval whose ends move linearly, and the times at which it holds zero are
-// an interval too. What moves alike, such as neighbours on the surface, is so told apart however far it goes.
-bool may_meet(const SweptBounds& a, const SweptBounds& b, double most, double slack) {
-  if (!a.is_searched && !b.is_searched) return false;
-  double from = 0, to = most;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = b.at.low[axis] - a.at.high[axis] - slack,
-                 high = b.at.high[axis] - a.at.low[axis] + slack;
-    const double low_rate = b.move.low[axis] - a.move.high[axis],
-                 high_rate = b.move.high[axis] - a.move.low[axis];
-    // low + s low_rate <= 0
-    if (low > 0) {
-      if (low_rate >= 0) return false;
-      from = std::max(from, -low / low_rate);
-    } else if (low_rate > 0) {
-      to = std::min(to, -low / low_rate);
-    }
-    // high + s high_rate >= 0
-    if (high < 0) {
-      if (high_rate <= 0) return false;
-      from = std::max(from, -high / high_rate);
-    } else if (high_rate < 0) {
-      to = std::min(to, -high / high_rate);
-    }
-    if (from > to * (1 + 1e-12)) return false;
-  }
-  return true;
-}
 
 template <class Bound>
 Bound joined(Bound a, const Bound& b) {
@@ -252,16 +252,18 @@ void ContactSurface::visit_near(const Points& x, double reach, const MovingPart&
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,
                                  const Visit& visit, const SearchOmissions& omitted) const {
-  const double slack = 1e-13 * x.cwiseAbs().maxCoeff();  // round-off of the bounds
-  visit_pairs<SweptBounds>(
+  const NearBoxes boxes(x, reach, around_);
+  const double whole = most;  // as it is now
+  visit_pairs<SweptBox>(
       [&](int node) {
-        return SweptBounds{
-            bounds_around(x.col(node), 0.5 * reach),
-            {d.col(node).array(), d.col(node).array()},
-            omitted.all_but_around == nullptr || (*omitted.all_but_around)[static_cast<size_t>(node)] != 0};
+        return boxes.swept(
+            node, whole * d.col(node),
+            omitted.all_but_around == nullptr || (*omitted.all_but_around)[static_cast<size_t>(node)] != 0);
       },
-      [&](const SweptBounds& a, const SweptBounds& b) { return may_meet(a, b, most, slack); }, visit,
-      omitted);
+      [&](const SweptBox& a, const SweptBox& b) {
+        return may_meet(a, b, whole > 0 ? static_cast<float>(most / whole) : 0);
+      },
+      visit, omitted);
 }
 
 }  // namespace coapt

@@ -148,11 +148,12 @@ struct CstIsotropic {
     return {w.energy, {s1, s2, 0}, {c11, c22, c12, shear}, regime};
   }
 
+  static FreeWidth free_width(const Law& law, double l1) { return found_width(law, l1, law.free_width(l1)); }
+
   // The width at which a strip stretched by l1 >= 1 is free: dw/dl2 is negative below and positive at l2 =
   // l1. Newton from the law's guess; where it leaves the bracket or gains little, as on the steep side of an
   // exponential, the geometric mean of the bracket.
-  static FreeWidth free_width(const Law& law, double l1) {
-    const FreeWidth guess = law.free_width(l1);
+  static FreeWidth found_width(const Law& law, double l1, const FreeWidth& guess) {
     if (guess.is_exact) return guess;
     double low = kThinnest, high = l1, l2 = std::clamp(guess.width, kThinnest, l1);
     constexpr int kMost = 200;      // steps towards the stress-free width
@@ -172,18 +173,25 @@ struct CstIsotropic {
     return {l2, true};
   }
 
+  static bool is_wrinkled(double l2, const FreeWidth& free) { return l2 < free.width * (1 - kRoundOff); }
+
   static Principal respond(const Rest& rest, const CstPrincipal& p) {
     const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
     if (rest.relaxes && l1 < 1 - kRoundOff) return {};
-    const StretchEnergy trial = rest.law.evaluate(l1, l2);
-    if (!rest.relaxes)
-      return full(trial, l1, l2,
-                  trial.w2 >= 0 ? MembraneRegime::Taut
-                  : l1 > 1      ? MembraneRegime::Wrinkled
-                                : MembraneRegime::Slack);
-    if (trial.w2 >= 0) return full(trial, l1, l2, MembraneRegime::Taut);
-    const FreeWidth free = free_width(rest.law, std::max(l1, 1.0));
-    if (l2 >= free.width * (1 - kRoundOff)) return full(trial, l1, l2, MembraneRegime::Taut);
+    // A law that knows the width at once tells wrinkles by it, and is not asked there for its energy at l2.
+    FreeWidth free;
+    if (rest.relaxes && l2 < 1) free = rest.law.free_width(std::max(l1, 1.0));
+    if (!free.is_exact || !is_wrinkled(l2, free)) {
+      const StretchEnergy trial = rest.law.evaluate(l1, l2);
+      if (!rest.relaxes)
+        return full(trial, l1, l2,
+                    trial.w2 >= 0 ? MembraneRegime::Taut
+                    : l1 > 1      ? MembraneRegime::Wrinkled
+                                  : MembraneRegime::Slack);
+      if (trial.w2 >= 0) return full(trial, l1, l2, MembraneRegime::Taut);
+      free = found_width(rest.law, std::max(l1, 1.0), free);
+      if (!is_wrinkled(l2, free)) return full(trial, l1, l2, MembraneRegime::Taut);
+    }
     if (l1 <= 1) return {};
     const StretchEnergy w = rest.law.evaluate(l1, free);
     Principal wrinkled{w.energy, {w.w1 / l1, 0, 0}, {}, MembraneRegime::Wrinkled};
