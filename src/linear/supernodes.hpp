@@ -25,7 +25,7 @@ struct Supernodes {
   int size() const { return static_cast<int>(parent.size()); }
   int columns(int s) const { return first[s + 1] - first[s]; }
   int rows_below(int s) const { return below[s + 1] - below[s]; }
-  double entries() const;  // of the factor, one for a node
+  double entries() const;  // of the factor, in blocks of 3x3
 };
 
 // order: any order of the nodes; that of the result differs by a postordering of the elimination tree, which

@@ -63,8 +63,9 @@ std::vector<int> moves(const std::vector<Link>& links, int size) {
   for (int node = 0; node < size; ++node)
     if (left[node] = static_cast<int>(of[node].size()); left[node] > 0) busiest.push({left[node], node});
   std::vector<char> is_cut(links.size(), 0);
-  for (; !busiest.empty(); busiest.pop()) {
+  while (!busiest.empty()) {
     const auto [count, node] = busiest.top();
+    busiest.pop();
     if (count != left[node]) continue;  // some of its links were cut since
     for (const int k : of[node]) {
       if (is_cut[k]) continue;
@@ -105,9 +106,15 @@ Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::function<std
   constexpr double kMostFill = 1.05;  // of an updated order, over that of the pattern it was made for
   if (ordered_.order.size() == static_cast<size_t>(graph.size())) {
     Supernodes nodes = supernodes_of(graph, updated_order(ordered_, graph, border), border);
-    if (nodes.entries() <= kMostFill * ordered_.entries()) return nodes;
+    if (nodes.entries() <= kMostFill * fill_) return nodes;
   }
-  return ordered_ = supernodes_of(graph, order(), border);
+  Supernodes nodes = supernodes_of(graph, order(), border);
+  fill_ = nodes.entries();
+  ordered_ = {};
+  ordered_.order = nodes.order;
+  ordered_.first = nodes.first;
+  ordered_.parent = nodes.parent;
+  return nodes;
 }
 
 }  // namespace coapt

@@ -8,29 +8,31 @@
 
 namespace coapt {
 
-// Two branches of an elimination tree have no entry in common, so that an edge between them costs one of them
-// all its rows up to where they meet, a separator. One end of each such edge therefore goes up to there, just
-// before the separator's own columns; all others keep their places.
+// An edge between two branches of the elimination tree fills one of them: its columns gain a row for every
+// node up to the separator where the branches meet. One end of each such edge therefore goes up to there,
+// just behind the separator's own columns; all others keep their places.
 //
-// last: of the other graph. graph: the same nodes. border: as in supernodes_of(); it stays the last.
+// last: supernodes of the graph that the order was made for. graph: the same nodes. border: as in
+// supernodes_of(); it stays the last.
 std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, int border = 0);
 
 // The order of one pattern after another. Most differ by a few pairs in contact, and an ordering takes longer
 // than the rest of an analysis.
 class KeptOrder {
  public:
-  // By the last order that was found anew, updated; anew where there is none of this many nodes or it fills
-  // more.
+  // The last order that was found anew, updated for this graph. Found anew where there is none of as many
+  // nodes, or where the updated one fills more. forget() first where the border has other nodes.
   Supernodes supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
                         int border = 0);
 
   // Whether there was a pattern before: contacts come and go, and this one will not last.
-  bool is_changing() const { return ordered_.size() > 0; }
+  bool is_changing() const { return fill_ > 0; }
 
-  void forget() { ordered_ = {}; }
+  void forget() { *this = {}; }
 
  private:
-  Supernodes ordered_;  // of the pattern that was ordered last
+  Supernodes ordered_;  // of the pattern that was ordered last, without its rows
+  double fill_ = 0;     // its entries
 };
 
 }  // namespace coapt

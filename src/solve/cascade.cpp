@@ -124,6 +124,14 @@ bool make_startable(Start& start, Model& model, bool fits_gradients = true) {
   return true;
 }
 
+// The same, also without fitting to the gradients, which on some meshes of slivers serves better.
+bool make_startable_somehow(Start& start, Model& model) {
+  const Start carried = start;
+  if (make_startable(start, model)) return true;
+  start = carried;
+  return make_startable(start, model, false);
+}
+
 // Whether a solver gets anywhere from this start. On slivers a shape that was carried over may bend and
 // stretch beyond measure: starts at up to 4e4 were seen to converge, those at 7e5 and 2e7 to stall.
 bool is_bearable(const Problem& problem) {
@@ -236,13 +244,22 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geome
     std::string failure;
     try {
       Model model = build(scene, coarsened(geometry, mesh, steps[k].kept));
-      const bool is_coarsest = start.x.size() == 0;
-      if (!is_coarsest && !make_startable(start, model))
-        throw InputError("the shape found on a coarser one passes through itself there");
-      const Problem problem = is_coarsest ? Problem{*model.objective, model.q0, model.motion, continuation}
-                                          : problem_near(start.x, model, continuation);
-      const Result result =
-          cascade.level(problem, model, continuation.damped_steps > 0 ? kDampedTolerance : kCoarseTolerance);
+      const double tolerance = continuation.damped_steps > 0 ? kDampedTolerance : kCoarseTolerance;
+      const auto solve_from_own_start = [&] {
+        model.objective->prescribe(model.X);
+        return cascade.level({*model.objective, model.q0, model.motion, continuation}, model, tolerance);
+      };
+      Result result;
+      if (start.x.size() == 0) {
+        result = solve_from_own_start();
+      } else if (make_startable_somehow(start, model)) {
+        result = cascade.level(problem_near(start.x, model, continuation), model, tolerance);
+      } else {
+        cascade.warn(
+            name +
+            "was solved from its own start: the shape found on a coarser one passes through itself there.");
+        result = solve_from_own_start();
+      }
       start.x = model.objective->positions(result.q);
       start.status = result.status;
       if (result.status != Status::Converged) failure = result.message;

@@ -1,12 +1,12 @@
 // The search for pairs of features that may meet.
 #include "energy/contact/contact_surface.hpp"
 
-#include "energy/contact/barrier_candidates.hpp"
 #include "support/meshes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <random>
 #include <set>
 #include <vector>
@@ -72,6 +72,50 @@ TEST(ContactSurface, FindsWhateverTouchesOnTheWay) {
     }
   EXPECT_GT(wanted, all / 10);
   EXPECT_LT(found, 2 * wanted) << "little that touches nothing";
+}
+
+// At the last moment, at the first one, or `reach` away: in any units, and far from the origin.
+TEST(ContactSurface, FindsWhatJustTouches) {
+  Triangles triangles(3, 2);
+  triangles << 0, 3, 1, 4, 2, 5;
+  for (const double size : {1e-6, 0.03, 1.0, 700.0})
+    for (const double offset : {0.0, 40.0})
+      for (const double height : {1e-3, 0.1, 1.0})
+        for (const Vec3& alike : {Vec3(0, 0, 0), Vec3(3, -1, 7)}) {
+          Points x(3, 6), d(3, 6);
+          x << 0, 1, 0, 0.2, 0.3, 0.25, 0, 0, 1, 0.2, 0.3, 0.25, 0, 0, 0, height, 2, 3;
+          d.colwise() = alike;
+          d(2, 3) -= height;
+          const Points at = size * (x.array() + offset).matrix();
+          const ContactSurface surface(at, triangles, 2, {});
+          const auto finds = [&](const Points& from, const Points& way, double reach, double most) {
+            bool found = false;
+            surface.visit_swept(from, way, reach, most, [&](const FeaturePair& pair) {
+              found = found || (pair.kind == PairKind::PointTriangle && pair.first == 3 && pair.second == 0);
+            });
+            return found;
+          };
+          EXPECT_TRUE(finds(at, size * d, 0, 1)) << size << " " << offset << " " << height;
+          EXPECT_TRUE(finds(at, 4 * size * d, 0, 0.25));
+          EXPECT_FALSE(finds(at, size * d, 0, 0.9));
+          EXPECT_TRUE(finds(at, size * d, 0.11 * size * height, 0.9)) << "within reach";
+          EXPECT_TRUE(finds(at + size * d, size * d, 0, 1)) << "at the first moment";
+        }
+}
+
+// Nothing is known of a way that is not finite.
+TEST(ContactSurface, FindsWhatMayGoAnywhere) {
+  Triangles triangles(3, 2);
+  triangles << 0, 3, 1, 4, 2, 5;
+  Points x(3, 6), d = Points::Zero(3, 6);
+  x << 0, 1, 0, 5, 6, 5, 0, 0, 1, 5, 5, 6, 0, 0, 0, 1, 2, 3;
+  const ContactSurface surface(x, triangles, 2, {});
+  for (const double way : {0.0, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    d(2, 3) = way;
+    int visits = 0;
+    surface.visit_swept(x, d, 0, 1, [&](const FeaturePair&) { ++visits; });
+    EXPECT_EQ(visits > 0, way != 0) << way;
+  }
 }
 
 TEST(ContactSurface, LooksAroundSomeNodesAlone) {

@@ -1,7 +1,7 @@
 // Reference pictures of the page: small ones in pictures/, compared by what they show and not by their bytes.
 // COAPT_UPDATE_GENERATED=1 in the environment writes them anew; look at them before they are committed.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -48,7 +48,7 @@ export async function reduced(browser, png) {
 
 // How far a picture is from another one on a grid of that width. mean: over pixels and colours, 0 to 255. ink: the
 // same relative to what there is to see, the mean distance of the first picture from the colour of its corner; so a
-// thin curve counts as much as a sheet that fills the picture.
+// thin curve counts as much as a sheet that fills the picture. isBlank: the first picture has one colour.
 export async function difference(browser, one, other, { width, height } = size) {
   const page = await browser.newPage();
   const result = await page.evaluate(async ([texts, width, height]) => {
@@ -68,22 +68,23 @@ export async function difference(browser, one, other, { width, height } = size) 
       apart += Math.abs(a[k] - b[k]);
       drawn += Math.abs(a[k] - a[corner + k % 4]);
     }
-    return { mean: apart / (0.75 * a.length), ink: apart / drawn };
+    return { mean: apart / (0.75 * a.length), ink: apart / drawn, isBlank: drawn === 0 };
   }, [[one.toString("base64"), other.toString("base64")], width, height]);
   await page.close();
   return result;
 }
 
-// The picture of `shot`, taken anew until `isRight` says so of its distance from the reference or a minute is over: on a
+// The picture of `shot`, taken anew until `isRight` says so of how it differs from the reference or a minute is over: on a
 // busy machine a screenshot may show what a canvas held before its last change.
 async function awaited(browser, name, shot, isRight) {
   const file = join(references, name + ".png"), end = Date.now() + 60000;
+  assert.ok(existsSync(file), "no reference " + file + "; COAPT_UPDATE_GENERATED=1 writes it");
   for (;;) {
     const small = await reduced(browser, await shot());
-    if (renews && !existsSync(file)) writeFileSync(file, small);
-    assert.ok(existsSync(file), "no reference " + file + "; COAPT_UPDATE_GENERATED=1 writes it");
     const { ink } = await difference(browser, readFileSync(file), small);
-    if (isRight(ink) || Date.now() > end) return { ink, small, told: (100 * ink).toFixed(1) + " %" };
+    const { isBlank } = await difference(browser, small, small);
+    if (isRight({ ink, isBlank }) || Date.now() > end) return { ink, isBlank, small, told: (100 * ink).toFixed(1) + " %" };
+    await new Promise(done => setTimeout(done, 200));
   }
 }
 
@@ -93,9 +94,9 @@ export async function looksLike(browser, name, shot, scratch) {
   if (renews) {
     mkdirSync(references, { recursive: true });
     await shot();  // the frame before may still be there
-    rmSync(join(references, name + ".png"), { force: true });
+    writeFileSync(join(references, name + ".png"), await reduced(browser, await shot()));
   }
-  const { ink, small, told } = await awaited(browser, name, shot, ink => ink <= allowed);
+  const { ink, small, told } = await awaited(browser, name, shot, ({ ink }) => ink <= allowed);
   console.log(`        ${name}: ${told} of the ink elsewhere`);
   if (ink <= allowed) return;
   const kept = join(scratch, name + ".png");
@@ -104,9 +105,10 @@ export async function looksLike(browser, name, shot, scratch) {
 }
 
 // Asserts that what `shot` takes of a page with one fault does not look like that reference: a comparison that passes
-// everything would be no test.
+// everything would be no test. Nor may it be blank, as what is not drawn yet is.
 export async function looksUnlike(browser, name, shot) {
-  const { ink, told } = await awaited(browser, name, shot, ink => ink > allowed);
-  console.log(`        ${name}: ${told} with a fault`);
-  assert.ok(ink > allowed, `${name}: a picture with a fault passes too: ${told}`);
+  const isFaulty = ({ ink, isBlank }) => ink > allowed && !isBlank;
+  const found = await awaited(browser, name, shot, isFaulty);
+  console.log(`        ${name}: ${found.told} with a fault`);
+  assert.ok(isFaulty(found), `${name}: a picture with a fault passes too: ${found.told}`);
 }

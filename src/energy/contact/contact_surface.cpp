@@ -46,11 +46,6 @@ struct SweptBox {
   }
 };
 
-bool is_searched(const SweptBox& box) { return box.move.high[3] > 0; }
-
-float least_of_three(const Four& a) { return std::min(std::min(a[0], a[1]), a[2]); }
-float greatest_of_three(const Four& a) { return std::max(std::max(a[0], a[1]), a[2]); }
-
 // Whether some point of b - a + s (move of b - move of a) can be zero for one s in [0, share of the way]:
 // along each axis the relative positions form an interval whose ends move linearly, and the times at which it
 // holds zero are an interval too. What moves alike, such as neighbours on the surface, is so told apart
@@ -58,16 +53,17 @@ float greatest_of_three(const Four& a) { return std::max(std::max(a[0], a[1]), a
 bool may_meet(const SweptBox& a, const SweptBox& b, float share) {
   constexpr float kAmple = 1 + 1e-5F;  // on a time: beyond round-off
   constexpr Four kNever = {1e30F, 1e30F, 1e30F, 1e30F}, kZero = {};
-  if (!is_searched(a) && !is_searched(b)) return false;
+  if (!(a.move.high[3] > 0) && !(b.move.high[3] > 0)) return false;
   const Four low = b.at.low - a.at.high, high = b.at.high - a.at.low;
   const Four low_rate = b.move.low - a.move.high, high_rate = b.move.high - a.move.low;
   const Four low_zero = -low / low_rate, high_zero = -high / high_rate, end = {share, share, share, share};
   const Four from = low > 0    ? (low_rate < 0 ? low_zero : kNever)
                     : high < 0 ? (high_rate > 0 ? high_zero : kNever)
                                : kZero;
-  const Four low_end = (low <= 0) & (low_rate > 0) ? low_zero : end,
-             high_end = (high >= 0) & (high_rate < 0) ? high_zero : end;
-  return !(greatest_of_three(from) > kAmple * least_of_three(low_end < high_end ? low_end : high_end));
+  const Four low_end = ((low <= 0) & (low_rate > 0)) ? low_zero : end,
+             high_end = ((high >= 0) & (high_rate < 0)) ? high_zero : end,
+             to = low_end < high_end ? low_end : high_end;
+  return !(std::max({from[0], from[1], from[2]}) > kAmple * std::min({to[0], to[1], to[2]}));
 }
 
 // Makes boxes around nodes.
@@ -89,12 +85,18 @@ class NearBoxes {
     const Four point = {at[0], at[1], at[2], 0}, half = {half_, half_, half_, moves ? 2.0f : -1.0f};
     return {point - half, point + half};
   }
-  // way: of the node.
+  // way: of the node. One that is not finite, or that single precision does not hold, may lead anywhere.
   SweptBox swept(int node, const Vec3& way, bool is_searched) const {
     const Eigen::Vector3f by = (scale_ * way).cast<float>();
-    const Four move = {by[0], by[1], by[2], 0};
-    const Four half = kRounding * (move < 0 ? -move : move) + Four{0, 0, 0, is_searched ? 1.0F : -1.0F};
-    return {around(node, true), {move - half, move + half}};
+    const float searched = is_searched ? 1.0F : -1.0F;
+    NearBox move{-NearBox::kFar, NearBox::kFar};
+    if (by.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < NearBox::kFar[0]) {
+      const Four step = {by[0], by[1], by[2], 0}, half = kRounding * (step < 0 ? -step : step);
+      move = {step - half, step + half};
+    }
+    move.low[3] = -searched;
+    move.high[3] = searched;
+    return {around(node, true), move};
   }
 
  private:
@@ -105,12 +107,6 @@ class NearBoxes {
   double scale_ = 0;
   float half_ = 0;
 };
-
-template <class Bound>
-Bound joined(Bound a, const Bound& b) {
-  a.include(b);
-  return a;
-}
 
 }  // namespace
 
@@ -176,9 +172,10 @@ ContactSurface::FeatureBounds<Bound> ContactSurface::feature_bounds(const BoundO
   hierarchy_.fit(of.triangles, of.tree);
   of.edges.reserve(edges_.size());
   if (with_edges)
-    for (const SurfaceEdge& edge : edges_)
-      of.edges.push_back(
-          joined(of.nodes[static_cast<size_t>(edge.a)], of.nodes[static_cast<size_t>(edge.b)]));
+    for (const SurfaceEdge& edge : edges_) {
+      of.edges.push_back(of.nodes[static_cast<size_t>(edge.a)]);
+      of.edges.back().include(of.nodes[static_cast<size_t>(edge.b)]);
+    }
   return of;
 }
 

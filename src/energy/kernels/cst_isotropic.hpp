@@ -173,15 +173,14 @@ struct CstIsotropic {
     return {l2, true};
   }
 
-  static bool is_wrinkled(double l2, const FreeWidth& free) { return l2 < free.width * (1 - kRoundOff); }
-
   static Principal respond(const Rest& rest, const CstPrincipal& p) {
     const double l1 = std::max(stretch(p.major), kThinnest), l2 = std::max(stretch(p.minor), kThinnest);
     if (rest.relaxes && l1 < 1 - kRoundOff) return {};
-    // A law that knows the width at once tells wrinkles by it, and is not asked there for its energy at l2.
-    FreeWidth free;
-    if (rest.relaxes && l2 < 1) free = rest.law.free_width(std::max(l1, 1.0));
-    if (!free.is_exact || !is_wrinkled(l2, free)) {
+    const auto is_wrinkled = [&](const FreeWidth& at) { return l2 < at.width * (1 - kRoundOff); };
+    // Where the law gives the free width exactly, wrinkles are told by it, without the energy at l2.
+    const double length = std::max(l1, 1.0);
+    FreeWidth free = rest.relaxes && l2 < 1 ? rest.law.free_width(length) : FreeWidth{};
+    if (!free.is_exact || !is_wrinkled(free)) {
       const StretchEnergy trial = rest.law.evaluate(l1, l2);
       if (!rest.relaxes)
         return full(trial, l1, l2,
@@ -189,8 +188,8 @@ struct CstIsotropic {
                     : l1 > 1      ? MembraneRegime::Wrinkled
                                   : MembraneRegime::Slack);
       if (trial.w2 >= 0) return full(trial, l1, l2, MembraneRegime::Taut);
-      free = found_width(rest.law, std::max(l1, 1.0), free);
-      if (!is_wrinkled(l2, free)) return full(trial, l1, l2, MembraneRegime::Taut);
+      free = l2 < 1 ? found_width(rest.law, length, free) : free_width(rest.law, length);
+      if (!is_wrinkled(free)) return full(trial, l1, l2, MembraneRegime::Taut);
     }
     if (l1 <= 1) return {};
     const StretchEnergy w = rest.law.evaluate(l1, free);
