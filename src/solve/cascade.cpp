@@ -107,7 +107,7 @@ void fit_to_mesh(Start& start, Model& model, bool fits_gradients) {
 // Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
 // their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
 // edge.
-bool make_startable(Start& start, Model& model, bool fits_gradients = true) {
+bool make_startable(Start& start, Model& model, bool fits_gradients) {
   fit_to_mesh(start, model, fits_gradients);
   Points& x = start.x;
   if (model.objective->step_limiting_term() == nullptr) return true;
@@ -124,14 +124,6 @@ bool make_startable(Start& start, Model& model, bool fits_gradients = true) {
   return true;
 }
 
-// The same, also without fitting to the gradients, which on some meshes of slivers serves better.
-bool make_startable_somehow(Start& start, Model& model) {
-  const Start carried = start;
-  if (make_startable(start, model)) return true;
-  start = carried;
-  return make_startable(start, model, false);
-}
-
 // Whether a solver gets anywhere from this start. On slivers a shape that was carried over may bend and
 // stretch beyond measure: starts at up to 4e4 were seen to converge, those at 7e5 and 2e7 to stall.
 bool is_bearable(const Problem& problem) {
@@ -145,11 +137,22 @@ bool is_bearable(const Problem& problem) {
 
 bool was_interrupted(Status status) { return status == Status::Cancelled || status == Status::TimeLimit; }
 
-// Makes the carried-over shape a start of the scene's own mesh. Why it is none; empty where it is one.
-std::string start_defect(Start& start, Model& model, bool fits_gradients) {
-  if (!make_startable(start, model, fits_gradients)) return "passes through itself";
-  if (was_interrupted(start.status) || is_bearable(problem_at(start.x, model))) return "";
-  return "is bent or stretched beyond measure";
+// Makes the carried-over shape a start; on some meshes of slivers one that is not fitted to the gradients
+// serves better. Why it is none; empty where it is one. How far it is bent is asked of the scene's own mesh
+// alone.
+std::string start_defect(Start& start, Model& model, bool is_own_mesh) {
+  const Start carried = start;
+  std::string defect;
+  for (const bool fits_gradients : {true, false}) {
+    start = carried;
+    defect = "";
+    if (!make_startable(start, model, fits_gradients))
+      defect = "passes through itself";
+    else if (is_own_mesh && !was_interrupted(start.status) && !is_bearable(problem_at(start.x, model)))
+      defect = "is bent or stretched beyond measure";
+    if (defect.empty()) break;
+  }
+  return defect;
 }
 
 // From the shape that a coarser mesh gave; the dampers of a damped path keep it to the equilibrium next to
@@ -252,12 +255,11 @@ std::optional<Start> coarse_start(const Scene& scene, const SceneGeometry& geome
       Result result;
       if (start.x.size() == 0) {
         result = solve_from_own_start();
-      } else if (make_startable_somehow(start, model)) {
+      } else if (const std::string defect = start_defect(start, model, false); defect.empty()) {
         result = cascade.level(problem_near(start.x, model, continuation), model, tolerance);
       } else {
-        cascade.warn(
-            name +
-            "was solved from its own start: the shape found on a coarser one passes through itself there.");
+        cascade.warn(name + "was solved from its own start: the shape found on a coarser one " + defect +
+                     " there.");
         result = solve_from_own_start();
       }
       start.x = model.objective->positions(result.q);
@@ -295,12 +297,7 @@ CascadeOutcome solve_cascade(const Scene& scene, const SceneGeometry& geometry, 
     start.reset();
   };
   if (start) {
-    const Start carried = *start;
-    std::string defect = start_defect(*start, model, true);
-    if (!defect.empty()) {  // on some meshes of slivers what is not fitted to the gradients serves better
-      *start = carried;
-      defect = start_defect(*start, model, false);
-    }
+    const std::string defect = start_defect(*start, model, true);
     if (!defect.empty()) give_up(defect);
   }
   if (start && was_interrupted(start->status)) {
