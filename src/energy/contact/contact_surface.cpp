@@ -20,25 +20,42 @@ bool all_of(const Mask& mask) {
   return (halves[0] & halves[1]) == ~std::uint64_t{0};
 }
 
-// A box in units of the scene's extent, from its lowest corner on, in single precision; the fourth numbers of
-// two boxes overlap where anything in either moves.
-struct NearBox {
+// Four intervals in single precision, in units of the scene's extent.
+struct Intervals {
   static constexpr Four kFar = {1e30F, 1e30F, 1e30F, 1e30F};
   Four low = kFar, high = -kFar;  // empty
 
-  void include(const NearBox& other) {
+  void include(const Intervals& other) {
     low = other.low < low ? other.low : low;
     high = other.high > high ? other.high : high;
   }
 };
 
+bool intersect(const Intervals& a, const Intervals& b) {
+  return all_of((a.low <= b.high) & (b.low <= a.high));
+}
+
+// An axis-aligned box, whose fourth intervals overlap where anything in either moves, cut off by the planes
+// across the four diagonals of a cube: a polytope of 14 faces (Klosowski et al. 1998). A box alone is wide
+// around what lies aslant, as most of a valve does.
+struct NearBox {
+  Intervals box, diagonals;
+
+  void include(const NearBox& other) {
+    box.include(other.box);
+    diagonals.include(other.diagonals);
+  }
+};
+
 // What a search spends its time on.
-bool overlap(const NearBox& a, const NearBox& b) { return all_of((a.low <= b.high) & (b.low <= a.high)); }
+bool overlap(const NearBox& a, const NearBox& b) {
+  return intersect(a.box, b.box) && intersect(a.diagonals, b.diagonals);
+}
 
 // A box, and the box of the displacements of what is in it over the whole way, whose fourth number is
 // positive where anything in it is searched around.
 struct SweptBox {
-  NearBox at, move;
+  Intervals at, move;
 
   void include(const SweptBox& other) {
     at.include(other.at);
@@ -80,26 +97,37 @@ class NearBoxes {
         std::isfinite(extent) ? (extent > 0 ? 1 / extent : 0) : kNaN;  // nothing is near what is not finite
     half_ = static_cast<float>(std::min(0.5 * reach * scale_, 2.0)) + kRounding;
   }
-  NearBox around(int node, bool moves) const {
-    const Eigen::Vector3f at = (scale_ * (x_.col(node) - origin_)).cast<float>();
-    const Four point = {at[0], at[1], at[2], 0}, half = {half_, half_, half_, moves ? 2.0f : -1.0f};
-    return {point - half, point + half};
+  NearBox near(int node, bool moves) const {
+    constexpr float kRoot3 = 1.7320509F;
+    const Four at = point(node), half = {kRoot3 * half_, kRoot3 * half_, kRoot3 * half_, kRoot3 * half_};
+    const Four along = {at[0] + at[1] + at[2], at[0] + at[1] - at[2], at[0] - at[1] + at[2],
+                        at[1] + at[2] - at[0]};
+    return {box(at, moves), {along - half, along + half}};
   }
   // way: of the node. One that is not finite, or that single precision does not hold, may lead anywhere.
   SweptBox swept(int node, const Vec3& way, bool is_searched) const {
     const Eigen::Vector3f by = (scale_ * way).cast<float>();
     const float searched = is_searched ? 1.0F : -1.0F;
-    NearBox move{-NearBox::kFar, NearBox::kFar};
-    if (by.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < NearBox::kFar[0]) {
+    Intervals move{-Intervals::kFar, Intervals::kFar};
+    if (by.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < Intervals::kFar[0]) {
       const Four step = {by[0], by[1], by[2], 0}, half = kRounding * (step < 0 ? -step : step);
       move = {step - half, step + half};
     }
     move.low[3] = -searched;
     move.high[3] = searched;
-    return {around(node, true), move};
+    return {box(point(node), true), move};
   }
 
  private:
+  Four point(int node) const {
+    const Eigen::Vector3f at = (scale_ * (x_.col(node) - origin_)).cast<float>();
+    return Four{at[0], at[1], at[2], 0};
+  }
+  Intervals box(const Four& at, bool moves) const {
+    const Four half = {half_, half_, half_, moves ? 2.0f : -1.0f};
+    return {at - half, at + half};
+  }
+
   static constexpr float kRounding = 1e-6F;  // of the extent: of the coordinates and of the sums with them
 
   const Points& x_;
@@ -219,13 +247,13 @@ void ContactSurface::visit_pairs(const BoundOfNode& bound_of_node, const IsNear&
 
 void ContactSurface::visit_near(const Points& x, double reach, const Visit& visit) const {
   const NearBoxes boxes(x, reach, around_);
-  visit_pairs<NearBox>([&](int node) { return boxes.around(node, true); }, overlap, visit, {});
+  visit_pairs<NearBox>([&](int node) { return boxes.near(node, true); }, overlap, visit, {});
 }
 
 void ContactSurface::visit_near(const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
                                 const std::function<void(int share, const FeaturePair& pair)>& visit) const {
   const NearBoxes boxes(x, reach, around_);
-  const auto box = [&](int node) { return boxes.around(node, nodes[static_cast<size_t>(node)] != 0); };
+  const auto box = [&](int node) { return boxes.near(node, nodes[static_cast<size_t>(node)] != 0); };
   const auto of = feature_bounds<NearBox>(box, true);
   std::vector<std::array<int, 2>> near;
   hierarchy_.for_each_pair(of.triangles, of.tree, overlap, [&near](int s, int t) { near.push_back({s, t}); });
@@ -244,7 +272,7 @@ void ContactSurface::visit_near(const Points& x, double reach, const NodeMask& n
 void ContactSurface::visit_near(const Points& x, double reach, const MovingPart& moving,
                                 const Visit& visit) const {
   const NearBoxes boxes(x, reach, around_);
-  visit_pairs<NearBox>([&](int node) { return boxes.around(node, moving.moves(node)); }, overlap, visit, {});
+  visit_pairs<NearBox>([&](int node) { return boxes.near(node, moving.moves(node)); }, overlap, visit, {});
 }
 
 void ContactSurface::visit_swept(const Points& x, const Points& d, double reach, const double& most,
