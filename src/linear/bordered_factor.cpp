@@ -14,7 +14,7 @@ void BorderedFactor::analyse(const SparseMatrix& lower, const std::vector<int>& 
     order.insert(order.end(), border.begin(), border.end());
     return order;
   };
-  if (border != border_) kept_.forget();
+  if (border != border_) kept_ = {};
   border_ = border;
   const auto count = static_cast<int>(border.size());
   factor_.analyse(graph, kept_.supernodes(graph, border_last, count), count);

@@ -2,14 +2,14 @@
 #pragma once
 
 #include "linear/multifrontal_factor.hpp"
-#include "linear/node_ordering.hpp"
+#include "linear/updated_order.hpp"
 
 #include <memory>
 
 namespace coapt {
 
 struct LastFactor {
-  LastOrder order;
+  KeptOrder order;
 
   // For its memory alone, which is 100 MB at 40,000 triangles: pages that come from the system are cleared
   // first. Null: in use, or there was none yet.

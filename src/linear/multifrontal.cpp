@@ -1,5 +1,6 @@
 #include "linear/factorisation.hpp"
 #include "linear/last_factor.hpp"
+#include "linear/node_ordering.hpp"
 #include "linear/updated_order.hpp"
 
 #include <memory>
@@ -24,10 +25,8 @@ class Multifrontal final : public Factorisation {
     if (!factor_) factor_ = std::make_unique<MultifrontalFactor>();
     const NodeGraph graph = node_graph(lower);
     factor_->use_threads(team());
-    factor_->analyse(graph, kept_.supernodes(graph, [&] {
-      if (kept_.is_changing()) return brief_order(graph);
-      return last() ? last()->order.of(graph) : node_order(graph);
-    }));
+    KeptOrder& kept = last() && !is_part(graph) ? last()->order : kept_;
+    factor_->analyse(graph, kept.supernodes(graph, [&graph] { return node_order(graph); }));
   }
 
   bool factorise(const SparseMatrix& lower) override { return factor_->factorise(lower.valuePtr()); }
@@ -51,8 +50,13 @@ class Multifrontal final : public Factorisation {
   }
 
  private:
+  // A part of the nodes that is brought into balance by itself does not take the place of all.
+  bool is_part(const NodeGraph& graph) const {
+    return 2 * static_cast<size_t>(graph.size()) < last()->order.found().order.size();
+  }
+
   std::unique_ptr<MultifrontalFactor> factor_;
-  KeptOrder kept_;
+  KeptOrder kept_;  // where it is not shared
   Vector work_;
 };
 

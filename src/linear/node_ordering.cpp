@@ -68,18 +68,4 @@ std::vector<int> node_order(const NodeGraph& graph) {
   return minimum_degree_order(graph);
 }
 
-std::vector<int> brief_order(const NodeGraph& graph) {
-  // Measured: with contact, in nodes (decision 023).
-  constexpr int kDissectedFrom = 2000;
-  return graph.size() < kDissectedFrom ? minimum_degree_order(graph) : node_order(graph);
-}
-
-const std::vector<int>& LastOrder::of(const NodeGraph& graph) {
-  if (graph.start == graph_.start && graph.row == graph_.row) return order_;
-  if (2 * graph.size() < graph_.size()) return of_part_ = node_order(graph);
-  order_ = node_order(graph);
-  graph_ = graph;
-  return order_;
-}
-
 }  // namespace coapt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace coapt {
 namespace {
@@ -208,6 +209,18 @@ void find_places(Supernodes& nodes) {
 }
 
 }  // namespace
+
+bool EliminationOrder::is_consistent() const {
+  const int count = static_cast<int>(order.size());
+  std::vector<char> is_there(order.size(), 0);
+  for (const int node : order)
+    if (node < 0 || node >= count || std::exchange(is_there[node], 1)) return false;
+  if (first.size() != parent.size() + 1 || first.front() != 0 || first.back() != count) return false;
+  for (int s = 0; s < size(); ++s)
+    if (first[s] >= first[s + 1] || (parent[s] != -1 && (parent[s] <= s || parent[s] >= size())))
+      return false;
+  return true;
+}
 
 double Supernodes::entries() const {
   double entries = 0;

@@ -10,20 +10,26 @@
 
 namespace coapt {
 
-// Columns and rows are nodes in the new order. Children come before their parents, and the subtree of a
-// supernode is a contiguous range that ends with it.
-struct Supernodes {
+// In which order nodes are eliminated, and the tree of that: columns are nodes in the new order. Children
+// come before their parents, and the subtree of a supernode is a contiguous range that ends with it.
+struct EliminationOrder {
   std::vector<int> order;     // order[k]: the node that comes k-th
   std::vector<int> first{0};  // supernode s has the columns first[s] ... first[s + 1] - 1
-  std::vector<int> below{
-      0};  // and, below these, the rows rows[below[s]] ... rows[below[s + 1] - 1], ascending
-  std::vector<int> rows;
-  std::vector<int> parent;  // supernode of the first row below, -1 where there is none
-  std::vector<int> place;   // of each row in the parent's front: its columns, then its rows below
-  std::vector<int> child_start{0}, child;  // the children of s: child[child_start[s]] ..., ascending
+  std::vector<int> parent;    // supernode of the first row below, -1 where there is none
 
   int size() const { return static_cast<int>(parent.size()); }
   int columns(int s) const { return first[s + 1] - first[s]; }
+
+  // Whether it can be one: every node once, every supernode with a column and before its parent.
+  bool is_consistent() const;
+};
+
+struct Supernodes : EliminationOrder {
+  // Below its columns supernode s has the rows rows[below[s]] ... rows[below[s + 1] - 1], ascending.
+  std::vector<int> below{0}, rows;
+  std::vector<int> place;  // of each row in the parent's front: its columns, then its rows below
+  std::vector<int> child_start{0}, child;  // the children of s: child[child_start[s]] ..., ascending
+
   int rows_below(int s) const { return below[s + 1] - below[s]; }
   double entries() const;  // of the factor, in blocks of 3x3
 };

@@ -11,7 +11,7 @@ namespace {
 // Which supernodes are above which others, and where branches meet.
 class EliminationTree {
  public:
-  explicit EliminationTree(const Supernodes& nodes) : nodes_(nodes), begin_(nodes.size()) {
+  explicit EliminationTree(const EliminationOrder& nodes) : nodes_(nodes), begin_(nodes.size()) {
     std::iota(begin_.begin(), begin_.end(), 0);
     for (int s = 0; s < nodes.size(); ++s)
       if (const int parent = nodes.parent[s]; parent >= 0)
@@ -26,7 +26,7 @@ class EliminationTree {
   }
 
  private:
-  const Supernodes& nodes_;
+  const EliminationOrder& nodes_;
   std::vector<int> begin_;  // of each supernode, the first one of its subtree, which ends with it
 };
 
@@ -36,7 +36,7 @@ struct Link {
   int meeting;  // supernode
 };
 
-std::vector<Link> links_of(const Supernodes& last, const NodeGraph& graph, int border) {
+std::vector<Link> links_of(const EliminationOrder& last, const NodeGraph& graph, int border) {
   const int inner = graph.size() - border;
   std::vector<int> supernode(graph.size(), -1);  // the border is above everything
   for (int s = 0; s < last.size(); ++s)
@@ -81,7 +81,7 @@ std::vector<int> moves(const std::vector<Link>& links, int size) {
 
 }  // namespace
 
-std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, int border) {
+std::vector<int> updated_order(const EliminationOrder& last, const NodeGraph& graph, int border) {
   const std::vector<Link> links = links_of(last, graph, border);
   if (links.empty()) return last.order;
   const std::vector<int> move = moves(links, graph.size());
@@ -104,16 +104,13 @@ std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, i
 Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
                                  int border) {
   constexpr double kMostFill = 1.05;  // of an updated order, over that of the pattern it was made for
-  if (ordered_.order.size() == static_cast<size_t>(graph.size())) {
-    Supernodes nodes = supernodes_of(graph, updated_order(ordered_, graph, border), border);
-    if (nodes.entries() <= kMostFill * fill_) return nodes;
+  if (found_.order.size() == static_cast<size_t>(graph.size())) {
+    Supernodes nodes = supernodes_of(graph, updated_order(found_, graph, border), border);
+    if (nodes.entries() <= kMostFill * entries_) return nodes;
   }
   Supernodes nodes = supernodes_of(graph, order(), border);
-  fill_ = nodes.entries();
-  ordered_ = {};
-  ordered_.order = nodes.order;
-  ordered_.first = nodes.first;
-  ordered_.parent = nodes.parent;
+  entries_ = nodes.entries();
+  found_ = nodes;
   return nodes;
 }
 

@@ -4,6 +4,7 @@
 #include "linear/supernodes.hpp"
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace coapt {
@@ -12,27 +13,29 @@ namespace coapt {
 // node up to the separator where the branches meet. One end of each such edge therefore goes up to there,
 // just behind the separator's own columns; all others keep their places.
 //
-// last: supernodes of the graph that the order was made for. graph: the same nodes. border: as in
+// last: of the graph that the order was made for. graph: the same nodes. border: as in
 // supernodes_of(); it stays the last.
-std::vector<int> updated_order(const Supernodes& last, const NodeGraph& graph, int border = 0);
+std::vector<int> updated_order(const EliminationOrder& last, const NodeGraph& graph, int border = 0);
 
 // The order of one pattern after another. Most differ by a few pairs in contact, and an ordering takes longer
 // than the rest of an analysis.
 class KeptOrder {
  public:
+  KeptOrder() = default;
+  KeptOrder(EliminationOrder found, double entries) : found_(std::move(found)), entries_(entries) {}
+
   // The last order that was found anew, updated for this graph. Found anew where there is none of as many
-  // nodes, or where the updated one fills more. forget() first where the border has other nodes.
+  // nodes, or where the updated one fills more. Another one first where the border has other nodes.
   Supernodes supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
                         int border = 0);
 
-  // Whether there was a pattern before: contacts come and go, and this one will not last.
-  bool is_changing() const { return fill_ > 0; }
-
-  void forget() { *this = {}; }
+  // The last order that was found anew, and the entries of its factor, in blocks of 3x3.
+  const EliminationOrder& found() const { return found_; }
+  double entries() const { return entries_; }
 
  private:
-  Supernodes ordered_;  // of the pattern that was ordered last, without its rows
-  double fill_ = 0;     // its entries
+  EliminationOrder found_;
+  double entries_ = 0;
 };
 
 }  // namespace coapt

@@ -1,6 +1,7 @@
 #include "optim/run_record.hpp"
 
 #include "core/number_text.hpp"
+#include "linear/last_factor.hpp"
 #include "optim/dynamic/dynamic.hpp"
 #include "optim/monitor.hpp"
 
@@ -26,8 +27,14 @@ class RecordedSolver final : public Solver {
  public:
   using Make = std::function<std::unique_ptr<Solver>()>;
 
-  RecordedSolver(Make make, bool has_velocities, RunRecorder& recorder)
-      : make_(std::move(make)), solver_(make_()), has_velocities_(has_velocities), recorder_(recorder) {}
+  // last_factor: that its factorisations share; may be null.
+  RecordedSolver(Make make, bool has_velocities, std::shared_ptr<LastFactor> last_factor,
+                 RunRecorder& recorder)
+      : make_(std::move(make)),
+        solver_(make_()),
+        has_velocities_(has_velocities),
+        last_factor_(std::move(last_factor)),
+        recorder_(recorder) {}
 
   std::string_view name() const override { return solver_->name(); }
   bool follows_path() const override { return solver_->follows_path(); }
@@ -66,7 +73,7 @@ class RecordedSolver final : public Solver {
     end.is_at_rest = solver_->is_at_rest();
     end.remark = own_remark();
     const Status status = end.status;
-    recorder_.end(std::move(end));
+    recorder_.end(std::move(end), last_factor_ ? last_factor_->order : KeptOrder());
     has_motion_ = false;
     return status;
   }
@@ -90,6 +97,8 @@ class RecordedSolver final : public Solver {
     q = objective.unknowns(end.x);
     if (const auto stop = visit(q, monitor)) return *stop;
     if (std::exchange(has_motion_, false)) solver_ = make_();  // the motion is over
+    if (const KeptOrder* order = last_factor_ ? recorder_.next_order() : nullptr)
+      last_factor_->order = *order;
     retraced_ = {Points(), end.status, end.is_at_rest, end.remark};
     return end.status;
   }
@@ -97,6 +106,7 @@ class RecordedSolver final : public Solver {
   Make make_;
   std::unique_ptr<Solver> solver_;
   bool has_velocities_, has_motion_ = false;
+  std::shared_ptr<LastFactor> last_factor_;
   RunRecorder& recorder_;
   std::optional<MinimisationEnd> retraced_;  // of the last minimisation, without its positions
 };
@@ -115,7 +125,8 @@ SolverTable RunRecorder::recorded(const SolverTable& table) {
   for (const auto& [name, make] : table)
     result[name] = [this, name = name, make = make](const SolverOptions& options) {
       return std::make_unique<RecordedSolver>([make, options] { return make(options); },
-                                              depends_on_velocities(name, options), *this);
+                                              depends_on_velocities(name, options), options.last_factor,
+                                              *this);
     };
   return result;
 }
@@ -151,8 +162,13 @@ const MinimisationEnd* RunRecorder::next_end(const Objective& objective) {
   }
   has_left_history_ = true;
   record_.ends.resize(next_);
+  record_.order = {};
   record_.iterate.resize(0);
   return nullptr;
+}
+
+const KeptOrder* RunRecorder::next_order() const {
+  return next_ == record_.ends.size() ? &record_.order : nullptr;
 }
 
 const Vector* RunRecorder::known_iterate(const Objective& objective) {
@@ -166,10 +182,11 @@ void RunRecorder::begin() {
   if (is_recording_) keep_in_time();
 }
 
-void RunRecorder::end(MinimisationEnd end) {
+void RunRecorder::end(MinimisationEnd end, KeptOrder order) {
   if (!std::exchange(is_recording_, false)) return;
   if (cuts_short(end.status)) return cut_short();
   record_.ends.push_back(std::move(end));
+  record_.order = std::move(order);
   record_.iterate.resize(0);
   ++next_;
   keep_in_time();

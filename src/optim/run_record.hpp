@@ -1,6 +1,7 @@
 // A run that can be taken up again: where each of its minimisations ended, and how to go the same way twice.
 #pragma once
 
+#include "linear/updated_order.hpp"
 #include "optim/solver.hpp"
 
 #include <functional>
@@ -19,6 +20,7 @@ struct MinimisationEnd {
 
 struct RunRecord {
   std::vector<MinimisationEnd> ends;  // in the order of the run
+  KeptOrder order;      // of elimination, as the last of these left it to what follows
   Vector iterate;       // unknowns of the last accepted iterate of the minimisation after these; may be empty
   long iterations = 0;  // accepted iterates over all sessions of the run
   double seconds = 0;   // wall time, likewise
@@ -26,7 +28,7 @@ struct RunRecord {
 
 // Writes the record of a run while it goes on, and leads a run along the record of an earlier session. As
 // everything between two minimisations (motion, loads, renewed potentials, stiffened contact, coarser meshes)
-// follows from where the ones before ended, a run that takes those ends from the record goes the same way
+// follows from where the ones before ended, and from the order of elimination that they left, a run that takes those ends from the record goes the same way
 // to the last bit without the work. The minimisation that was cut short goes on from its last iterate, with
 // the memory of the method lost: where there are several equilibria nearby, it may come to another one. A
 // record without that iterate, and a method whose outcome depends on velocities (xpbd, dynamic with
@@ -64,9 +66,10 @@ class RunRecorder {
   std::string earlier_work() const;  // in words; empty at the first session
   const MinimisationEnd* next_end(
       const Objective& objective);                          // of the minimisation that begins; may be null
+  const KeptOrder* next_order() const;  // that the minimisation so ended left; null before the last known
   const Vector* known_iterate(const Objective& objective);  // of it; may be null
   void begin();
-  void end(MinimisationEnd end);
+  void end(MinimisationEnd end, KeptOrder order);
   void close() { is_closed_ = true; }
   void cut_short();
   void keep_in_time();

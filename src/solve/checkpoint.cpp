@@ -7,13 +7,15 @@
 #include "formats/whole_file.hpp"
 #include "solve/resumable_record.hpp"
 
+#include <stdexcept>
+
 namespace coapt {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kBeginAnew = "solve without --resume to begin anew";
-constexpr Seal kSeal = {"coapt checkpoint", "checkpoint of coapt", "2",
+constexpr Seal kSeal = {"coapt checkpoint", "checkpoint of coapt", "3",
                         "; solve without --resume to begin anew"};
 
 void add_named_files(const Json& json, const fs::path& folder, Fingerprint& result) {
@@ -36,10 +38,30 @@ MinimisationEnd end_of(const Json& json) {
   return end;
 }
 
+Json order_json(const KeptOrder& order) {
+  const EliminationOrder& found = order.found();
+  return {{"nodes", found.order},
+          {"first_columns", found.first},
+          {"parents", found.parent},
+          {"entries", order.entries()}};
+}
+
+KeptOrder order_of(const Json& json) {
+  EliminationOrder found;
+  found.order = json.at("nodes").get<std::vector<int>>();
+  found.first = json.at("first_columns").get<std::vector<int>>();
+  found.parent = json.at("parents").get<std::vector<int>>();
+  if (!found.is_consistent()) throw std::domain_error("an order of elimination that is none");
+  const auto entries = json.at("entries").get<double>();
+  if (!(entries >= 0)) throw std::domain_error("a factor of " + std::to_string(entries) + " entries");
+  return {std::move(found), entries};
+}
+
 Json record_json(const RunRecord& record) {
   Json ends = Json::array();
   for (const MinimisationEnd& end : record.ends) ends.push_back(end_json(end));
   return {{"ends", ends},
+          {"order", order_json(record.order)},
           {"iterate", numbers_of(record.iterate)},
           {"iterations", record.iterations},
           {"seconds", record.seconds}};
@@ -48,6 +70,7 @@ Json record_json(const RunRecord& record) {
 RunRecord record_of(const Json& json) {
   RunRecord record;
   for (const Json& end : json.at("ends")) record.ends.push_back(end_of(end));
+  record.order = order_of(json.at("order"));
   record.iterate = vector_of(json.at("iterate"));
   record.iterations = count_of(json.at("iterations").get<double>());
   record.seconds = seconds_of(json.at("seconds").get<double>());

@@ -48,9 +48,11 @@ SolverFactory chosen_solver(const SolverTable& solvers, const std::string& name)
 
 // What the scene says of the method, and what the method may ask of the body that it moves.
 SolverOptions solver_options(const SolverSpec& spec, const std::vector<TermSpec>& terms,
-                             const FactorisationFactory& factorisation, const Model& model) {
+                             const FactorisationFactory& factorisation,
+                             const std::shared_ptr<LastFactor>& last_factor, const Model& model) {
   SolverOptions options{static_cast<const MethodOptions&>(spec)};
   options.factorisation = factorisation;
+  options.last_factor = last_factor;
   if (options.dynamic.collision_distance == 0 && model.mesh.triangle_count() > 0)
     options.dynamic.collision_distance =
         kCollisionDistance * mean_edge_length(model.mesh.vertices, model.mesh.triangles);
@@ -104,8 +106,8 @@ SolveSetup solve_setup(const Scene& scene, const SolverTable& solvers, const Run
   const FactorisationFactory factorisation =
       chosen_factorisation(options.factorisations, scene.solver, setup.last_factor);
   setup.make_solver = [make = chosen_solver(solvers, setup.solver), spec = scene.solver, terms = scene.terms,
-                       factorisation](const Model& model) {
-    return make(solver_options(spec, terms, factorisation, model));
+                       factorisation, last = setup.last_factor](const Model& model) {
+    return make(solver_options(spec, terms, factorisation, last, model));
   };
   setup.stop = stop_rule(scene, options);
   setup.continuation = chosen_continuation(scene, options);

@@ -205,6 +205,21 @@ class ResumeTest(CommandCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assert_same_bytes()
 
+    def test_resumed_exactly_it_eliminates_in_the_order_that_was_left(self):
+        scene = self.generate("mitral", "--triangles", 300, "--seed", 3)
+        self.solve(scene, *TIGHT)
+        whole = self.result()["time"]["wall_s"]
+        cut = 0
+        for share in [0.3, 0.45, 0.6, 0.75, 0.9]:
+            self.kept.unlink(missing_ok=True)
+            self.solve(scene, *TIGHT, "--max-seconds", share * whole, "--checkpoint", self.kept, name="cut")
+            if self.kept.exists():
+                cut += 1
+                run = self.solve(scene, *TIGHT, "--resume", self.kept, "--exactly", name="cut")
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                self.assert_same_bytes()
+        self.assertGreater(cut, 0)
+
     def test_what_velocities_decide_is_begun_anew(self):
         scene = self.generate("disc", "--triangles", 100)
         self.cut_by_time(scene, "--solver", "xpbd")

@@ -52,22 +52,24 @@ TEST(Multifrontal, MemoryGoesFromOneToTheNextAndLeavesTheBitsOfNew) {
   }
 }
 
-TEST(Multifrontal, APatternThatFollowsAnotherIsOrderedBriefly) {
-  const NodeGraph first = sheet_graph(40, 9), second = sheet_graph(40, 14);
-  if (minimum_degree_order(second) == node_order(second)) GTEST_SKIP() << "this build has no METIS";
-  EXPECT_EQ(brief_order(second), minimum_degree_order(second));
+TEST(Multifrontal, ThoseThatShareUpdateOneOrderWhichAPartLeavesAlone) {
+  const NodeGraph graph = sheet_graph(40, 9), part = sheet_graph(20, 9);
   const auto last = std::make_shared<LastFactor>();
-  last->order.of(first);
-  const auto order_after = [&](const std::vector<NodeGraph>& graphs) {
-    {
-      const auto factor = make_multifrontal_factorisation();
-      factor->share(last);
-      for (const NodeGraph& graph : graphs) factor->analyse(matrix_of(graph, 15));
-    }
-    return last->factor->nodes().order;
+  const auto order_of = [&](const NodeGraph& of, bool is_shared = true) {
+    const auto factor = make_multifrontal_factorisation();
+    if (is_shared) factor->share(last);
+    factor->analyse(matrix_of(of, 15));
+    return last->order.found().order;
   };
-  EXPECT_EQ(order_after({first, second}), supernodes_of(second, minimum_degree_order(second)).order);
-  EXPECT_EQ(order_after({second}), supernodes_of(second, node_order(second)).order);
+  EXPECT_TRUE(order_of(graph, false).empty());
+  const std::vector<int> found = order_of(graph);
+  EXPECT_EQ(found, supernodes_of(graph, node_order(graph)).order);
+  EXPECT_EQ(order_of(part), found);
+  NodeGraph touching = graph;  // two nodes that were apart
+  for (int& start : touching.start) start += &start > touching.start.data();
+  touching.row.insert(touching.row.begin() + graph.start[1], graph.size() - 1);
+  EXPECT_EQ(order_of(touching), found) << "updated, not found anew";
+  EXPECT_EQ(order_of(sheet_graph(41, 9)).size(), 1681u);
 }
 
 TEST(Multifrontal, ThreadsLeaveTheBitsOfOne) {

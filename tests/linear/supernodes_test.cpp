@@ -1,7 +1,6 @@
 // Orders of elimination, and the supernodes that a factor in such an order has.
 #include "linear/supernodes.hpp"
 
-#include "linear/last_factor.hpp"
 #include "linear/node_ordering.hpp"
 #include "linear/sheet_graph.hpp"
 
@@ -89,22 +88,27 @@ TEST(NodeOrdering, NestedDissectionOrMinimumDegreeIsAPermutationWithLittleFill) 
   EXPECT_LT(fill(minimum_degree_order(graph)), 0.2 * fill(natural));
 }
 
-TEST(NodeOrdering, TheLastOrderIsThatOfTheGraphWhicheverCameBefore) {
-  const NodeGraph graph = sheet_graph(40, 9), other = sheet_graph(41, 9);
-  LastOrder last;
-  EXPECT_EQ(last.of(graph), node_order(graph));
-  const int* kept = last.of(graph).data();
-  EXPECT_EQ(last.of(graph).data(), kept);
-  EXPECT_EQ(last.of(other), node_order(other));
-  EXPECT_EQ(last.of(graph), node_order(graph));
-}
-
-TEST(NodeOrdering, APartDoesNotTakeThePlaceOfTheWhole) {
-  const NodeGraph graph = sheet_graph(40, 9), part = sheet_graph(20, 9);
-  LastOrder last;
-  const int* kept = last.of(graph).data();
-  EXPECT_EQ(last.of(part), node_order(part));
-  EXPECT_EQ(last.of(graph).data(), kept);
+TEST(EliminationOrder, IsConsistentAsItWasFoundAndNoMoreWithANumberChanged) {
+  const EliminationOrder found = supernodes_of(sheet_graph(20, 9), minimum_degree_order(sheet_graph(20, 9)));
+  EXPECT_TRUE(EliminationOrder().is_consistent());
+  EXPECT_TRUE(found.is_consistent());
+  const auto with = [&](std::vector<int> EliminationOrder::*of, size_t at, int value) {
+    EliminationOrder changed = found;
+    (changed.*of)[at] = value;
+    return changed.is_consistent();
+  };
+  for (const int node : {-1, 400, found.order[7]}) EXPECT_FALSE(with(&EliminationOrder::order, 3, node)) << node;
+  for (const int column : {-1, 0, found.first[2], 400, 1 << 30})
+    EXPECT_FALSE(with(&EliminationOrder::first, 1, column)) << column;
+  EXPECT_FALSE(with(&EliminationOrder::first, 0, 1));
+  for (const int parent : {-2, 0, 1, found.size(), 1 << 30})
+    EXPECT_FALSE(with(&EliminationOrder::parent, 1, parent)) << parent;
+  EliminationOrder shorter = found;
+  shorter.parent.pop_back();
+  EXPECT_FALSE(shorter.is_consistent());
+  shorter = found;
+  shorter.order.pop_back();
+  EXPECT_FALSE(shorter.is_consistent());
 }
 
 }  // namespace

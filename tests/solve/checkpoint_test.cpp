@@ -17,6 +17,7 @@ RunRecord some_record() {
   RunRecord record;
   record.ends.push_back({Points::Random(3, 7), Status::Stalled, false, "after 3 steps"});
   record.ends.push_back({Points::Random(3, 4), Status::Converged, true, ""});
+  record.order = KeptOrder({{2, 0, 1}, {0, 2, 3}, {1, -1}}, 7);
   record.iterate = Vector::Random(9);
   record.iterations = 12;
   record.seconds = 3.25;
@@ -57,6 +58,10 @@ TEST_F(Checkpoint, GivesBackTheRecordToTheLastBit) {
     EXPECT_EQ(back.ends[k].is_at_rest, record.ends[k].is_at_rest);
     EXPECT_EQ(back.ends[k].remark, record.ends[k].remark);
   }
+  EXPECT_EQ(back.order.found().order, record.order.found().order);
+  EXPECT_EQ(back.order.found().first, record.order.found().first);
+  EXPECT_EQ(back.order.found().parent, record.order.found().parent);
+  EXPECT_EQ(back.order.entries(), 7);
   EXPECT_EQ(back.iterate, record.iterate);
   EXPECT_EQ(back.iterations, 12);
   EXPECT_EQ(back.seconds, 3.25);
@@ -75,8 +80,8 @@ TEST_F(Checkpoint, RefusesOneThatIsDamagedOrCutOffAnywhere) {
   EXPECT_NE(refusal(folder_, whole + "x").find("damaged or cut off"), std::string::npos);
   EXPECT_NE(refusal(folder_, "{}").find("is no checkpoint"), std::string::npos);
   std::string other = whole;
-  other.replace(other.find(" 2 "), 3, " 3 ");
-  EXPECT_NE(refusal(folder_, other).find("of format 3"), std::string::npos);
+  other.replace(other.find(" 3 "), 3, " 2 ");
+  EXPECT_NE(refusal(folder_, other).find("of format 2"), std::string::npos);
   EXPECT_THROW(read_checkpoint(folder_.path() / "none", kOwn), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path(), kOwn, RunRecord()), InputError);
   EXPECT_THROW(write_checkpoint(folder_.path() / "no" / "file", kOwn, RunRecord()), InputError);
@@ -87,7 +92,7 @@ TEST_F(Checkpoint, RefusesWhatNoRunLeavesThoughItsChecksumIsGood) {
   const std::string whole = read(file_);
   const Json good = Json::from_cbor(whole.substr(whole.find('\n') + 1));
   const auto resealed = [](const std::string& body) {
-    return "coapt checkpoint 2 " + fingerprint(body) + "\n" + body;
+    return "coapt checkpoint 3 " + fingerprint(body) + "\n" + body;
   };
   const auto refusal_with = [&](const std::string& key, const Json& value) {
     Json json = good;
@@ -98,6 +103,12 @@ TEST_F(Checkpoint, RefusesWhatNoRunLeavesThoughItsChecksumIsGood) {
   EXPECT_EQ(refusal_with("iterations", 13), "");
   for (const Json& value : {Json(1e300), Json(-1), Json(12.5), Json(1LL << 40), Json("12")})
     EXPECT_NE(refusal_with("iterations", value).find("--resume"), std::string::npos) << value;
+  const auto order = [](std::vector<int> nodes, const Json& entries) {
+    return Json{{"nodes", nodes}, {"first_columns", {0, 2}}, {"parents", {-1}}, {"entries", entries}};
+  };
+  EXPECT_EQ(refusal_with("order", order({1, 0}, 3)), "");
+  for (const Json& value : {order({1, 1}, 3), order({1, 0}, -3), order({1, 0}, kNaN), Json("none")})
+    EXPECT_NE(refusal_with("order", value).find("--resume"), std::string::npos) << value;
   EXPECT_EQ(refusal_with("seconds", 0.5), "");
   for (const Json& value : {Json(-0.5), Json(kNaN), Json(kInfinity)})
     EXPECT_NE(refusal_with("seconds", value).find("--resume"), std::string::npos) << value;
