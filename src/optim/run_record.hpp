@@ -20,7 +20,7 @@ struct MinimisationEnd {
 
 struct RunRecord {
   std::vector<MinimisationEnd> ends;  // in the order of the run
-  KeptOrder order;      // of elimination, as the last of these left it to what follows
+  KeptOrder order;                    // of elimination, as the last of these left it to what follows
   Vector iterate;       // unknowns of the last accepted iterate of the minimisation after these; may be empty
   long iterations = 0;  // accepted iterates over all sessions of the run
   double seconds = 0;   // wall time, likewise
@@ -28,12 +28,13 @@ struct RunRecord {
 
 // Writes the record of a run while it goes on, and leads a run along the record of an earlier session. As
 // everything between two minimisations (motion, loads, renewed potentials, stiffened contact, coarser meshes)
-// follows from where the ones before ended, and from the order of elimination that they left, a run that takes those ends from the record goes the same way
-// to the last bit without the work. The minimisation that was cut short goes on from its last iterate, with
-// the memory of the method lost: where there are several equilibria nearby, it may come to another one. A
-// record without that iterate, and a method whose outcome depends on velocities (xpbd, dynamic with
-// collisions), begin it anew and end where they would have. The minimisations of a recorded run follow each
-// other: it may hold several solves, in an order that is always the same, but none side by side.
+// follows from where the ones before ended, and from the order of elimination that they left, a run that
+// takes those ends from the record goes the same way to the last bit without the work. The minimisation that
+// was cut short goes on from its last iterate, with the memory of the method lost: where there are several
+// equilibria nearby, it may come to another one. A record without that iterate, and a method whose outcome
+// depends on velocities (xpbd, dynamic with collisions), begin it anew and end where they would have. The
+// minimisations of a recorded run follow each other: it may hold several solves, in an order that is always
+// the same, but none side by side.
 class RunRecorder {
  public:
   using Keep = std::function<void(const RunRecord&)>;
@@ -65,7 +66,7 @@ class RunRecorder {
 
   std::string earlier_work() const;  // in words; empty at the first session
   const MinimisationEnd* next_end(
-      const Objective& objective);                          // of the minimisation that begins; may be null
+      const Objective& objective);      // of the minimisation that begins; may be null
   const KeptOrder* next_order() const;  // that the minimisation so ended left; null before the last known
   const Vector* known_iterate(const Objective& objective);  // of it; may be null
   void begin();

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <random>
@@ -116,6 +117,32 @@ TEST(ContactSurface, FindsWhatMayGoAnywhere) {
     surface.visit_swept(x, d, 0, 1, [&](const FeaturePair&) { ++visits; });
     EXPECT_EQ(visits > 0, way != 0) << way;
   }
+}
+
+// Two sheets, the second an obstacle or not, which cross on the way.
+TEST(ContactSurface, FindsObstaclesOnTheWayButNoneAmongThemselves) {
+  const TriangleMesh sheet = grid_mesh(3, 3);
+  const int n = sheet.vertex_count(), count = sheet.triangle_count();
+  Points x(3, 2 * n), d = Points::Zero(3, 2 * n);
+  x << sheet.vertices, sheet.vertices.colwise() + Vec3(0.1, 0.05, 0.5);
+  d.leftCols(n).row(2).setConstant(1);
+  d.col(2 * n - 1) = Vec3(-2, -2, 0);  // through its own sheet, as no obstacle does
+  Triangles triangles(3, 2 * count);
+  triangles << sheet.triangles, sheet.triangles.array() + n;
+  const auto visited = [&](int membrane_count) {
+    std::array<int, 3> of{};  // by the number of nodes in the first sheet: none, some, all
+    ContactSurface(x, triangles, membrane_count, {}).visit_swept(x, d, 0, 1, [&](const FeaturePair& pair) {
+      const auto first = std::count_if(pair.nodes.begin(), pair.nodes.end(), [n](int k) { return k < n; });
+      ++of[first == 0 ? 0 : first == 4 ? 2 : 1];
+    });
+    return of;
+  };
+  const auto membranes = visited(2 * count), obstacle = visited(count);
+  EXPECT_GT(membranes[0], 0);
+  EXPECT_EQ(obstacle[0], 0);
+  EXPECT_GT(obstacle[1], 9);
+  EXPECT_EQ(obstacle[1], membranes[1]);
+  EXPECT_EQ(obstacle[2], membranes[2]);
 }
 
 TEST(ContactSurface, LooksAroundSomeNodesAlone) {

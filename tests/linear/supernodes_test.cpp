@@ -97,7 +97,8 @@ TEST(EliminationOrder, IsConsistentAsItWasFoundAndNoMoreWithANumberChanged) {
     (changed.*of)[at] = value;
     return changed.is_consistent();
   };
-  for (const int node : {-1, 400, found.order[7]}) EXPECT_FALSE(with(&EliminationOrder::order, 3, node)) << node;
+  for (const int node : {-1, 400, found.order[7]})
+    EXPECT_FALSE(with(&EliminationOrder::order, 3, node)) << node;
   for (const int column : {-1, 0, found.first[2], 400, 1 << 30})
     EXPECT_FALSE(with(&EliminationOrder::first, 1, column)) << column;
   EXPECT_FALSE(with(&EliminationOrder::first, 0, 1));

@@ -56,9 +56,9 @@ class ContactSurface {
 
   static constexpr int kShares = 64;  // of a search, at most, which threads take
 
-  // The pairs with one of the nodes whose boxes come within `reach` of each other at x, each once, in shares,
-  // 0 <= share < kShares. Threads call visit side by side, those of one share one after the other: it may
-  // write what belongs to that share alone.
+  // The pairs with one of the nodes that are nearer than `reach` at x, and some that are not (see NearBox),
+  // each once, in shares, 0 <= share < kShares. Threads call visit side by side, those of one share one after
+  // the other: it may write what belongs to that share alone.
   void visit_near(const Points& x, double reach, const NodeMask& nodes, ThreadTeam& team,
                   const std::function<void(int share, const FeaturePair& pair)>& visit) const;
 

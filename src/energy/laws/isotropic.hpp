@@ -278,24 +278,28 @@ struct InvariantLaw {
     constexpr int kMost = 200;          // steps towards the change of volume
     constexpr double kMostLogit = 700;  // beyond it exp() overflows
 
-    const auto share = [](double u) { return 1 / (1 + std::exp(-u)); };  // s
-    const auto root_of = [&](double u) { return u < 0 ? 1 + width * share(u) : end - width * share(-u); };
-    double low = -kMostLogit, high = kMostLogit, u = 0, root = root_of(u);
+    double low = -kMostLogit, high = kMostLogit, u = 0, share = 0.5, left = 0.5;  // s and 1 - s
+    double root = 1 + 0.5 * width;
     for (int k = 0; k < kMost; ++k) {
       const Volume v = at(root);
-      const LogSlope slope = invariant.log_slope(v.invariant);
+      const LogSlope slope = std::isfinite(v.psi.second)
+                                 ? LogSlope{std::log(v.psi.first), v.psi.second / v.psi.first}
+                                 : invariant.log_slope(v.invariant);
       const double square = root * root, j = cube(root), from_end = end * (end + root) + square,
                    from_one = 1 + root + square;
       const double balance =
           slope.log - u +
           std::log(4 * thin2 / (3 * bulk) * (least_distortion + j) * from_end / (square * j * from_one));
       (balance > 0 ? low : high) = u;
-      const double by_u = width * share(u) * share(-u);  // dr/du
+      const double by_u = width * share * left;  // dr/du
       const double by_root = slope.growth * v.di * 3 * square + 3 * square / (least_distortion + j) +
                              (end + 2 * root) / from_end - 5 / root - (1 + 2 * root) / from_one;
       u -= balance / (by_root * by_u - 1);
       if (!(u >= low && u <= high)) u = 0.5 * (low + high);
-      const double last = std::exchange(root, root_of(u));
+      const double odds = std::exp(-u);
+      share = 1 / (1 + odds);
+      left = odds / (1 + odds);
+      const double last = std::exchange(root, u < 0 ? 1 + width * share : end - width * left);
       if (std::abs(root - last) <= kLastStep * root) break;
     }
     return root;
