@@ -37,7 +37,7 @@ class Factorisation {
   void use_threads(std::shared_ptr<ThreadTeam> team) { team_ = std::move(team); }
   const std::shared_ptr<ThreadTeam>& team() const { return team_; }
 
-  // What those that share it leave to each other: the order of the last pattern, and memory. They must work
+  // What those that share it leave to each other: the order that was found last, and memory. They must work
   // one after the other. Before analyse().
   void share(std::shared_ptr<LastFactor> last) { last_ = std::move(last); }
 

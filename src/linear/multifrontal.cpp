@@ -50,7 +50,8 @@ class Multifrontal final : public Factorisation {
   }
 
  private:
-  // A part of the nodes that is brought into balance by itself does not take the place of all.
+  // A part of the nodes that is brought into balance by itself does not take the place of all. Where it has
+  // half of them or more, both are small, and found anew in a moment.
   bool is_part(const NodeGraph& graph) const {
     return 2 * static_cast<size_t>(graph.size()) < last()->order.found().order.size();
   }

@@ -20,7 +20,8 @@ struct EliminationOrder {
   int size() const { return static_cast<int>(parent.size()); }
   int columns(int s) const { return first[s + 1] - first[s]; }
 
-  // Whether it can be one: every node once, every supernode with a column and before its parent.
+  // Whether an update can begin with it: every node once, every supernode with a column and before its
+  // parent. Subtrees that are not contiguous only make it fill more.
   bool is_consistent() const;
 };
 

@@ -110,7 +110,7 @@ Supernodes KeptOrder::supernodes(const NodeGraph& graph, const std::function<std
   }
   Supernodes nodes = supernodes_of(graph, order(), border);
   entries_ = nodes.entries();
-  found_ = nodes;
+  found_ = nodes;  // without its rows
   return nodes;
 }
 

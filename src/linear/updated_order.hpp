@@ -25,7 +25,7 @@ class KeptOrder {
   KeptOrder(EliminationOrder found, double entries) : found_(std::move(found)), entries_(entries) {}
 
   // The last order that was found anew, updated for this graph. Found anew where there is none of as many
-  // nodes, or where the updated one fills more. Another one first where the border has other nodes.
+  // nodes, or where the updated one fills more. Where the border has other nodes, begin with a new KeptOrder.
   Supernodes supernodes(const NodeGraph& graph, const std::function<std::vector<int>()>& order,
                         int border = 0);
 

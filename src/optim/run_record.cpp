@@ -55,8 +55,10 @@ class RecordedSolver final : public Solver {
 
   Status minimize(Objective& objective, Vector& q, Monitor& monitor) override {
     retraced_.reset();
+    const bool had_left = recorder_.has_left_history();
     if (const MinimisationEnd* end = recorder_.next_end(objective))
       return retrace(*end, objective, q, monitor);
+    if (last_factor_ && recorder_.has_left_history() != had_left) last_factor_->order = {};  // as recorded
     if (const Vector* iterate = has_velocities_ ? nullptr : recorder_.known_iterate(objective)) {
       if (const auto stop = visit(q, monitor)) return *stop;
       q = *iterate;

@@ -186,7 +186,7 @@ struct MethodOptions {
 // And what the build and the body give them.
 struct SolverOptions : MethodOptions {
   FactorisationFactory factorisation = make_multifrontal_factorisation;  // newton, lbfgs
-  std::shared_ptr<LastFactor> last_factor = {};                          // what these share; null: nothing
+  std::shared_ptr<LastFactor> last_factor = {};  // that all made by `factorisation` share; null: none
   std::function<TriangleMesh()> surface =
       {};                               // at rest, over all nodes; asked for by collisions of `dynamic`
   std::function<Vector()> masses = {};  // lumped, of each node [t]; asked for by methods that move them

@@ -23,6 +23,8 @@ constexpr double kDampedTolerance =
     1e-6;  // of coarse meshes along a damped path, as little decides where it leads
 constexpr double kMostResidual = 1e5;  // of a start
 constexpr double kGapPerEdge = 0.1;    // left between facets that are pushed apart, of the mean edge
+constexpr double kFarthest = 1;        // mean edges that a node is pushed at most
+constexpr double kFarthestJudged = 2;  // where the residual of the start is judged as well
 
 // One step from a mesh of the cascade to the next coarser one.
 struct Step {
@@ -105,9 +107,9 @@ void fit_to_mesh(Start& start, Model& model, bool fits_gradients) {
 }
 
 // Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
-// their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than a mean
-// edge.
-bool make_startable(Start& start, Model& model, bool fits_gradients) {
+// their mesh is finer, are pushed apart. False where that does not help, or moves a node farther than that.
+// farthest: in mean edges.
+bool make_startable(Start& start, Model& model, bool fits_gradients, double farthest) {
   fit_to_mesh(start, model, fits_gradients);
   Points& x = start.x;
   if (model.objective->step_limiting_term() == nullptr) return true;
@@ -119,7 +121,7 @@ bool make_startable(Start& start, Model& model, bool fits_gradients) {
   options.gap = kGapPerEdge * edge;
   for (const auto& node : model.objective->fixed().colwise()) options.is_held.push_back(node.any());
   Separation separation = separate(x, facets, options);
-  if (!separation.pairs_left.empty() || separation.largest_displacement > edge) return false;
+  if (!separation.pairs_left.empty() || separation.largest_displacement > farthest * edge) return false;
   x = std::move(separation.x);
   return true;
 }
@@ -146,7 +148,7 @@ std::string start_defect(Start& start, Model& model, bool is_own_mesh) {
   for (const bool fits_gradients : {true, false}) {
     start = carried;
     defect = "";
-    if (!make_startable(start, model, fits_gradients))
+    if (!make_startable(start, model, fits_gradients, is_own_mesh ? kFarthestJudged : kFarthest))
       defect = "passes through itself";
     else if (is_own_mesh && !was_interrupted(start.status) && !is_bearable(problem_at(start.x, model)))
       defect = "is bent or stretched beyond measure";

@@ -46,15 +46,20 @@ Json order_json(const KeptOrder& order) {
           {"entries", order.entries()}};
 }
 
+// At least `least`.
+std::vector<int> counts_of(const Json& json, int least) {
+  std::vector<int> counts;
+  for (const Json& value : json) counts.push_back(count_of(value.get<double>() - least) + least);
+  return counts;
+}
+
 KeptOrder order_of(const Json& json) {
-  EliminationOrder found;
-  found.order = json.at("nodes").get<std::vector<int>>();
-  found.first = json.at("first_columns").get<std::vector<int>>();
-  found.parent = json.at("parents").get<std::vector<int>>();
-  if (!found.is_consistent()) throw std::domain_error("an order of elimination that is none");
-  const auto entries = json.at("entries").get<double>();
-  if (!(entries >= 0)) throw std::domain_error("a factor of " + std::to_string(entries) + " entries");
-  return {std::move(found), entries};
+  const EliminationOrder found{counts_of(json.at("nodes"), 0), counts_of(json.at("first_columns"), 0),
+                               counts_of(json.at("parents"), -1)};
+  const auto nodes = static_cast<double>(found.order.size()), entries = json.at("entries").get<double>();
+  if (!found.is_consistent() || !(entries >= 0 && entries <= nodes * nodes))
+    throw std::domain_error("an order of elimination that is none");
+  return {found, entries};
 }
 
 Json record_json(const RunRecord& record) {

@@ -124,7 +124,7 @@ namespace {
 Result solved(const Problem& problem, const Model& model, const SolveSetup& setup) {
   if (setup.phase) setup.phase({.tolerance = setup.stop.tolerance});
   Result result = solve(*setup.make_solver(model), problem, setup.stop, setup.observer);
-  setup.last_factor->factor.reset();  // measuring takes as much memory
+  *setup.last_factor = {};  // measuring takes as much memory, and the next solve begins as the first
   return result;
 }
 
@@ -140,7 +140,7 @@ CascadeOutcome solve_scene(const Scene& scene, const SceneGeometry& geometry, Mo
   }
   outcome = solve_cascade(scene, geometry, model, setup.make_solver, setup.stop, setup.continuation,
                           setup.observer, setup.stability, setup.phase);
-  setup.last_factor->factor.reset();
+  *setup.last_factor = {};
   return outcome;
 }
 

@@ -17,7 +17,7 @@ struct SolveSetup {
   StopRule stop;
   Continuation continuation;
   FactorisationFactory factorisation;          // of the scene
-  std::shared_ptr<LastFactor> last_factor;     // that its factorisations share; no memory after a solve
+  std::shared_ptr<LastFactor> last_factor;     // that its factorisations share; empty after a solve
   StabilityOptions stability;                  // the same, which tells `phase` of the certificate
   Observer observer;                           // may be empty
   std::function<void(const RunPhase&)> phase;  // likewise

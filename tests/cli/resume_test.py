@@ -210,7 +210,7 @@ class ResumeTest(CommandCase):
         self.solve(scene, *TIGHT)
         whole = self.result()["time"]["wall_s"]
         cut = 0
-        for share in [0.3, 0.45, 0.6, 0.75, 0.9]:
+        for share in [0.9, 0.75, 0.6, 0.45, 0.3, 0.1, 0.03]:  # a busy machine measures times that it then needs no more
             self.kept.unlink(missing_ok=True)
             self.solve(scene, *TIGHT, "--max-seconds", share * whole, "--checkpoint", self.kept, name="cut")
             if self.kept.exists():
@@ -218,6 +218,8 @@ class ResumeTest(CommandCase):
                 run = self.solve(scene, *TIGHT, "--resume", self.kept, "--exactly", name="cut")
                 self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
                 self.assert_same_bytes()
+            if cut == 4:
+                break
         self.assertGreater(cut, 0)
 
     def test_what_velocities_decide_is_begun_anew(self):

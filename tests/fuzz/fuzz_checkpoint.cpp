@@ -21,6 +21,8 @@ const RunIdentity& run_identity() {
 void judge(const RunRecord& record) {
   for (const MinimisationEnd& end : record.ends) require(end.x.allFinite(), "positions of a run are finite");
   require(record.iterate.allFinite(), "the last iterate is finite");
+  require(record.order.found().is_consistent(), "an order of elimination is one");
+  require(std::isfinite(record.order.entries()), "a factor has a number of entries");
   require(record.iterations >= 0, "iterates are counted");
   require(std::isfinite(record.seconds) && record.seconds >= 0, "a run took a time");
 }
@@ -36,8 +38,9 @@ void judge(const ChordTuningRecord& record) {
   require(std::isfinite(tuning.seconds) && tuning.seconds >= 0, "a tuning took a time");
 }
 
+// kind: and format.
 std::string sealed(const std::string& kind, std::string_view body) {
-  return kind + " 2 " + fingerprint(body) + "\n" + std::string(body);
+  return kind + " " + fingerprint(body) + "\n" + std::string(body);
 }
 
 }  // namespace
@@ -50,9 +53,9 @@ void run_target(std::string_view bytes) {
   };
   const std::vector<std::function<void()>> readers = {
       [&] { run(scratch.write("checkpoint", bytes)); },
-      [&] { run(scratch.write("checkpoint", sealed("coapt checkpoint", bytes))); },
+      [&] { run(scratch.write("checkpoint", sealed("coapt checkpoint 3", bytes))); },
       [&] { tuning(scratch.write("checkpoint", bytes)); },
-      [&] { tuning(scratch.write("checkpoint", sealed("coapt tuning", bytes))); },
+      [&] { tuning(scratch.write("checkpoint", sealed("coapt tuning 2", bytes))); },
       [&] {
         StudyPoint point;
         point.key = "key";

@@ -30,13 +30,10 @@ TEST(NearBoxes, RuleOutNothingThatIsNearAndMuchThatABoxDoesNot) {
         x.rightCols(2) += 0.3 * (x.leftCols(2) - x.rightCols(2));
         x = size * (x.array() + offset).matrix();
         const double distance = segment_distance(x.col(0), x.col(1), x.col(2), x.col(3));
-        for (const double share : {0.5, 0.999, 1.0, 1.001}) {
-          const double reach = distance / share;
-          const auto [a, b] = edge_boxes(x, reach);
-          if (share <= 1) {
-            EXPECT_TRUE(overlap(a, b)) << size << " " << offset << " " << share;
-            ++near;
-          }
+        for (const double share : {0.5, 0.999, 1.0}) {
+          const auto [a, b] = edge_boxes(x, distance / share);
+          EXPECT_TRUE(overlap(a, b)) << size << " " << offset << " " << share;
+          ++near;
         }
         const auto [a, b] = edge_boxes(x, 0.3 * distance);
         ++apart;
@@ -45,6 +42,27 @@ TEST(NearBoxes, RuleOutNothingThatIsNearAndMuchThatABoxDoesNot) {
       }
   EXPECT_EQ(near, 3 * apart);
   EXPECT_GT(apart_by_both, 1.3 * apart_by_boxes);
+}
+
+// Nodes apart along an axis or a diagonal, where one interval alone decides, in scenes far larger than that.
+TEST(NearBoxes, DecideAlongTheirOwnDirections) {
+  for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1), Vec3(1, 1, -1),
+                          Vec3(1, -1, 1), Vec3(-1, 1, 1)})
+    for (const double extent : {1.0, 30.0, 1e4})
+      for (const double offset : {0.0, 0.37, 500.0})
+        for (const double sign : {1.0, -1.0}) {
+          Points x(3, 3);
+          x.col(0) = Vec3::Constant(offset) + 0.3 * extent * Vec3(0.9, 0.5, 0.7);
+          x.col(1) = x.col(0) + sign * way.normalized();
+          x.col(2) = Vec3::Constant(offset + extent);
+          const auto meet = [&](double reach) {
+            const NearBoxes boxes(x, reach, std::vector<std::vector<int>>(3, {0}));
+            return overlap(boxes.near(0, true), boxes.near(1, true));
+          };
+          EXPECT_TRUE(meet(1 + 1e-9)) << way.transpose() << " " << extent << " " << offset;
+          EXPECT_FALSE(meet(0.99 - 1e-5 * extent));
+          EXPECT_TRUE(meet(10 * extent)) << "beyond all";
+        }
 }
 
 TEST(NearBoxes, OverlapWhereNothingMovesInNeither) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 namespace coapt {
+
 ContactSurface::ContactSurface(const Points& rest, Triangles triangles, int membrane_count,
                                std::vector<std::array<int, 2>> excluded)
     : rest_(rest),

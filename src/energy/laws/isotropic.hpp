@@ -282,7 +282,7 @@ struct InvariantLaw {
     double root = 1 + 0.5 * width;
     for (int k = 0; k < kMost; ++k) {
       const Volume v = at(root);
-      const LogSlope slope = std::isfinite(v.psi.second)
+      const LogSlope slope = std::isfinite(v.psi.first) && std::isfinite(v.psi.second)
                                  ? LogSlope{std::log(v.psi.first), v.psi.second / v.psi.first}
                                  : invariant.log_slope(v.invariant);
       const double square = root * root, j = cube(root), from_end = end * (end + root) + square,

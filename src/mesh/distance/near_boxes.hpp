@@ -95,7 +95,7 @@ class NearBoxes {
     half_ = static_cast<float>(std::min(0.5 * reach * scale_, 2.0)) + kRounding;
   }
   NearBox near(int node, bool moves) const {
-    constexpr float kRoot3 = 1.7320509F;
+    constexpr float kRoot3 = 1.7320509F;  // of 3, rounded up: |(1, 1, 1) d| <= root |d|
     const Four at = point(node), half = {kRoot3 * half_, kRoot3 * half_, kRoot3 * half_, kRoot3 * half_};
     const Four along = {at[0] + at[1] + at[2], at[0] + at[1] - at[2], at[0] - at[1] + at[2],
                         at[1] + at[2] - at[0]};
