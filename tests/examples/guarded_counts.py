@@ -4,12 +4,15 @@
     guarded_counts.py COAPT [--data FOLDER] [--write]
 
 --write measures them and writes the table: today's counts and a tenth more. Valves that FOLDER (the shared data) lacks
-are skipped with a message.
+are skipped with a message. Where the last digits decide on the counts (SCATTERED), they are medians of several runs whose
+pressures differ by parts in 1e12.
 """
 import argparse
 import csv
 import math
 import pathlib
+import re
+import statistics
 import sys
 import tempfile
 
@@ -24,9 +27,28 @@ SHARED = ["bhv-trileaflet/valve_coarse.json", "bhv-trileaflet/valve_fine.json", 
 SHAPES = ["disc 4000", "airbag 2500", "mitral 630", "mitral 2500"]
 VALVES = SHARED + SHAPES + [f"rough {kind} {seed}" for seed in (1, 2, 4, 5, 6) for kind in ("mitral", "tricuspid")]
 
+# By 20 runs that differ in such digits its gradients scatter from 134 to 211 (docs/decisions/023-multifrontal.md).
+SCATTERED = {"trivalve11-healthy/valve.json": [0, 1e-12, -1e-12, 3e-12, -3e-12]}
+
+
+def scale_pressures(folder: pathlib.Path, factor: float) -> None:
+    """Of the loads of the scene in the folder, which has comments and is no plain JSON."""
+    file = folder / "scene.json"
+    text, count = re.subn(r'("type": "load_pressure", "value": ")(\S+)',
+                          lambda match: match[1] + repr(float(match[2]) * factor), file.read_text())
+    if count == 0:
+        raise SystemExit(f"{file}: no load_pressure with a value behind its type")
+    file.write_text(text)
+
 
 def counts(coapt: str, valve: str, data: pathlib.Path) -> tuple[int, int, int] | None:
     """Iterations, factorisations and gradients to the end; None where the valve is not there."""
+    runs = [counts_of_run(coapt, valve, data, 1 + change) for change in SCATTERED.get(valve, [0])]
+    return None if None in runs else tuple(round(statistics.median(count)) for count in zip(*runs))
+
+
+def counts_of_run(coapt: str, valve: str, data: pathlib.Path, pressures: float) -> tuple[int, int, int] | None:
+    """The same of one run with all pressures times a factor."""
     with tempfile.TemporaryDirectory() as folder:
         if valve in SHARED:
             if not (data / valve).exists():
@@ -38,6 +60,8 @@ def counts(coapt: str, valve: str, data: pathlib.Path) -> tuple[int, int, int] |
         else:
             _, kind, seed = valve.split()
             run(coapt, "generate", kind, "--rough", seed, "--triangles", "900", "-o", folder)
+        if pressures != 1:
+            scale_pressures(pathlib.Path(folder), pressures)
         result = solved(coapt, pathlib.Path(folder), 600)
     if not result["converged"]:
         raise SystemExit(f"{valve}: {result['status']} at residual {result['residual']:.1e}")
