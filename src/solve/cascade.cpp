@@ -107,8 +107,8 @@ void fit_to_mesh(Start& start, Model& model, bool fits_gradients) {
 }
 
 // Makes x a start for a barrier: facets that pass through each other, as curved sheets in contact do once
-// their mesh is finer, are pushed apart. False where that does not help, or moves a node farther than that.
-// farthest: in mean edges.
+// their mesh is finer, are pushed apart. False where that does not help, or moves a node by more than
+// `farthest` mean edges.
 bool make_startable(Start& start, Model& model, bool fits_gradients, double farthest) {
   fit_to_mesh(start, model, fits_gradients);
   Points& x = start.x;
