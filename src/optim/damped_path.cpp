@@ -16,13 +16,16 @@ constexpr double kStepTolerance = 1e-4;  // residual of a step, dampers included
 constexpr double kAtRest = 1e-4;         // residual without dampers at which they go
 constexpr double kStableAtRest = 1e-3;   // the same on a finer mesh, where the shape is stable without them
 constexpr double kFollows = 1e-3;        // drag of the dampers on a shape that all but follows its loads
-constexpr int kGrowth = 2;         // of the number of the loads' equal shares in one step, after such a step
-constexpr int kMostShares = 8;     // in one step
-constexpr double kNearEnd = 10;    // damping of a path that begins near its end, over that of others
-constexpr double kMostFall = 0.5;  // of the damping, from one step to the next at the full problem
-constexpr double kStableFall = 0.1;  // the same where the shape is stable without dampers
-constexpr double kHold = 1e-4;  // of the damping: holds free nodes where a step is asked for its stability
-constexpr double kLate = 0.5;   // of the loads: from there on unstable steps are counted
+constexpr int kFirstShares = 3;          // of the loads' equal shares in the first step
+constexpr int kFirstOf = 6;              // and no more than all of them over this
+constexpr int kGrowth = 2;               // of their number in one step, after a step to a stable shape
+constexpr int kMostShares = 12;          // in one step
+constexpr double kNearEnd = 10;          // damping of a path that begins near its end, over that of others
+constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
+constexpr double kStableFall = 0.01;     // the same where the shape is stable without dampers
+constexpr double kHold =
+    1e-4;  // of the first damping: holds free nodes where a step is asked for its stability
+constexpr double kLate = 0.5;          // of the loads: from there on unstable steps are counted
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere
 constexpr int kMostInStep =
@@ -42,6 +45,7 @@ class DampedPath {
       damping_ *= kNearEnd;
       moved_ = 1;
     }
+    hold_ = kHold * damping_;
     do take_step();
     while (!has_ended() && !is_at_rest());
     objective.scale(1, 1);
@@ -122,7 +126,7 @@ class DampedPath {
     Objective& objective = problem_.objective;
     Vector g;
     SparseMatrix hessian;
-    objective.damp(Vector::Constant(result_.q.size(), kHold * damping_), result_.q);
+    objective.damp(Vector::Constant(result_.q.size(), hold_), result_.q);
     const double energy = monitor_.hessian(result_.q, g, hessian, Projection::None);
     objective.damp({}, {});
     is_stable_ = false;
@@ -137,13 +141,19 @@ class DampedPath {
       result_.unstable_steps = std::max(result_.unstable_steps, 0) + (is_stable_ ? 0 : 1);
   }
 
-  // One share of the loads a step as long as the shape moves through what is unstable; more after a step
-  // whose shape is stable or all but rests under its loads, so that the dampers hardly pull. What decides is
-  // the shape, not how a method came to it, so that all take the same steps.
+  // One share of the loads a step as long as the shape moves through what is unstable; more in the first, as
+  // an open valve is stable, and after a step whose shape is stable or all but rests under its
+  // loads, so that the dampers hardly pull. What decides is the shape, not how a method came to it, so that
+  // all take the same steps.
+  int next_shares() const {
+    if (taken_shares_ == 0) return std::clamp(problem_.continuation.damped_steps / kFirstOf, 1, kFirstShares);
+    const bool is_easy = is_stable_ || drag_ < kFollows;
+    return std::clamp(is_easy ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares);
+  }
+
   void raise_load() {
-    const int left = is_loaded() ? 0 : problem_.continuation.damped_steps - taken_shares_;
-    const bool is_easy = taken_shares_ > 0 && (is_stable_ || drag_ < kFollows);
-    shares_ = std::min(std::clamp(is_easy ? kGrowth * shares_ : shares_ / kGrowth, 1, kMostShares), left);
+    if (is_loaded()) return;
+    shares_ = std::min(next_shares(), problem_.continuation.damped_steps - taken_shares_);
     taken_shares_ += shares_;
   }
 
@@ -166,7 +176,7 @@ class DampedPath {
   Monitor& monitor_;
   Result& result_;
   Outcome outcome_;
-  double damping_ = 0;                 // of each unknown [force/length]
+  double damping_ = 0, hold_ = 0;      // of each unknown [force/length]; where stability is asked for
   int taken_shares_ = 0, shares_ = 1;  // of the loads: so far; in the last step
   double drag_ = 0;                    // of the dampers in the last step, relative as a residual is
   double moved_ = 0;                   // of the prescribed motion

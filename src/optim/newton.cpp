@@ -37,12 +37,11 @@ constexpr double kBetter = 0.9;  // of the least residual so far
 constexpr int kConjugate = 15;
 constexpr double kCurved = 0.1, kFlat = 0.2;
 
-// Parts of the nodes in balance at the end of a step: how many one after the other, iterations of each, the
-// share of the force elsewhere to which each is solved, and how far its nodes may go, as a share of the
-// scene's extent. On 36 valves (docs/decisions/011) half that reach lost a little, a tenth all of the gain.
+// Parts in balance at the end of a step: how many one after the other, iterations of each (which cost no more
+// than kPartWork of the whole), to which share of the force elsewhere it is solved, and how far nodes may go,
+// over the scene's extent: half of it lost a little (docs/decisions/011), a tenth all of the gain.
 constexpr int kParts = 4, kPartIterations = 15;
-constexpr double kPartTolerance = 0.3;
-constexpr double kPartReach = 0.0125;
+constexpr double kPartWork = 2, kPartTolerance = 0.3, kPartReach = 0.0125;
 
 // Share of the residual that a step towards a double root leaves: a quarter where it is the only one.
 constexpr double kLeastLeft = 0.2, kMostLeft = 0.6;
@@ -94,6 +93,7 @@ class Newton {
         is_found = options_.globalisation == Globalisation::LineSearch ? search() : try_whole_step();
         if (is_found) break;
         if (monitor_.is_out_of_time()) return Status::TimeLimit;
+        if (is_part_) return Status::LineSearchFailed;  // most often its nodes may go no farther
         if (shift_ > kMostShiftOverUnit * unit_ || !hessian_.raise(monitor_, shift_))
           return Status::LineSearchFailed;
       }
@@ -224,8 +224,7 @@ class Newton {
   // Projected elements are too stiff wherever contact or bending took part in a negative eigenvalue: the
   // energy falls by more than they promise. Conjugate gradients on the exact Hessian with the projected one
   // as preconditioner take that back, up to a direction of next to no or negative curvature, which is
-  // followed as far as the projected one says (after Steihaug 1983). Every iterate descends. On the way from
-  // -g.
+  // followed as far as the projected one says (after Steihaug 1983). Every iterate descends.
   void use_exact_curvature() {
     left_ = -at_.g;
     conjugate_ = symmetric_;
@@ -272,18 +271,18 @@ class Newton {
   }
 
   // Where a step misses its promise, often a few ends and junctions of chords and pairs in contact bear
-  // nearly all of the force: they are brought into balance by themselves, all others held, before the step is
-  // measured (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Returns whether the energy
-  // at `to` then keeps enough of what was promised.
+  // nearly all of the force: before the step is measured they are brought into balance, all others held
+  // (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Each goes about as far and what is
+  // missed falls with the square of the way left, so that one tells whether those to come can be enough.
   bool balance_worst_parts(LinePoint& to) {
     better_ = to;
-    for (int k = 0; k < kParts; ++k) {
-      if (!balance_worst_part(better_)) return false;
-      if (at_.energy - better_.energy < kFewKept * at_.promised(std::min(better_.step, 1.0))) continue;
-      std::swap(to, better_);
-      return true;
+    const double wanted = at_.energy - kFewKept * at_.promised(std::min(to.step, 1.0));
+    for (int left = kParts - 1; better_.energy > wanted; --left) {
+      const double way = left / (left + 1.0), enough = wanted + way * way * (better_.energy - wanted);
+      if (!balance_worst_part(better_) || !(better_.energy <= enough)) return false;
     }
-    return false;
+    std::swap(to, better_);
+    return true;
   }
 
   // Returns false where there is no such part, or the point cannot be evaluated any more.
@@ -293,7 +292,8 @@ class Newton {
     const auto part = objective_.part(at.q, worst_.blocks, kPartReach * objective_.extent(at.q));
     if (!part) return false;
     const double elsewhere = worst_.outside / objective_.reference_force(at.q);
-    const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), kPartIterations};
+    const auto most = static_cast<int>(std::min<double>(kPartIterations, kPartWork / worst_.share()));
+    const StopRule stop{std::max(0.5 * monitor_.tolerance(), kPartTolerance * elsewhere), most};
     const Observer nobody;
     Monitor monitor(*part, stop, nobody);
     Vector q = part->unknowns();

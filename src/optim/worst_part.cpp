@@ -7,8 +7,8 @@ namespace {
 
 constexpr double kShare = 0.1;      // of the greatest force
 constexpr int kMost = 60;           // nodes that bear more
-constexpr double kFewNodes = 100;   // nodes of a part, whatever their share of all
-constexpr double kMostOfAll = 0.4;  // share of the nodes that a part of more may have
+constexpr double kFewNodes = 75;    // nodes of a part, whatever their share of all
+constexpr double kMostOfAll = 0.3;  // share of the nodes that a part of more may have
 
 }  // namespace
 

@@ -16,6 +16,9 @@ struct WorstPart {
   // nothing.
   bool find(const Vector& g, const SparseMatrix& lower);
 
+  // Of all nodes, of what was found.
+  double share() const { return static_cast<double>(blocks.size()) / static_cast<double>(force_.size()); }
+
   std::vector<int> blocks;  // of unknowns, ascending
   double outside = 0;       // greatest nodal force elsewhere [force]
 

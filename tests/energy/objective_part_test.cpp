@@ -103,6 +103,7 @@ TEST(WorstPart, IsWhatBearsTheForceAndItsNeighbours) {
   ASSERT_TRUE(worst.find(g, chain(20)));
   EXPECT_EQ(worst.blocks, (std::vector<int>{4, 5, 6, 7}));
   EXPECT_EQ(worst.outside, 0.5);
+  EXPECT_EQ(worst.share(), 0.2);
 }
 
 TEST(WorstPart, IsNoneWhereAllIsOutOfBalanceOrNothing) {
@@ -118,8 +119,9 @@ TEST(WorstPart, IsNoneWhereItIsAGreatShareOfAll) {
     return g;
   };
   EXPECT_FALSE(WorstPart(120).find(every_third(120), chain(120)));
-  WorstPart worst(400);
-  ASSERT_TRUE(worst.find(every_third(400), chain(400)));
+  EXPECT_FALSE(WorstPart(380).find(every_third(380), chain(380)));
+  WorstPart worst(420);
+  ASSERT_TRUE(worst.find(every_third(420), chain(420)));
   EXPECT_EQ(worst.blocks.size(), 120u);
 }
 

@@ -58,8 +58,9 @@ TEST(DampedPath, LeadsToOneShapeByEveryMethodAndInEveryFrame) {
   const DampedValve valve;
   const Equilibrium given = valve.solve({}, "newton");
   ASSERT_EQ(given.result.status, Status::Converged) << given.result.message;
-  EXPECT_GT(given.result.damped_steps, steps_to_the_loads(given.result) + 1)
-      << "it goes on at the full problem until it is at rest";
+  const int at_rest = given.result.damped_steps - steps_to_the_loads(given.result);
+  EXPECT_LE(at_rest, 1) << "its shape is stable, so that a hundredth of the dampers is left";
+  EXPECT_GT(at_rest, 0) << "it goes on at the full problem until it is at rest";
   const std::vector<int> held = valve.scene.held_nodes(given.x);
   ASSERT_GT(held.size(), 100u);
   const Frame renumbered = renumbered_frame(static_cast<int>(valve.scene.X.cols()));
@@ -78,10 +79,10 @@ TEST(DampedPath, LeadsToOneShapeByEveryMethodAndInEveryFrame) {
 TEST(DampedPath, TakesLongerStepsWhereTheShapeIsStable) {
   const Equilibrium found = DampedValve().solve({}, "newton");
   ASSERT_EQ(found.result.status, Status::Converged) << found.result.message;
-  EXPECT_LT(steps_to_the_loads(found.result), kSteps / 2);
+  EXPECT_LT(steps_to_the_loads(found.result), kSteps / 4);
   double before = 0;
   for (const Iteration& iterate : found.result.trace) {
-    EXPECT_LE(iterate.path - before, 8.0 / kSteps + 1e-12) << iterate.iteration;
+    EXPECT_LE(iterate.path - before, 12.0 / kSteps + 1e-12) << iterate.iteration;
     before = iterate.path;
   }
 }
@@ -119,13 +120,13 @@ TEST(DampedPath, KeepsFacetsApartAtEveryIterate) {
 TEST(DampedPath, SaysWhereItWasCutShort) {
   const DampedValve valve;
   Method method = valve.method();
-  method.max_iterations = 12;
+  method.max_iterations = 8;
   const Equilibrium found = find_equilibrium(valve.scene.X, valve.scene.fixed, valve.scene.terms(), method);
   EXPECT_EQ(found.result.status, Status::IterationLimit);
   EXPECT_NE(found.result.message.find("of the damped path"), std::string::npos) << found.result.message;
   EXPECT_TRUE(found.x.allFinite());
   const std::vector<Iteration>& trace = found.result.trace;
-  EXPECT_EQ(trace.front().path, 1.0 / kSteps);
+  EXPECT_EQ(trace.front().path, 3.0 / kSteps);
   EXPECT_TRUE(std::is_sorted(trace.begin(), trace.end(),
                              [](const Iteration& a, const Iteration& b) { return a.path < b.path; }));
   EXPECT_LT(trace.back().path, 1);
@@ -167,16 +168,20 @@ TEST(DampedPath, GivesUpAStartNearItsEndWhoseStepsTakeTooLong) {
 // Without loads there is nothing that dampers could be measured by, and nothing that they must hold.
 TEST(DampedPath, TakesItsStepsWithoutDampersWhereNothingLoads) {
   const TriangleMesh mesh = grid_mesh(4, 4);
-  Objective objective(mesh.vertices, fixed_nodes(mesh.vertex_count(), rim_of(mesh)),
-                      terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
-  Problem problem{objective, objective.unknowns()};
-  problem.continuation.damped_steps = 20;
-  problem.motion.positions = [&](double t) { return Points((1 + 0.1 * t) * mesh.vertices); };
   const auto solver = built_in_solvers().at("newton")({});
-  const Result result = solve(*solver, problem, {.tolerance = 1e-9});
-  EXPECT_EQ(result.status, Status::Converged) << result.message;
-  EXPECT_EQ(result.damped_steps, 5) << "it follows what holds it: 1, 2, 4, 8 and 5 shares";
-  EXPECT_LT((objective.positions(result.q) - 1.1 * mesh.vertices).norm(), 1e-6) << "stretched evenly";
+  // It follows what holds it: shares of 1; 1, 1; 1, 2; 1, 2, 4, 4; 2, 4, 6; 3, 6, 11; 3, 6 and then 12s.
+  for (const auto& [shares, steps] :
+       {std::pair{1, 1}, {2, 2}, {3, 2}, {11, 4}, {12, 3}, {20, 3}, {100, 10}}) {
+    Objective objective(mesh.vertices, fixed_nodes(mesh.vertex_count(), rim_of(mesh)),
+                        terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
+    Problem problem{objective, objective.unknowns()};
+    problem.motion.positions = [&](double t) { return Points((1 + 0.1 * t) * mesh.vertices); };
+    problem.continuation.damped_steps = shares;
+    const Result result = solve(*solver, problem, {.tolerance = 1e-9});
+    EXPECT_EQ(result.status, Status::Converged) << result.message;
+    EXPECT_EQ(result.damped_steps, steps) << shares;
+    EXPECT_LT((objective.positions(result.q) - 1.1 * mesh.vertices).norm(), 1e-6) << "stretched evenly";
+  }
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ KeySpec continuation_key() {
                                .doc = "Steps of all loads and of the prescribed motion along a damped path, "
                                       "fewer where the shape all but follows them, which the order of the "
                                       "nodes and the method hardly ever divert "
-                                      "to another shape, at two to four times the time; 0: none. It takes "
+                                      "to another shape, at up to three times the time; 0: none. It takes "
                                       "neither load_steps nor stiffness_steps."}}},
           .doc =
               "Way to the full problem by easier ones, together with the prescribed "
