@@ -231,7 +231,7 @@ TEST(Import, MakesTheRelaxedMitralValveSolvable) {
     RunOptions options;
     options.writes = false;
     Scene scene = load_scene(folder.path() / "scene.json");
-    EXPECT_NE(formats::read_whole(folder.path() / "scene.json").find("80 solves came within 3e-5 mm"),
+    EXPECT_NE(formats::read_whole(folder.path() / "scene.json").find("144 solves came within 1e-5 mm"),
               std::string::npos)
         << "the scene promises of the path what was measured";
     EXPECT_EQ(scene.solver.continuation.damped_steps, 20);

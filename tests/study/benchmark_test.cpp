@@ -373,7 +373,7 @@ TEST_F(BenchmarkTest, SaysWhichEquilibriumIsMissing) {
   const Scene scene = disc_scene();
   BenchOptions options = two_methods();
   options.repeats = 1;
-  options.tolerances = {1e-2, 1e-3, 1e-5};
+  options.tolerances = {1e-2, 1e-3, 2e-7};
   options.truth_seconds = 1e-9;
   const Benchmark found = bench(scene, options);
   EXPECT_FALSE(found.has_converged());
@@ -382,7 +382,8 @@ TEST_F(BenchmarkTest, SaysWhichEquilibriumIsMissing) {
   EXPECT_EQ(found.meshes[0].missing + found.meshes[1].missing, "");
   EXPECT_TRUE(found.meshes[0].error_mm && found.meshes[1].error_mm);
   EXPECT_FALSE(found.meshes[1].to_next || found.meshes[2].error_mm);
-  // lbfgs ends just below its tolerance: that is no truth for a run to it. newton ended far below.
+  // lbfgs ends just below its tolerance: that is no truth for a run to it. The last step of newton goes far
+  // below.
   const std::vector<std::string> missing = missing_equilibria(found);
   ASSERT_EQ(missing.size(), 3u);
   EXPECT_EQ(missing[0].find("the equilibrium on 864 triangles"), 0u) << missing[0];
@@ -391,7 +392,7 @@ TEST_F(BenchmarkTest, SaysWhichEquilibriumIsMissing) {
   const std::string page = benchmark_page(found);
   for (const std::string& text : missing) {
     for (const char* piece : {" was not found: stopped at the time limit", "its residual of ",
-                              " is above the 1e-07 wanted", "--truth-seconds"})
+                              " is above the 2e-09 wanted", "--truth-seconds"})
       EXPECT_NE(text.find(piece), std::string::npos) << piece << " in " << text;
     EXPECT_NE(page.find("Warning: " + text), std::string::npos) << text;
   }
