@@ -23,8 +23,7 @@ constexpr int kMostShares = 12;          // in one step
 constexpr double kNearEnd = 10;          // damping of a path that begins near its end, over that of others
 constexpr double kMostFall = 0.5;        // of the damping, from one step to the next at the full problem
 constexpr double kStableFall = 0.01;     // the same where the shape is stable without dampers
-constexpr double kHold =
-    1e-4;  // of the first damping: holds free nodes where a step is asked for its stability
+constexpr double kHold = 1e-4;         // of the first damping: holds free nodes where stability is asked for
 constexpr double kLate = 0.5;          // of the loads: from there on unstable steps are counted
 constexpr int kMostStepsAtRest = 200;  // at the full problem
 constexpr double kLost = 1;            // residual of a loaded start whose first steps lead nowhere

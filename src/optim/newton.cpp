@@ -272,8 +272,8 @@ class Newton {
 
   // Where a step misses its promise, often a few ends and junctions of chords and pairs in contact bear
   // nearly all of the force: before the step is measured they are brought into balance, all others held
-  // (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). Each goes about as far and what is
-  // missed falls with the square of the way left, so that one tells whether those to come can be enough.
+  // (nonlinear elimination: Lanzkron, Rose & Wilkes 1996; Cai & Li 2011). What is missed falls with the
+  // square of the way left, and each goes about as far. False as soon as it cannot be enough any more.
   bool balance_worst_parts(LinePoint& to) {
     better_ = to;
     const double wanted = at_.energy - kFewKept * at_.promised(std::min(to.step, 1.0));
