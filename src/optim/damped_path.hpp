@@ -11,7 +11,7 @@ namespace coapt {
 // grow together in continuation.damped_steps equal steps, or in fewer: the first takes three shares, since
 // an open valve is stable (a sixth of fewer than 18, and at least one); a step after one in which the dampers
 // pulled by less than 1e-3, or whose shape is stable without them, takes twice the share of the one before,
-// up to twelve times the equal one; after others, half of it. Loads grow at one rate: a step of k shares
+// up to eight times the equal one; after others, half of it. Loads grow at one rate: a step of k shares
 // takes k times as long, so that its dampers are c/k. At the full problem the dampers weaken as the residual
 // falls, to a hundredth where the shape is stable without them, and go at a residual of 1e-4. As a step has
 // one minimum near its start, the order of nodes and the method hardly ever decide where the path leads

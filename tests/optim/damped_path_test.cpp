@@ -82,7 +82,7 @@ TEST(DampedPath, TakesLongerStepsWhereTheShapeIsStable) {
   EXPECT_LT(steps_to_the_loads(found.result), kSteps / 4);
   double before = 0;
   for (const Iteration& iterate : found.result.trace) {
-    EXPECT_LE(iterate.path - before, 12.0 / kSteps + 1e-12) << iterate.iteration;
+    EXPECT_LE(iterate.path - before, 8.0 / kSteps + 1e-12) << iterate.iteration;
     before = iterate.path;
   }
 }
@@ -169,9 +169,9 @@ TEST(DampedPath, GivesUpAStartNearItsEndWhoseStepsTakeTooLong) {
 TEST(DampedPath, TakesItsStepsWithoutDampersWhereNothingLoads) {
   const TriangleMesh mesh = grid_mesh(4, 4);
   const auto solver = built_in_solvers().at("newton")({});
-  // It follows what holds it: shares of 1; 1, 1; 1, 2; 1, 2, 4, 4; 2, 4, 6; 3, 6, 11; 3, 6 and then 12s.
+  // It follows what holds it: shares of 1; 1, 1; 1, 2; 1, 2, 4, 4; 2, 4, 6; 3, 6, 8, 3; 3, 6 and then 8s.
   for (const auto& [shares, steps] :
-       {std::pair{1, 1}, {2, 2}, {3, 2}, {11, 4}, {12, 3}, {20, 3}, {100, 10}}) {
+       {std::pair{1, 1}, {2, 2}, {3, 2}, {11, 4}, {12, 3}, {20, 4}, {100, 14}}) {
     Objective objective(mesh.vertices, fixed_nodes(mesh.vertex_count(), rim_of(mesh)),
                         terms_of(membrane_term(mesh.vertices, mesh.triangles, {})));
     Problem problem{objective, objective.unknowns()};
