@@ -54,8 +54,9 @@ class GenerateTest(CommandCase):
         self.assert_bad_input(generate("mitral", "--rough", 1, "--triangles", 100), "at least 250")
 
     def test_generates_valves_of_springs(self):
-        for options in [["--membrane", "spring"], ["--model", "hammer-2008"], ["--model", "hammer-2011"]]:
-            with self.subTest(options[1]):
+        springs = ["--membrane", "spring"]
+        for options in [springs, [*springs, "--preset", "closed"], ["--model", "hammer-2008"], ["--model", "hammer-2011"]]:
+            with self.subTest(" ".join(options)):
                 scene = self.generate("mitral", "--triangles", 400, "--contact", "none", *options)
                 run = coapt("check", scene)
                 self.assertEqual(run.returncode, 0, run.stdout + run.stderr)

@@ -215,6 +215,24 @@ TEST(Import, OfWhatOpensTheValveAFillingPressureAloneIsNoDoubt) {
   EXPECT_FALSE(says(check(folder.path() / "scene.json").warnings, "wrong side"));
 }
 
+// Without contact and where leaflets wrinkle a valve has one shape; who else resists compression may have
+// several.
+TEST(Import, LeavesThePathOutWhereAValveHasOneShape) {
+  const TemporaryFolder folder;
+  const Valve valve = mitral_valve({.triangles = 300});
+  const auto steps = [&](const Valve& given, const ImportOptions& options) {
+    write_valve_scene(given, folder.path(), options);
+    return load_scene(folder.path() / "scene.json").solver.continuation.damped_steps;
+  };
+  EXPECT_EQ(steps(valve, {}), 20);
+  EXPECT_EQ(steps(valve, {.contact = "none"}), 0);
+  EXPECT_EQ(steps(valve, {.membrane = LinearLeaflets::Springs, .contact = "none"}), 0);
+  EXPECT_EQ(steps(valve, {.membrane = LinearLeaflets::ResistsCompression, .contact = "none"}), 20);
+  Valve resists = valve;
+  for (auto& [region, law] : resists.membranes) law.type = "cst_stvk";
+  EXPECT_EQ(steps(resists, {.contact = "none"}), 20);
+}
+
 // Without the repair it stalls after tens of thousands of iterations at a residual above 20.
 TEST(Import, MakesTheRelaxedMitralValveSolvable) {
   for (const char* size : {"n64", "n128"}) {

@@ -32,9 +32,9 @@ bool has_compression(const TermType& type) {
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law) {
   const TermType* type = find_term_type(law.type);
   if (type == nullptr) return;
+  const bool is_asked = options.membrane != LinearLeaflets::TensionField;
   const bool resists = options.membrane == LinearLeaflets::ResistsCompression;
-  if (type->is_linear && (resists || !type->is_relaxed)) {
-    if (is_own && !resists) return;
+  if (type->is_linear && (is_asked || !(is_own || type->is_relaxed))) {
     law.type = linear_membrane_type(options);
     if (find_term_type(law.type)->kind == TermKind::Spring)
       std::erase_if(law.keys, [](const auto& key) { return key.first == "poisson"; });
@@ -71,6 +71,16 @@ void take_moduli(const ImportOptions& options, Valve& valve) {
     }
   }
   if (!options.chord_young.empty()) valve.cables.clear();
+}
+
+bool resists_compression(const ImportOptions& options, const Valve& valve) {
+  if (options.membrane == LinearLeaflets::ResistsCompression) return true;
+  return std::any_of(valve.membranes.begin(), valve.membranes.end(), [](const auto& entry) {
+    const Material& law = entry.second;
+    if (const std::string* stated = key_of(law, "compression")) return *stated == "\"resisted\"";
+    const TermType* type = find_term_type(law.type);
+    return type == nullptr || !(type->is_relaxed || has_compression(*type));
+  });
 }
 
 bool complete_thickness(const ImportOptions& options, Valve& valve) {

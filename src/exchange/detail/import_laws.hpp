@@ -10,8 +10,8 @@
 namespace coapt::detail {
 
 // Other programs' shells are compressed or buckle; ours wrinkle unless the options say that they resist, or
-// are springs. A law that a valve JSON states as a term (is_own) stays what it says, or resists where the
-// options say so.
+// are springs. A law that a valve JSON states as a term (is_own) stays what it says where the options ask for
+// no other.
 void take_membrane_option(const ImportOptions& options, bool is_own, Material& law);
 
 // Incompressible membranes. A shell of a program that wrote the file keeps its volume by the program's own
@@ -22,6 +22,9 @@ void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::stri
 // The moduli of the options in the place of the valve's laws. A law of another thickness than the valve's
 // becomes a linear law of its own.
 void take_moduli(const ImportOptions& options, Valve& valve);
+
+// Whether leaflets buckle where others wrinkle.
+bool resists_compression(const ImportOptions& options, const Valve& valve);
 
 // Gives membranes the thickness that the file does not state. True where one, with a law or none, lacked it.
 bool complete_thickness(const ImportOptions& options, Valve& valve);
