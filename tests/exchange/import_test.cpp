@@ -215,8 +215,8 @@ TEST(Import, OfWhatOpensTheValveAFillingPressureAloneIsNoDoubt) {
   EXPECT_FALSE(says(check(folder.path() / "scene.json").warnings, "wrong side"));
 }
 
-// Without contact and where leaflets wrinkle a valve has one shape; who else resists compression may have
-// several.
+// Without contact a valve has one shape as a rule where its leaflets wrinkle; where they resist compression
+// it may have several.
 TEST(Import, LeavesThePathOutWhereAValveHasOneShape) {
   const TemporaryFolder folder;
   const Valve valve = mitral_valve({.triangles = 300});

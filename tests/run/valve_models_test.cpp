@@ -252,6 +252,13 @@ TEST(SpringImport, WritesSpringsWithoutAPoissonsRatio) {
   const Scene linear = load_scene(folder.path() / "c" / "scene.json");
   EXPECT_EQ(linear.terms[0].type, "spring");
   EXPECT_EQ(linear.terms[0].parameters.number("young"), 2);
+  // A valve JSON that states a tension field becomes springs where they are asked for, and only there.
+  write_valve_scene(mitral_valve({.triangles = 300}), folder.path() / "d");
+  import_valve(folder.path() / "d" / "valve.json", folder.path() / "e",
+               {.membrane = LinearLeaflets::Springs});
+  EXPECT_EQ(load_scene(folder.path() / "e" / "scene.json").terms[0].type, "spring");
+  import_valve(folder.path() / "d" / "valve.json", folder.path() / "f");
+  EXPECT_EQ(load_scene(folder.path() / "f" / "scene.json").terms[0].type, "cst_tension_field");
 }
 
 }  // namespace

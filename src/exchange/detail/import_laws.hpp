@@ -23,7 +23,7 @@ void leave_bulk_out(const std::string& file, Valve& valve, std::vector<std::stri
 // becomes a linear law of its own.
 void take_moduli(const ImportOptions& options, Valve& valve);
 
-// Whether leaflets buckle where others wrinkle.
+// Whether some leaflet resists compression, by the options or by the law that is stated.
 bool resists_compression(const ImportOptions& options, const Valve& valve);
 
 // Gives membranes the thickness that the file does not state. True where one, with a law or none, lacked it.
